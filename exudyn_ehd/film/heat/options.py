@@ -150,8 +150,8 @@ class FilmEnergy:
     (one), mean temperature to 1.5 and 6 K, while an adiabatic bush next to a cooled journal is up to 8 K hotter than
     the mean. A constant 3 k/c instead of the conductivity: load to 14 %.
 
-    With ``across=2`` and the same solutions: load and peak pressure to 1.5 %, mean temperature to 0.8 K, hottest place
-    of the bush to 0.9 K; 3 % of load next to a journal that is colder than the oil that enters, whose cold layer is
+    With ``across=2`` and the same solutions: load and peak pressure to 1.5 % on 192 columns and to 2.4 % on 96, with
+    the grid's own error, mean temperature to 1 K, hottest place of the bush to 0.9 K; 3 % of load next to a journal that is colder than the oil that enters, whose cold layer is
     thinner than a cubic follows. The temperature across the film is a cubic that meets what the surfaces let through,
     the fluidity 1/mu another one, with which the velocities, the share that sliding carries, and the stresses on the
     surfaces depart from those of an even film. Oil is mixed over the height of supply areas. `SteadyResult.walls` has
