@@ -148,6 +148,7 @@ EFFECTS = {
 # kernels only other kernels of their effect call.
 SHARED = {
     "banded.lu",
+    "banded.lanes",
     "cavitation.closures",
     "cavitation.active_set",
     "models",

@@ -51,7 +51,7 @@ def very_stiff():
 # between processors, decides which steps are refused
 @hard_case("very soft bush, E = 1e6 Pa", rejected=6, newton=5.6, slow=True)
 def very_soft():
-    """Softer than rubber: the bore deflects by more than the clearance, and no mass is stable on it at this speed."""
+    """Softer than rubber: the bore deflects by more than the clearance, and its delay keeps 2 kg stable."""
     load = 20.0
     made = bearing(bush=ring(1e6))
     rigid = ehd.equilibrium(bearing(), speed=SPEED, load=(0.0, -load))
@@ -64,7 +64,9 @@ def very_soft():
     rotor = Rotor(made, mass=0.05, load=(0.0, -load))
     run = rotor.run(0.04, 2e-4)
     h = run.history
-    assert eq.critical_mass < 0.05
+    assert 1.0 < eq.critical_mass < 4.0
+    away = np.hypot(*(h.motion[:, :2] - eq.position).T)
+    assert away[-50:].max() < 0.8 * away[:50].max()
     assert h.minimum_gap.min() > 0.0
     assert h.eccentricity_ratio.max() > 1.0
     assert rotor.momentum_error(h) < 5e-3

@@ -58,7 +58,7 @@ class FilmsOnOneBody:
 
     @property
     def elasticity(self) -> Elasticity:
-        """That of the body."""
+        """That of the body, with its growth by spin where the first film is on a journal."""
         return self.films[0].model.elasticity
 
     def evaluate(
@@ -124,9 +124,12 @@ def settle_body(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Si
     assert isinstance(surface, ReducedBore) and isinstance(side, FloatingBoreSide)
     node, known = side.nodes[-1], _known(mbs, side)
     present = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
-    if not surface.settled or (present.any() and not (known and np.array_equal(present, known[1]))):
+    others = known[0] if known and np.array_equal(present, known[1]) else []
+    if not surface.settled or (present.any() and not others):
         return
-    films = [*(known[0] if known and present.any() else []), _starting_film(model, sides, surface.held())]
+    films = [*others, _starting_film(model, sides, surface.held())]
+    # the body grows by its spin whatever joint comes first
+    films.sort(key=lambda film: not isinstance(film.model, TurningModel))
     start = _equilibrium(films)
     if start is not None:
         mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())

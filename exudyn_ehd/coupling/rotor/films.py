@@ -91,7 +91,7 @@ class RotorFilm:
 
     def __init__(self, joint: Joint, system: SpinningSystem) -> None:
         self.name, self.size = joint.name, system.size
-        self.model = _plain(joint)
+        self.model = plain_model(joint)
         self.bearing = self.model.bearing
         housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
         self.housing, self.journal = housing, journal
@@ -243,8 +243,8 @@ def _carrier(joint: Joint, side: object, system: SpinningSystem) -> Carrier:
     )
 
 
-def _plain(joint: Joint) -> BearingModel:
-    """The model of a film whose stiffness and damping hold for motions of any frequency."""
+def plain_model(joint: Joint) -> BearingModel:
+    """The model of a film whose stiffness and damping hold for motions of any frequency; `InputError` for others."""
     element, model = joint.element, joint.element.model
     if type(element) is not FilmElement or not isinstance(model, BearingModel):
         what = "a flexible bush or journal, or a film of your own"

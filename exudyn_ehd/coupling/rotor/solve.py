@@ -27,7 +27,7 @@ from exudyn_ehd.coupling.rotor.checks import (
     require_mass,
     require_steady_load,
 )
-from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm
+from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm, plain_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -82,6 +82,9 @@ class EquilibriumSearch:
     def __init__(
         self, mbs: exu.MainSystem, joints: list[Joint], rotors: Rotors, ratios: Sequence[float] | None
     ) -> None:
+        # films first: a rotor of finite elements has none of these
+        for joint in joints:
+            plain_model(joint)
         self.mbs, self.system = mbs, SpinningSystem(mbs, find_rotors(mbs, joints, rotors, ratios))
         self.films = [RotorFilm(joint, self.system) for joint in joints]
         self.length = max(film.bearing.length for film in self.films)

@@ -149,4 +149,4 @@ def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[f
     if found:
         mass, ratio = min(found)
         return ratio, mass
-    return math.nan, math.inf if signs[0] > 0.0 else 0.0
+    return math.nan, math.inf if np.linalg.eigvals(stiffness(SLOWEST * omega)).imag.min() > 0.0 else 0.0

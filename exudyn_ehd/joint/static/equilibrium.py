@@ -6,20 +6,21 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
-from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
+from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
+from exudyn_ehd.joint.static.yielding import YieldingResponse, yielding_response
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
 
@@ -47,11 +48,11 @@ class EquilibriumResult:
         e/c; angle from the load to the eccentricity in the sense of rotation, rad.
     stiffness, damping : (2, 2) arrays
         K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame, at ``frequency``. With ``thermal``
-        the temperature is held: motions that are quick beside the exchange of the film's oil. A flexible bore follows
-        without inertia. See ``settled_stiffness`` for the other limit.
+        the temperature is held: motions that are quick beside the exchange of the film's oil. A flexible bore or
+        journal and a liner follow without inertia. See ``settled_stiffness`` for the other limit.
     frequency : float
-        rad/s, of the small motions for which K and C hold. 0 where they do not depend on it; with `ElrodAdams` that of
-        the whirl threshold, or half the spin if there is none.
+        rad/s, of the small motions for which K and C hold. 0 where they do not depend on it, and for the slow motions
+        of surfaces that yield; with `ElrodAdams` that of the whirl threshold, or half the spin if there is none.
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
@@ -59,7 +60,8 @@ class EquilibriumResult:
         any.
     critical_mass_error : float
         Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
-        the grid does not tell whether the bearing is stable at any mass. Of all results the critical mass feels the
+        the grid does not tell whether the bearing is stable at any mass, and with `ElrodAdams` between surfaces that
+        yield, whose delays it leaves out. Of all results the critical mass feels the
         grid most: on the default film 1 to 5 % at an eccentricity ratio of 0.7, 3 to 20 % from 0.76 on, with its
         rupture line on the vertices some 15 % and several times.
     residual : float
@@ -93,7 +95,7 @@ class EquilibriumResult:
     iterations: int
     film: SteadyResult = field(repr=False)
     frequency: float = 0.0
-    response: FilmResponse | None = field(default=None, repr=False)
+    response: FilmResponse | YieldingResponse | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         angle, mass = shown("angle", self.attitude_angle), f"{self.critical_mass:.3g} kg"
@@ -127,8 +129,8 @@ class EquilibriumResult:
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
         """Z = K + i nu C: the force's amplitude is -Z x for a motion x exp(i nu t).
 
-        With `ElrodAdams` K and C depend on the frequency, as the cavity's oil follows the journal with a delay; see
-        `exudyn_ehd.joint.static.dynamic_stiffness`.
+        With `ElrodAdams` K and C depend on the frequency, as the cavity's oil follows the journal with a delay, see
+        `exudyn_ehd.joint.static.dynamic_stiffness`; also where surfaces yield, see `exudyn_ehd.joint.static.yielding`.
 
         Parameters
         ----------
@@ -171,9 +173,11 @@ def equilibrium(
     With `ElrodAdams` stiffness and damping depend on the frequency of the motion, because the cavity's oil follows
     with a delay. The threshold is solved for with both at its own frequency, and these are the ones returned; others
     come from `EquilibriumResult.dynamic_stiffness`. With ``thermal`` they hold at the temperature of the equilibrium;
-    `EquilibriumResult.settled_stiffness` lets it follow. On a liner or a flexible bore the stiffness is that of the
-    steady film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with
-    `ElrodAdams`). An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed state.
+    `EquilibriumResult.settled_stiffness` lets it follow. On a liner, a flexible bore or journal the stiffness is that
+    of the steady film and the damping that of a slow motion; they follow quick ones with a delay, which the threshold
+    and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` these do not, and the damping on a flexible bore
+    is that of a sudden velocity. An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its
+    deformed state.
 
     Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
     of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
@@ -241,18 +245,7 @@ def equilibrium(
     motion[:2] = first_guess(bearing, omega, force, b)
     search = LoadSearch(model, force, "equilibrium", faces=faces)
     found = search.find(motion)
-    evaluation, tangent = found.evaluation, found.evaluation.steady_tangent(found.tangent)
-    response, frequency = None, 0.0
-    if model.remembers_mass and model.parts.liner is None and not model.flexible and evaluation.film is not None:
-        response = FilmResponse(evaluation.film, tangent)
-        ratio, mass = threshold(response.at, abs(omega))
-        frequency = abs(omega) * (0.5 if math.isnan(ratio) else ratio)
-        K, C = response.at(frequency).real, response.at(frequency).imag / frequency
-    else:
-        K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
-        if found.faces is not None:
-            K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
-        ratio, mass = whirl_threshold(K, C, abs(omega))
+    small = _small_motions(model, found)
     film = result_at(model, found.motion, "equilibrium", found.film.history)
     if found.faces is not None:
         from exudyn_ehd.joint.static.thrust import result_of
@@ -262,17 +255,47 @@ def equilibrium(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
         attitude_angle=film.attitude_angle,
-        stiffness=K,
-        damping=C,
-        whirl_ratio=ratio,
-        critical_mass=mass,
-        critical_mass_error=critical_mass_error(bearing, K, C),
+        **small._asdict(),
         residual=search.residual(found),
         iterations=search.count,
         film=film,
-        frequency=frequency,
-        response=response,
     )
+
+
+class _SmallMotions(NamedTuple):
+    """What `EquilibriumResult` has of small motions."""
+
+    stiffness: np.ndarray
+    damping: np.ndarray
+    frequency: float
+    whirl_ratio: float
+    critical_mass: float
+    critical_mass_error: float
+    response: FilmResponse | YieldingResponse | None
+
+
+def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
+    """Of a position whose film is the model's last."""
+    evaluation, omega = found.evaluation, abs(float(found.motion[8]))
+    tangent, film = evaluation.steady_tangent(found.tangent), found.film
+    yields = model.parts.liner is not None or model.flexible
+    response: FilmResponse | YieldingResponse | None = None
+    if model.remembers_mass and not yields:
+        response = FilmResponse(film, tangent)
+    else:
+        K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
+        if found.faces is not None:
+            K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
+        if yields and not model.remembers_mass:
+            response = yielding_response(evaluation, K, C)
+    ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
+    frequency = omega * (0.5 if math.isnan(ratio) else ratio)
+    Z = K + 1j * frequency * C if response is None else response.at(frequency)
+    there = Z.real, Z.imag / frequency
+    error = math.inf if yields and model.remembers_mass else critical_mass_error(model.bearing, *there)
+    if isinstance(response, FilmResponse):
+        return _SmallMotions(*there, frequency, ratio, mass, error, response)
+    return _SmallMotions(K, C, 0.0, ratio, mass, error, response)
 
 
 def _faces(model: BearingModel, position: float, load: float | None, across: float) -> FacesUnderLoad | None:

@@ -50,7 +50,7 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.nda
     p, w, scales, through_film = film.parts, film.journal, film.scales, None
     if gradient is None and _pressed_contact(film):
         # six rows instead of the film's and the contact's ten and more
-        through_film = film_gradient(film, slow_motion, _wrench_weights(film)) * p.motion_scale
+        through_film = film_gradient(film, slow_motion, liner_weights(film)) * p.motion_scale
         gradient = np.zeros((shape_rows(film), MOTION_SIZE))
     elif gradient is None:
         gradient = film_gradient(film, slow_motion)
@@ -187,15 +187,15 @@ def _pressed_contact(film: SolvedFilm) -> bool:
     return film.parts.liner is not None and film.pressing is not None
 
 
-def _wrench_weights(film: SolvedFilm) -> np.ndarray:
-    """Weights (6, k) of the integrals of `adjoint_rows` in the wrench, with a contact that presses on a liner."""
-    assert film.pressing is not None
+def liner_weights(film: SolvedFilm) -> np.ndarray:
+    """Weights (6, k) of the integrals of `adjoint_rows` in the wrench, on a liner, with a contact that presses."""
     w, scales, count, R = film.journal, film.scales, shape_rows(film), film.grid.reference_length
-    out, own = np.empty((6, count + 5)), np.empty((6, 8))
+    out, own = np.empty((6, count + 5 * _pressed_contact(film))), np.empty((6, 8))
     integral_weights(w.pose, R, scales.force, scales.shear, w.omega, w.axial_speed, own)
     # the last of the film's eight is the ends', which no row of `adjoint_rows` has
     out[:, :count] = own[:, :count]
-    contact_weights(w.motion, *film.pressing.friction[0], R, out[:, count:])
+    if film.pressing is not None:
+        contact_weights(w.motion, *film.pressing.friction[0], R, out[:, count:])
     return out
 
 

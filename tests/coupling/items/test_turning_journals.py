@@ -212,6 +212,8 @@ def test_run_can_be_kept_judged_and_seen(tmp_path):
     assert "journal elasticity" in str(joint.audit())
     with pytest.raises(InputError, match="must be a rigid body or node"):
         joint.place_in_equilibrium(load=(0, -1e3))
+    with pytest.raises(InputError, match="joint 'finite elements' has a flexible bush or journal"):
+        ehd.SolveEquilibrium(joint.mbs, SPEED)
 
 
 def test_input_that_cannot_be_meant():
@@ -230,3 +232,38 @@ def test_input_that_cannot_be_meant():
     ):
         with pytest.raises(InputError, match=match):
             ehd.CreateLubricatedJoint(mbs, "", [ground, item], [0, 0, 0], [0, 0, 1], described)
+
+
+@pytest.mark.slow
+def test_start_does_not_depend_on_the_order_of_joints():
+    """A floating ring with a film on either side grows by its spin whatever joint is made first."""
+    inner, half = R + C, 0.5 * L
+    mesh = ehd.HollowCylinder(
+        inner_radius=inner, thickness=0.006, length=L, axial=2, radial=1, circumferential=16
+    ).mesh()
+    fem = fem_of(mesh, material(2.1e11))
+    middle = np.abs(np.hypot(*mesh.nodes[:, :2].T) - inner - 0.003) < 1e-3
+    ends = np.flatnonzero(middle & (np.abs(mesh.nodes[:, 2] + half) < 1e-9))
+    for radius in (inner, inner + 0.006):
+        ehd.add_bore_modes(
+            fem, position=[0, 0, 0], axis=[0, 0, 1], radius=radius, length=L, fixed_nodes=ends, tolerance=0.2,
+            tilted=False,
+        )  # fmt: skip
+    found = []
+    for order in ((0, 1), (1, 0)):
+        mbs = scenes.new_system()
+        pin, housing = scenes.add_body(mbs, "Rxyz", spin=(0.0, 0.0, 900.0)), scenes.add_body(mbs, "Rxyz")
+        cms = ObjectFFRFreducedOrderInterface(fem, rigidBodyNodeType="NodeType.RotationRxyz")
+        parts = cms.AddObjectFFRFreducedOrder(mbs, initialVelocity=[0.0] * 3, initialAngularVelocity=[0.0, 0.0, 400.0])
+        ring = parts["oFFRFreducedOrder"]
+        joints = (
+            ([ring, pin], bearing(None, bush=ehd.FEBore(fem=fem))),
+            ([housing, ring], bearing(ehd.FEJournal(fem=fem), journal_radius=inner + 0.006)),
+        )
+        for k in order:
+            ehd.CreateLubricatedJoint(mbs, f"film {k}", joints[k][0], [0, 0, 0], [0, 0, 1], joints[k][1])
+        names = ("initialCoordinates", "initialCoordinates_t")
+        found.append([np.array(mbs.GetNodeParameter(parts["nGenericODE2"], name)) for name in names])
+    assert np.abs(found[0][0]).max() > 1e-8
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-8 * np.abs(one).max())
