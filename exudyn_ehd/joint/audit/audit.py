@@ -125,7 +125,7 @@ class Audit:
         Raises
         ------
         InputError
-            If its film model or closure does not go with what is missing.
+            If its film model, closure or thrust faces do not go with what is missing.
         """
         remedies = [finding.remedy for finding in self.findings if finding.remedy is not None]
         if remedies and isinstance(bearing.film, ImpedanceMap):
