@@ -151,11 +151,12 @@ class FilmEnergy:
     the mean. A constant 3 k/c instead of the conductivity: load to 14 %.
 
     With ``across=2`` and the same solutions: load and peak pressure to 1.5 % on 192 columns and to 2.4 % on 96, with
-    the grid's own error, mean temperature to 1 K, hottest place of the bush to 0.9 K; 3 % of load next to a journal that is colder than the oil that enters, whose cold layer is
-    thinner than a cubic follows. The temperature across the film is a cubic that meets what the surfaces let through,
-    the fluidity 1/mu another one, with which the velocities, the share that sliding carries, and the stresses on the
-    surfaces depart from those of an even film. Oil is mixed over the height of supply areas. `SteadyResult.walls` has
-    the ``across`` temperatures, histories the surfaces' means.
+    the grid's own error, mean temperature to 1 K, hottest place of the bush to 0.9 K; 3 % of load next to a journal
+    that is colder than the oil that enters, whose cold layer is thinner than a cubic follows. The temperature across
+    the film is a cubic that meets what the surfaces let through, the fluidity 1/mu another one, with which the
+    velocities, the share that sliding carries, and the stresses on the surfaces depart from those of an even film.
+    Oil is mixed over the height of supply areas. `SteadyResult.walls` has the ``across`` temperatures, histories the
+    surfaces' means.
 
     Along z, 10, 20 and 40 intervals bring a film with a supply within 0.2 % of the converged load. Without supply and
     with hardly cooled walls, hot oil turns with the journal beside cold oil from the ends, a jump that a grid smears:
