@@ -58,19 +58,18 @@ class FilmSystem:
         The same of a film that conserves mass.
     linked : (n,) bool array
         Columns with a link to the next one.
+    fields : (9, n, m) array
+        Holds kx, kz, fx, fz, b, H, HF (gap on the links i -> i+1), H_t and pressure.
     """
 
     def __init__(self, grid: FilmGrid, clips: bool, fills: bool) -> None:
         shape = grid.shape
-        self.kx = np.zeros(shape)
-        self.kz = np.zeros(shape)
-        self.b = np.zeros(shape)
+        self.fields = np.zeros((9, *shape))
+        self.kx, self.kz, self.fx, self.fz, self.b, self.H, self.HF, self.H_t, self.pressure = self.fields
+        self.H[:] = self.HF[:] = 1.0
         self.fixed = grid.fixed
         self.cavity_pressure = 0.0
-        self.pressure = np.zeros(shape)
         self.linear_pressure = np.zeros(shape) if clips else self.pressure
-        self.fx, self.fz = np.zeros(shape), np.zeros(shape)
-        self.H, self.H_t = np.ones(shape), np.zeros(shape)
         self.area = grid.area
         self.inverse_step = 0.0
         empty = np.ones(shape) if fills else np.ones((0, 0))

@@ -72,8 +72,7 @@ class FilmSolver:
         self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
         self.area = grid.area
         self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
-        self.H, self.H_t = self.system.H, self.system.H_t
-        self.HF = np.ones(shape)
+        self.H, self.HF, self.H_t = self.system.H, self.system.HF, self.system.H_t
         self.line: RuptureLine | None = None
         self.oil_line: OilLine | None = None
         if closure.line_in_cells and closure.conserves_mass:

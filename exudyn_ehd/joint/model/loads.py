@@ -10,6 +10,8 @@ from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
     couette_integral_ratio,
+    end_forces,
+    journal_wrench,
     pressure_integrals,
     slope_integrals,
 )
@@ -99,25 +101,19 @@ def film_loads(
         extra_theta += drag[0]
         extra_z += drag[1]
     couette, couette_unbroken = _couette(parts, oil.ratio)
-    x, y, bx, by = journal.pose.tolist()
-    sc, ss, szc, szs = integrals.tolist()
-    s_theta = x * ss - y * sc + bx * szs - by * szc + extra_theta
-    s_z = -(bx * sc + by * ss) + extra_z
-    # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their
-    # slope. Uneven drag pulls the journal by as much as it holds the bore back.
-    R, force = g.reference_length, scales.force
-    ends, (lower, upper) = 0.0, scales.ends.tolist()
-    if lower != 0.0 or upper != 0.0:
-        ends = float(upper * s.H[:, -1].sum() - lower * s.H[:, 0].sum()) * (2.0 * math.pi / len(s.H))
-    wrench = np.array(
-        [
-            -force * sc,
-            -force * ss,
-            -scales.shear * (journal.axial_speed * couette + 6.0 * R * (s_z - 2.0 * extra_z - ends)),
-            force * R * szs,
-            -force * R * szc,
-            -scales.shear * R**2 * (journal.omega * couette + 6.0 * (s_theta - 2.0 * extra_theta)),
-        ]
+    wrench, ends = np.empty(6), end_forces(s.H, scales.ends)
+    s_theta = journal_wrench(
+        journal.pose,
+        integrals,
+        couette,
+        extra_theta,
+        extra_z,
+        ends,
+        scales.force,
+        scales.shear,
+        g.reference_length,
+        journal.motion,
+        wrench,
     )
     contact = _NO_CONTACT
     if pressing is not None:

@@ -23,6 +23,7 @@ from exudyn_ehd.joint.model.loads import film_loads, oil_fields
 from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
 from exudyn_ehd.joint.model.surfaces import worn_depth
+from exudyn_ehd.joint.plain_film import is_plain, solve_plain
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (
     MOTION_SIZE,
@@ -140,6 +141,7 @@ class BearingModel:
         self._gap_fields: list[np.ndarray] = []
         self._extra: ExtraGap | None = None
         self._extra_link = np.zeros((0, 0))
+        self._plain = not self.flexible and is_plain(p, self.effects)
         self._set_viscosity(1.0)
 
     def _set_viscosity(self, ratio: float) -> None:
@@ -152,7 +154,7 @@ class BearingModel:
         self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]))
         # what the solver is told: the transformed pressures of a pressure law
         prescribed = known if law is None else law.transform(self._known) / pressure
-        self._prescribed: list[float] = prescribed.tolist()
+        self._prescribed = prescribed
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
         if p.nonlinear is not None:
@@ -239,6 +241,11 @@ class BearingModel:
         """
         p, c = self.parts, self.bearing.radial_clearance
         p.evaluations.count += 1
+        if self._plain:
+            motion = np.array(motion, dtype=float)
+            film, iterations = solve_plain(p, self.scales, motion, self._prescribed, step)
+            if film is not None:
+                return Evaluation(Status.CONVERGED, motion, film.loads.wrench, iterations, film.minimum_gap, film, self)
         journal = self._journal(motion)
         temperature, walls = self._set_temperature(history)
         if p.supply is not None and p.supply.turn(spin):
@@ -364,7 +371,7 @@ class BearingModel:
         """Solve for the gaps in the solver's buffers, with the known pressures."""
         p, law = self.parts, self.effects.pressure_law
         P = self.solver.pressure
-        P[:, 0], P[:, -1], cavity = self._prescribed
+        P[:, 0], P[:, -1], cavity = self._prescribed.tolist()
         if p.supply is not None:
             fed = p.supply.pressures()
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)

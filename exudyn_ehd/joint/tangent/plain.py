@@ -43,12 +43,12 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
     y, line, work = s.system, s.line, s.work
     known = (0, 0.0, True) if line is None else (work.count if line.own_links else 0, line.peak, line.exact)
     exact = _plain_tangent(
-        (y.kx, y.kz, y.b),
+        y.fields,
         None if line is None else line.fields,
         work.factor,
         (work.count, work.width),
         known,
-        (y.linear_pressure, s.H, s.HF, s.ones, s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.link_fields),
+        (s.ones, s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.link_fields),
         (g.fixed, work.active),
         g.directions,
         g.mesh,
@@ -64,16 +64,20 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
-def _plain_tangent(links, line, factor, size, known, fields, sets, at, mesh, speeds, squeeze, pose, scales, out):
-    """Returns whether the factor is exact, as `refine_line`; ``known``: its ``first``, ``peak`` and last answer."""
+def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, speeds, squeeze, pose, scales, out):
+    """Returns whether the factor is exact, as `refine_line`; ``known``: its ``first``, ``peak`` and last answer.
+
+    ``film``: ``FilmSystem.fields``.
+    """
     order, _, number, band, inv_diag = factor
     (count, width), (first, peak, exact) = size, known
-    P, H, HF, ones, by_rate, by_gap, weight, link_fields = fields
+    kx, kz, b, H, HF, P = film[0], film[1], film[4], film[5], film[6], film[8]
+    ones, by_rate, by_gap, weight, link_fields = fields
     fixed, active = sets
     cos_x, sin_x, _, _, z = at
     vx, vz, flow_x, cavity_shear = speeds
     if line is not None and not exact:
-        exact = refine_line(links, line, factor, count, width, first, peak, 0.0)
+        exact = refine_line((kx, kz, b), line, factor, count, width, first, peak, 0.0)
     lam = np.empty((4, count))
     load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
     if line is None or exact:

@@ -1,0 +1,134 @@
+"""A plain film with its loads in one kernel: rigid surfaces, an oil of constant viscosity, Swift-Stieber's condition.
+
+It calls what `exudyn_ehd.joint.model.rigid.BearingModel.evaluate` calls one by one for any film. On small grids those
+calls from Python take longer than what they call.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.cavitation.active_set import solve_active_set
+from exudyn_ehd.film.cavitation.line_newton import find_line
+from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
+from exudyn_ehd.film.reynolds.gap import rigid_gaps
+from exudyn_ehd.film.reynolds.links import set_links
+from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, OilFields, Scales, SolvedFilm
+
+_NO_CONTACT = np.zeros(6)
+
+
+def is_plain(parts: FilmParts, effects: Effects) -> bool:
+    """Whether `solve_plain` knows the films of these parts."""
+    s = parts.solver
+    return (
+        effects == Effects()
+        and type(s) is FilmSolver
+        and s.complementary
+        and not s.closure.conserves_mass
+        and parts.supply is None
+    )
+
+
+def solve_plain(
+    parts: FilmParts, scales: Scales, motion: np.ndarray, known: np.ndarray, step: float
+) -> tuple[SolvedFilm | None, int]:
+    """The film of a motion (10,) from the one before, and the number of linear solves.
+
+    None where there is no film before, or none is found from there. ``known`` (3,): scaled pressures at both ends and
+    in the cavity.
+    """
+    s = parts.solver
+    y, line, work, g = s.system, s.line, s.work, parts.grid
+    if not work.warm:
+        return None, 0
+    out = np.empty(18)
+    found, steps, work.count, work.width, peak, own, smallest, couette, s_theta = _plain_film(
+        motion,
+        parts.motion_scale,
+        known,
+        (scales.force, scales.shear, g.reference_length, parts.half_length, s.flow_x, s.closure.cavity_shear),
+        (s.squeeze, work.known),
+        g.directions,
+        g.mesh,
+        g.weight,
+        y.fields,
+        (g.fixed, work.active),
+        None if line is None else line.fields,
+        work.factor,
+        (work.count, work.width),
+        work.unknowns,
+        out,
+    )
+    if line is not None:
+        work.known, line.peak, line.own_links, line.exact = found, peak, own, False
+    work.warm = found
+    if not found:
+        return None, steps
+    _, _, _, _, _, _, _, _, omega, axial_speed = motion.tolist()
+    s.vx, s.vz = 0.5 * omega, 0.5 * axial_speed / g.reference_length
+    y.cavity_pressure = float(known[2])
+    journal = JournalMotion(motion, out[10:14], out[14:], omega, axial_speed)
+    film = SolvedFilm(
+        parts,
+        g,
+        s,
+        scales,
+        journal,
+        None,
+        step,
+        None,
+        None,
+        None,
+        None,
+        OilFields(y.pressure),
+        Loads(out[:6], _NO_CONTACT, out[6:10], *couette, s_theta),
+        parts.bearing.radial_clearance * smallest,
+        None,
+        parts.evaluations.count,
+    )
+    return film, steps
+
+
+@njit(cache=True, nogil=True)
+def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, factor, last, x, out):
+    """Returns (found, steps, count, width, peak, own links, smallest gap, integrals of the Couette shear, s_theta).
+
+    ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
+    """
+    force, shear, radius, half_length, flow_x, cavity_shear = sizes
+    squeeze, is_known = kinds
+    (count, width), pc = last, known[2]
+    vx, vz, own, none = 0.5 * motion[8], 0.5 * motion[9] / radius, False, (0.0, 0.0)
+    kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[4]
+    H, HF, H_t, P = fields[5], fields[6], fields[7], fields[8]
+    fixed, active = sets
+    for q in range(8):
+        out[10 + q] = motion[q] * scale[q]
+    pose, rate, integrals = out[10:14], out[14:], out[6:10]
+    smallest = rigid_gaps(pose, rate, squeeze, at, half_length, H, HF, H_t)
+    # not where motions are not finite
+    if not (smallest > 0.0 and np.isfinite(vx + vz + rate[0] + rate[1] + rate[2] + rate[3])):
+        return False, 0, count, width, 0.0, own, smallest, none, 0.0
+    P[:, 0], P[:, -1] = known[0], known[1]
+    set_links(H, HF, H_t if squeeze else None, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
+    peak = 0.0
+    if line is None:
+        order, old_order, number, band, inv_diag = factor
+        ok, steps, count, width = solve_active_set(
+            kx, kz, b, fixed, pc, active, order, old_order, number, band, inv_diag, x, P
+        )
+    else:
+        forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
+        last = last if is_known else (np.int64(0), np.int64(1))
+        ok, steps, count, width, peak, own = find_line(
+            (kx, kz, b), fixed, pc, forth, is_known, line, active, factor, last, x, P
+        )
+    pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
+    couette = couette_integral(H, weight, active, fixed, cavity_shear)
+    ends = end_forces(H, known)
+    s_theta = journal_wrench(pose, integrals, couette[0], 0.0, 0.0, ends, force, shear, radius, motion, out)
+    return ok, steps, count, width, peak, own, smallest, couette, s_theta
