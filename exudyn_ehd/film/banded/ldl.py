@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.lanes import subtract_four_lanes, subtract_lanes
+from exudyn_ehd.film.banded.workspace import PAD
 
 _FAST = {"contract", "nsz", "arcp"}
 _unsigned = np.uint64
@@ -28,10 +29,12 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
     n, m = number.shape
     along, across, places, flat = kx.reshape(-1), kz.reshape(-1), number.reshape(-1), band_out.reshape(-1)
     size, rows, stride = _unsigned(n * m), _unsigned(m), _unsigned(band_out.shape[1])
-    for q in range(_unsigned(first) * stride, _unsigned(count) * stride):
-        flat[q] = 0.0
+    wide = _unsigned(min(width + 1 + PAD, band_out.shape[1]))
     for r in range(first, count):
         c, row = _unsigned(order[r]), _unsigned(r) * stride
+        # links to rows above come from below
+        for q in range(row, row + wide):
+            flat[q] = 0.0
         before, on = c - _1 if c > _0 else size - _1, c + _1 if c + _1 < size else _0
         prv, nxt = c - rows if c >= rows else c + size - rows, c + rows if c + rows < size else c + rows - size
         flat[row] += along[prv] + along[c] + across[before] + across[c]

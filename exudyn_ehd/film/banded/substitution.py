@@ -9,8 +9,9 @@ triangles, or both, come with the diagonal ``1 / inverse``, else with ones:
 * `solve_lu_transposed`: F^T = U^T, G = L^T with ones;
 * `solve_ldl`: ``A = U^T D^-1 U``, both U, so that the back substitution starts from D times what came forward.
 
-Three rows of the factor meet four right-hand sides at a time: twelve dot products that stay in registers, with flat
-unsigned indices, which spare the slices and sign checks that would outweigh the arithmetic of short rows.
+One right-hand side meets four rows of the factor at a time, as vectors. Four right-hand sides meet three: twelve dot
+products that stay in registers, with flat unsigned indices, which spare the slices and sign checks that would outweigh
+the arithmetic of short rows.
 """
 
 from __future__ import annotations
@@ -18,10 +19,13 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.banded.lanes import dot_four_lanes, put_four_lanes, subtract_four_lanes
+
 # Without leave to reassociate short dot products are not turned into gathers, which are slower.
 _KEEP_ORDER = {"contract", "nsz", "arcp"}
 _unsigned = np.uint64
-_1, _2, _3 = (_unsigned(k) for k in (1, 2, 3))
+_0, _1, _2, _3, _4 = (_unsigned(k) for k in range(5))
+_8 = _unsigned(8)
 # A step back, as unsigned indices wrap.
 _back = _unsigned(2**64 - 1)
 # numba would compile everything below anew for each plain True and False
@@ -70,65 +74,72 @@ def _solve_rows(forward, backward, scale_forth, scale_back, inverse, count, widt
 
 @njit(cache=True, fastmath=_KEEP_ORDER)
 def _solve_one(forward, backward, scale_forth, scale_back, inverse, count, width, x):
-    """One right-hand side x (count,), three rows at a time."""
+    """One right-hand side x (count,), four rows at a time as long as vectors end within it."""
     col, row = forward.reshape(-1), backward.reshape(-1)
-    stride = _unsigned(forward.shape[1])
-    along = stride - _1
-    w, size = _unsigned(width), _unsigned(count)
-    whole = size - size % _3
-    i0 = i1 = i2 = 1.0
-    for panel in range(whole // _3):
-        r = _3 * panel
-        reach = min(w, r)
-        k = r - reach
-        own = r * stride
-        at = own - reach * along
-        s0, s1, s2 = x[r], x[r + _1], x[r + _2]
-        for _ in range(reach):
-            f = x[k]
-            s0 -= col[at] * f
-            s1 -= col[at + _1] * f
-            s2 -= col[at + _2] * f
-            at += along
-            k += _1
-        if scale_forth:
-            i0, i1, i2 = inverse[r], inverse[r + _1], inverse[r + _2]
-        s0 *= i0
-        s1 = (s1 - col[own + _1] * s0) * i1
-        s2 = (s2 - col[own + _2] * s0 - col[own + stride + _1] * s1) * i2
-        x[r], x[r + _1], x[r + _2] = s0, s1, s2
-    _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, x)
-    i0 = i1 = i2 = d0 = d1 = d2 = 1.0
-    for panel in range(whole // _3):
-        r = whole - _3 * panel - _3
+    stride, w, size = _unsigned(forward.shape[1]), _unsigned(width), _unsigned(count)
+    reach = (w + _3) // _4 * _4
+    blocks = (size - reach) // _4 if size > reach else _0
+    i0 = i1 = i2 = i3 = d0 = d1 = d2 = d3 = 1.0
+    # the next four rows are carried in single numbers: they would wait for a vector to be stored and read
+    t0, t1, t2, t3 = (x[0], x[1], x[2], x[3]) if blocks > _0 else (0.0, 0.0, 0.0, 0.0)
+    for block in range(blocks):
+        r = _4 * block
         row0 = r * stride
-        row1 = row0 + along
-        row2 = row1 + along
+        row1 = row0 + stride
+        row2 = row1 + stride
+        row3 = row2 + stride
+        if scale_forth:
+            i0, i1, i2, i3 = inverse[r], inverse[r + _1], inverse[r + _2], inverse[r + _3]
+        s0 = t0 * i0
+        s1 = (t1 - col[row0 + _1] * s0) * i1
+        s2 = (t2 - col[row0 + _2] * s0 - col[row1 + _1] * s1) * i2
+        s3 = (t3 - col[row0 + _3] * s0 - col[row1 + _2] * s1 - col[row2 + _1] * s2) * i3
+        x[r], x[r + _1], x[r + _2], x[r + _3] = s0, s1, s2, s3
+        c0, c1, c2, c3 = row0 + _4, row1 + _3, row2 + _2, row3 + _1
+        n = r + _4
+        t0 = x[n] - col[c0] * s0 - col[c1] * s1 - col[c2] * s2 - col[c3] * s3
+        t1 = x[n + _1] - col[c0 + _1] * s0 - col[c1 + _1] * s1 - col[c2 + _1] * s2 - col[c3 + _1] * s3
+        t2 = x[n + _2] - col[c0 + _2] * s0 - col[c1 + _2] * s1 - col[c2 + _2] * s2 - col[c3 + _2] * s3
+        t3 = x[n + _3] - col[c0 + _3] * s0 - col[c1 + _3] * s1 - col[c2 + _3] * s2 - col[c3 + _3] * s3
+        q = _4
+        while q < reach:
+            subtract_four_lanes(x, n + q, col, c0 + q, c1 + q, c2 + q, c3 + q, s0, s1, s2, s3)
+            q += _4
+    whole = _4 * blocks
+    if blocks > _0:
+        x[whole], x[whole + _1], x[whole + _2], x[whole + _3] = t0, t1, t2, t3
+    _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, whole, x)
+    i0 = i1 = i2 = i3 = 1.0
+    s0, s1, s2, s3 = (x[whole], x[whole + _1], x[whole + _2], x[whole + _3]) if blocks > _0 else (0.0, 0.0, 0.0, 0.0)
+    for block in range(blocks):
+        r = _4 * (blocks - block - _1)
+        row0 = r * stride
+        row1 = row0 + stride
+        row2 = row1 + stride
+        row3 = row2 + stride
+        c0, c1, c2, c3 = row0 + _4, row1 + _3, row2 + _2, row3 + _1
+        t0, t1, t2, t3 = dot_four_lanes(row, c0 + _4, c1 + _4, c2 + _4, c3 + _4, x, r + _8, reach - _4)
         if scale_back:
-            i0, i1, i2 = inverse[r], inverse[r + _1], inverse[r + _2]
+            i0, i1, i2, i3 = inverse[r], inverse[r + _1], inverse[r + _2], inverse[r + _3]
             if scale_forth:
-                d0, d1, d2 = row[row0], row[row1 + _1], row[row2 + _2]
-        s0, s1, s2 = d0 * x[r], d1 * x[r + _1], d2 * x[r + _2]
-        reach = min(w, size - r - _3)
-        d = _2 + reach
-        for _ in range(reach):
-            f = x[r + d]
-            s0 -= row[row0 + d] * f
-            s1 -= row[row1 + d] * f
-            s2 -= row[row2 + d] * f
-            d -= _1
-        s2 *= i2
-        s1 = (s1 - row[row1 + _2] * s2) * i1
-        s0 = (s0 - row[row0 + _2] * s2 - row[row0 + _1] * s1) * i0
-        x[r], x[r + _1], x[r + _2] = s0, s1, s2
+                d0, d1, d2, d3 = row[row0], row[row1], row[row2], row[row3]
+        t3 = d3 * x[r + _3] - t3 - row[c3 + _3] * s3 - row[c3 + _2] * s2 - row[c3 + _1] * s1 - row[c3] * s0
+        t2 = d2 * x[r + _2] - t2 - row[c2 + _3] * s3 - row[c2 + _2] * s2 - row[c2 + _1] * s1 - row[c2] * s0
+        t1 = d1 * x[r + _1] - t1 - row[c1 + _3] * s3 - row[c1 + _2] * s2 - row[c1 + _1] * s1 - row[c1] * s0
+        t0 = d0 * x[r] - t0 - row[c0 + _3] * s3 - row[c0 + _2] * s2 - row[c0 + _1] * s1 - row[c0] * s0
+        s3 = t3 * i3
+        s2 = (t2 - row[row2 + _1] * s3) * i2
+        s1 = (t1 - row[row1 + _2] * s3 - row[row1 + _1] * s2) * i1
+        s0 = (t0 - row[row0 + _3] * s3 - row[row0 + _2] * s2 - row[row0 + _1] * s1) * i0
+        put_four_lanes(x, r, s0, s1, s2, s3)
 
 
 @njit(cache=True, fastmath=_KEEP_ORDER)
-def _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, x):
-    """Forth and back through the last one or two rows, which fill no panel."""
+def _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, known, x):
+    """Forth and back through the last rows, from ``whole`` on, of which those below ``known`` are subtracted."""
     for r in range(whole, size):
         s = x[r]
-        for k in range(r - min(w, r), r):
+        for k in range(max(r - min(w, r), known), r):
             s -= col[k * stride + r - k] * x[k]
         x[r] = s * inverse[r] if scale_forth else s
     for q in range(size - whole):
@@ -227,7 +238,7 @@ def _solve_four(forward, backward, scale_forth, scale_back, inverse, count, widt
         _put(x, r + _1, s1)
         _put(x, r + _2, s2)
     for k in range(4):
-        _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, rows[k])
+        _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, _0, rows[k])
     i0 = i1 = i2 = 1.0
     for panel in range(whole // _3):
         r = whole - _3 * panel - _3
