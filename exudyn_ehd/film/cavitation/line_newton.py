@@ -33,13 +33,15 @@ from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 MOST_STEPS = 100
 # What a step may leave of s and of pressures over the peak. It is about the step itself times the change of s since its
 # factor, or times its ratio to the step before. Of the first step with a factor s alone counts: all else is linear.
-LEFT_OF_LINE, LEFT, LEFT_AT_ONCE = 1e-12, 1e-13, 1e-13
+LEFT_OF_LINE, LEFT, LEFT_AT_ONCE = 1e-12, 1e-14, 1e-13
 # Share of the largest flow that balances may lack before another step follows, in thick films a rounding of the peak.
 UNBALANCED = 5e-13
 # Steps over the peak that leave more than its rounding: those from other films, far larger ones.
 LARGE = 10.0
 # Change of s beyond which a new factor is faster; steps with a factor after its first.
 REUSABLE, MOST_REUSES = 0.3, 3
+# Change of s beyond which vertices at the line follow their neighbours between the steps.
+FOLLOWED = 1e-3
 # How much slower a step may converge than the one before.
 CAREFUL = 3.0
 # Share of the balances that a step with the factor of the film before has to leave behind, and that it may leave if
@@ -62,16 +64,25 @@ def _size(x, count):
 
 
 @njit(cache=True, fastmath=_FAST)
+def _largest(a, b):
+    """Largest product of two arrays (k,), four running ones, as one waits for itself."""
+    s0 = s1 = s2 = s3 = 0.0
+    fours = a.size // 4
+    for q in range(fours):
+        c = 4 * q
+        s0, s1 = max(s0, a[c] * b[c]), max(s1, a[c + 1] * b[c + 1])
+        s2, s3 = max(s2, a[c + 2] * b[c + 2]), max(s3, a[c + 3] * b[c + 3])
+    for c in range(4 * fours, a.size):
+        s0 = max(s0, a[c] * b[c])
+    return max(max(s0, s1), max(s2, s3))
+
+
+@njit(cache=True)
 def _balanced(links, p, x, count):
     """Whether what the balances lack, x (count,), is little."""
-    kx, b, pressures = links[0].reshape(-1), links[2].reshape(-1), p.reshape(-1)
-    lack, source, flow = 0.0, 0.0, 0.0
-    for r in range(count):
-        lack = max(lack, abs(x[r]))
-    for c in range(b.size):
-        source = max(source, abs(b[c]))
-        flow = max(flow, kx[c] * pressures[c])
-    return lack <= UNBALANCED * (source + flow)
+    b, lack = links[2].reshape(-1), x[:count]
+    flow = np.sqrt(_largest(b, b)) + _largest(links[0].reshape(-1), p.reshape(-1))
+    return np.sqrt(_largest(lack, lack)) <= UNBALANCED * flow
 
 
 @njit(cache=True)
@@ -175,7 +186,7 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
                 else:
                     rate = min(stale, CAREFUL * max(rate, in_film / last_film if last_film > 0.0 else 0.0))
                 done = in_film * rate <= LEFT and in_line * rate <= LEFT_OF_LINE
-            if step <= PATIENT:
+            if step <= PATIENT and in_line > FOLLOWED:
                 changes += relax_line(links, line, active, lack, p)
             if done and changes == 0:
                 changes = join_film(links, line, active, lack, p)

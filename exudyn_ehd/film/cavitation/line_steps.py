@@ -20,35 +20,36 @@ PATIENT, KEPT, SAFE = 8, 0.1, 30
 # Pressure below the cavity's, over the peak, by which a vertex without a line leaves the film: about 100 roundings.
 ROUNDING = 1e-13
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+_unsigned = np.uint64
+_0, _1 = _unsigned(0), _unsigned(1)
 
 
 @njit(cache=True, fastmath=_FAST)
 def lacks(links, p, out):
     """What the balances lack without the line: b less what the pressure flows take away, (n, m)."""
     kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
-    n, m = p.shape
-    size, x, lack = n * m, p.reshape(-1), out.reshape(-1)
+    x, lack, m, size = p.reshape(-1), out.reshape(-1), _unsigned(p.shape[1]), _unsigned(p.size)
     last = size - m
-    along, across = np.empty(size + m), np.empty(size + 1)
-    for c in range(last):
-        along[m + c] = kx[c] * (x[c] - x[c + m])
     for c in range(m):
-        along[c] = along[size + c] = kx[last + c] * (x[last + c] - x[c])
-    across[0] = across[size] = 0.0
-    for c in range(size - 1):
         # nothing flows over the last row's links
-        across[c + 1] = kz[c] * (x[c] - x[c + 1])
-    for c in range(size):
-        lack[c] = b[c] - along[m + c] + along[c] - across[c + 1] + across[c]
+        before, far = (c if c > _0 else size) - _1, last + c
+        lack[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
+        lack[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + _1])
+    for c in range(m, last):
+        taken = kx[c] * (x[c] - x[c + m]) - kx[c - m] * (x[c - m] - x[c])
+        lack[c] = b[c] - taken - kz[c] * (x[c] - x[c + _1]) + kz[c - _1] * (x[c - _1] - x[c])
+    for c in range(last, size):
+        on, far = c + _1 if c + _1 < size else _0, c - last
+        lack[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
+        lack[c] += kz[c - _1] * (x[c - _1] - x[c]) - kz[c] * (x[c] - x[on])
 
 
-@njit(cache=True)
-def _meet(c, m, kx, kz, line, rest, free, pressures):
+@njit(cache=True, inline="always")
+def _meet(c, m, kx, kz, f, k, s, whole, rest, free, pressures):
     """Let the vertex c at the line meet its own balance between given neighbours: ``g s^2 / 2 + s = e``.
 
     It leaves if s would be negative. ``rest`` follows.
     """
-    f, k, s, whole, _, _, _, _ = line
     size, old = rest.size, pressures[c]
     on = c + m if c + m < size else c + m - size
     diagonal = kx[c - m] + kx[c] + kz[c - 1] + kz[c]
@@ -76,11 +77,12 @@ def relax_line(links, line, active, lack, p):
     """The vertices at the line meet their own balances, one after the other: those whose s is small follow their
     neighbours at once, whatever their factor. ``lack`` (n, m) of `lacks`, in and out; returns how many leave."""
     kx, kz, m = links[0].reshape(-1), links[1].reshape(-1), p.shape[1]
-    rest, free, pressures, places, s = lack.reshape(-1), active.reshape(-1), p.reshape(-1), line[5], line[2]
+    rest, free, pressures = lack.reshape(-1), active.reshape(-1), p.reshape(-1)
+    f, k, s, whole, _, places, _, _ = line
     kept, left = 0, 0
     for q in range(places[-1]):
         c = places[q]
-        _meet(c, m, kx, kz, line, rest, free, pressures)
+        _meet(c, m, kx, kz, f, k, s, whole, rest, free, pressures)
         left += not free[c]
         if s[c] < 1.0:
             places[kept] = c
@@ -99,14 +101,15 @@ def join_film(links, line, active, lack, p):
     if waiting == 0:
         return 0
     kx, kz, m = links[0].reshape(-1), links[1].reshape(-1), p.shape[1]
-    f, s, places, joined = line[0], line[2], line[5], 0
+    f, k, s, whole, _, places, _, _ = line
+    pressures, joined = p.reshape(-1), 0
     for c in range(rest.size):
         if free[c] | (rest[c] < limit[c]):
             continue
         joined += 1
         free[c] = True
         if f[c] > 0.0:
-            _meet(c, m, kx, kz, line, rest, free, p.reshape(-1))
+            _meet(c, m, kx, kz, f, k, s, whole, rest, free, pressures)
             if s[c] < 1.0:
                 places[places[-1]] = c
                 places[-1] += 1
@@ -133,7 +136,10 @@ def line_rows(lack, line, number, order, count, active, rhs_out):
             rhs_out[r] += 0.5 * f[c] * (1.0 - s[c]) * (1.0 - s[c])
             share[r] = k[c] * (1.0 - s[c]) / s[c]
             stale = max(stale, abs(1.0 - k[c] / (k[c] + shift[r]) / s[c]))
+    gone = 0
     for r in range(count):
+        gone += (shift[r] > 0.0) & (share[r] == 0.0)
+    for r in range(count if gone > 0 else 0):
         if shift[r] > 0.0 and share[r] == 0.0:
             stale = max(stale, shift[r] / (k[order[r]] + shift[r]))
     return stale

@@ -34,6 +34,7 @@ from exudyn_ehd.film.reynolds.links import LinkFlux
 
 # A vertex joins with s beyond it: what lies below is the rounding of its neighbours' pressures.
 LEAST = 1e-8
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class LineGradients(NamedTuple):
@@ -134,20 +135,30 @@ class RuptureLine:
 @njit(cache=True)
 def line_terms(kx, b, fixed, line):
     """f and k of all vertices, and what follows from them."""
-    n, m = b.shape
-    behind, rest, known = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1)
+    links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]
     f, k, _, whole, limit, _, _, _ = line
-    size, last = n * m, n * m - m
-    for c in range(size):
-        prv = c - m if c >= m else c + last
-        nxt = c + m if c < last else c - last
-        k[c] = 0.5 * (behind[prv] + behind[c])
-        f[c] = whole[c] = 0.0
-        limit[c] = np.inf if known[c] else 0.0
-        if rest[c] < 0.0 and min(behind[prv], behind[c]) > 0.0 and not (known[c] | known[prv] | known[nxt]):
-            f[c] = -rest[c]
-            whole[c] = 0.5 * f[c] / k[c]
-            limit[c] = (LEAST - 0.5) * f[c]
+    last = rest.size - m
+    for start, end, prv, nxt in ((0, m, last, m), (m, last, 0, 2 * m), (last, rest.size, last - m, 0)):
+        at, before, behind = slice(start, end), slice(prv, prv + end - start), slice(nxt, nxt + end - start)
+        _terms(links[before], links[at], rest[at], f[at], k[at], whole[at])
+        _clear_known(known[before], known[at], known[behind], f[at], whole[at], limit[at])
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _terms(before, links, rest, f, k, whole):
+    for c in range(f.size):
+        k[c] = 0.5 * (before[c] + links[c])
+        can = (rest[c] < 0.0) & (before[c] > 0.0) & (links[c] > 0.0)
+        f[c] = -rest[c] if can else 0.0
+        whole[c] = 0.5 * f[c] / (k[c] if can else 1.0)
+
+
+@njit(cache=True)
+def _clear_known(before, known, behind, f, whole, limit):
+    for c in range(f.size):
+        if known[c] | before[c] | behind[c]:
+            f[c] = whole[c] = 0.0
+        limit[c] = np.inf if known[c] else (LEAST - 0.5) * f[c]
 
 
 @njit(cache=True)
