@@ -102,20 +102,16 @@ def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
         rhs_out[1, r] = w * z[at]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def couette_integral(H, weight, active, fixed, cavity_share):
     """(C, C over the unbroken film, dC as -W share/H^2 is left to `couette_gradient`)."""
-    n, m = H.shape
-    whole = 0.0
-    unbroken = 0.0
-    for i in range(n):
-        for j in range(m):
-            s = weight[i, j] / H[i, j]
-            if active[i, j] or fixed[i, j]:
-                unbroken += s
-            else:
-                whole += s
-    return unbroken + cavity_share * whole, unbroken
+    h, w, free, known = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1)
+    cavity = unbroken = 0.0
+    for c in range(h.size):
+        s = w[c] / h[c]
+        unbroken += s if free[c] | known[c] else 0.0
+        cavity += 0.0 if free[c] | known[c] else s
+    return unbroken + cavity_share * cavity, unbroken
 
 
 @njit(cache=True)

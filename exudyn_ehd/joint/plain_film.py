@@ -38,7 +38,7 @@ def solve_plain(
 ) -> tuple[SolvedFilm | None, int]:
     """The film of a motion (10,) from the one before, and the number of linear solves.
 
-    None where there is no film before, or none is found from there. ``known`` (3,): scaled pressures at both ends and
+    None where there is no film before, no gap, or no film found. ``known`` (3,): scaled pressures at both ends and
     in the cavity.
     """
     s = parts.solver
@@ -46,7 +46,7 @@ def solve_plain(
     if not work.warm:
         return None, 0
     out = np.empty(18)
-    found, steps, work.count, work.width, peak, own, smallest, couette, s_theta = _plain_film(
+    found, steps, count, width, peak, own, smallest, couette, s_theta = _plain_film(
         motion,
         parts.motion_scale,
         known,
@@ -63,9 +63,11 @@ def solve_plain(
         work.unknowns,
         out,
     )
+    if not found and steps == 0:
+        return None, 0
+    work.warm, work.count, work.width = found, count, width
     if line is not None:
         work.known, line.peak, line.own_links, line.exact = found, peak, own, False
-    work.warm = found
     if not found:
         return None, steps
     _, _, _, _, _, _, _, _, omega, axial_speed = motion.tolist()
