@@ -65,6 +65,7 @@ from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
+from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import Status
@@ -236,7 +237,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         if e.contact is None and not ends_open(e.rigid, P if e.oil is None else e.load.p, e.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
-        ok, steps = e.solve() if self.work.warm else (False, 0)
+        ok, steps = solve(e) if self.work.warm else (False, 0)
         if not ok:
             ok, more = self._start(mass_old, step)
             steps += more
