@@ -176,26 +176,30 @@ class ClassicSolver(FilmSolver):
 
 
 @njit(cache=True)
+def _differences(H, prv, i, nxt, j, dx, dz):
+    """Differences of the gap in theta and in z, and the coefficients of P at a vertex and at its neighbours."""
+    h, ix, iz = H[i, j], 1.0 / (dx * dx), 1.0 / (dz * dz)
+    x, z = H[nxt, j] - H[prv, j], H[i, j + 1] - H[i, j - 1]
+    cube, lean_x, lean_z = h * h * h, 0.75 * h * h * x, 0.75 * h * h * z
+    around = (cube - lean_x) * ix, (cube + lean_x) * ix, (cube - lean_z) * iz, (cube + lean_z) * iz
+    return x, z, -2.0 * cube * (ix + iz), around
+
+
+@njit(cache=True)
 def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, largest_sweeps, P):
     """SOR in place; P (n, m) holds the prescribed values at fixed vertices.
 
     Returns the sweeps, negative if not converged.
     """
     n, m = H.shape
-    ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
     a = np.zeros((n, m, 5))
     for i in range(n):
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
         for j in range(1, m - 1):
-            h = H[i, j]
-            jump_x = H[nxt, j] - H[prv, j]
-            jump_z = H[i, j + 1] - H[i, j - 1]
-            diagonal = -2.0 * h * h * h * (ix + iz)
-            a[i, j, 0] = (h * h * h - 0.75 * h * h * jump_x) * ix / diagonal
-            a[i, j, 1] = (h * h * h + 0.75 * h * h * jump_x) * ix / diagonal
-            a[i, j, 2] = (h * h * h - 0.75 * h * h * jump_z) * iz / diagonal
-            a[i, j, 3] = (h * h * h + 0.75 * h * h * jump_z) * iz / diagonal
+            jump_x, jump_z, diagonal, around = _differences(H, prv, i, nxt, j, dx, dz)
+            for k in range(4):
+                a[i, j, k] = around[k] / diagonal
             source = 0.5 * (vx * jump_x / dx + vz * jump_z / dz)
             if squeeze:
                 source += H_t[i, j]
@@ -226,30 +230,18 @@ def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, lar
 def assemble_differences(H, dx, dz, number, order, count, width, lower, upper):
     """The difference operator on the numbered vertices (fixed ones are known) in the storage of `lu`."""
     n, m = H.shape
-    ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
-    for r in range(count):
-        for d in range(width + 1 + PAD):
-            lower[r, d] = 0.0
-            upper[r, d] = 0.0
+    lower[:count, : width + 1 + PAD] = upper[:count, : width + 1 + PAD] = 0.0
     for r in range(count):
         i = order[r] // m
         j = order[r] - i * m
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
-        h = H[i, j]
-        jump_x = H[nxt, j] - H[prv, j]
-        jump_z = H[i, j + 1] - H[i, j - 1]
-        upper[r, 0] = -2.0 * h * h * h * (ix + iz)
-        for col, value in (
-            (number[prv, j], (h * h * h - 0.75 * h * h * jump_x) * ix),
-            (number[nxt, j], (h * h * h + 0.75 * h * h * jump_x) * ix),
-            (number[i, j - 1], (h * h * h - 0.75 * h * h * jump_z) * iz),
-            (number[i, j + 1], (h * h * h + 0.75 * h * h * jump_z) * iz),
-        ):
+        _, _, upper[r, 0], around = _differences(H, prv, i, nxt, j, dx, dz)
+        for k, col in enumerate((number[prv, j], number[nxt, j], number[i, j - 1], number[i, j + 1])):
             if col > r:
-                upper[r, col - r] += value
+                upper[r, col - r] += around[k]
             elif col >= 0:
-                lower[col, r - col] += value
+                lower[col, r - col] += around[k]
 
 
 @njit(cache=True)

@@ -226,7 +226,7 @@ def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
         H_P[c] = s[c] * D_P[c]
     for c in range(size):
         H_r[c] = s[c] * follow[c]
-    _difference(H_r, rigid_slope.reshape(-1), out.E_r.reshape(-1))
+    combine(H_r, 1.0, rigid_slope.reshape(-1), -1.0, out.E_r.reshape(-1))
     _turn(turned, s, inverse, D_P, 0.0, out.rate_P.reshape(-1))
     _turn(turned, s, inverse, D_r, 1.0, out.rate_r.reshape(-1))
 
@@ -265,9 +265,10 @@ def _yield(x, drive, steep, follow, beta, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _difference(a, b, out):
+def combine(a, by_a, b, by_b, out):
+    """Sum of fields (k,) times factors."""
     for c in range(out.size):
-        out[c] = a[c] - b[c]
+        out[c] = by_a * a[c] + by_b * b[c]
 
 
 @njit(cache=True, fastmath=_FAST)
