@@ -86,6 +86,7 @@ def in_frame(a, b):
 
 @njit(cache=True)
 def dot(a, b):
+    """Scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 

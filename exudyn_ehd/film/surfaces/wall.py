@@ -9,7 +9,7 @@ For a gap h below the onset h0, with s = h / h0:
 
 The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction of its own. Where it
 acts, the film sees another gap than the one on whose slope its pressure rests. The rest of the slope is the solids',
-which the journal meets along its normal, without a torque on it: see Closed gaps in `exudyn_ehd.film.loads`.
+which the journal meets along its normal, without a torque on it: see Closed gaps in `exudyn_ehd.film.surfaces.drag`.
 """
 
 from __future__ import annotations

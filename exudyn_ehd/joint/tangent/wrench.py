@@ -25,7 +25,6 @@ from exudyn_ehd.film.surfaces.contact_wrench import (
 )
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import (
-    add_closed_by_pose,
     add_drag_by_pose,
     add_drag_rows,
     drag_by_deflection,
@@ -102,9 +101,6 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     if fills is not None:
         dc += by_fills(film, fills, _ratio(film) * film.grid.weight / film.solver.H)[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
-    if film.limited is not None and not film.parts.uneven_drag:
-        add_closed_by_pose(film, film.limited, couette[0], dc, extra)
-        return gradient[:4], dc, extra
     _contract_couette(film, couette, dc)
     if pulls_unevenly(film.parts, film.limited):
         add_drag_by_pose(film, extra)
