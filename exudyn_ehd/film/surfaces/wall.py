@@ -102,13 +102,9 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
     n, m = H.shape
     for i in range(n):
         for j in range(m):
-            d = 1.0 - H[i, j] / onset
-            if d > 0.0:
-                P_out[i, j] = pressure * d * d
-                slope_out[i, j] = -2.0 * pressure * d / onset
-            else:
-                P_out[i, j] = 0.0
-                slope_out[i, j] = 0.0
+            d = max(1.0 - H[i, j] / onset, 0.0)
+            P_out[i, j] = pressure * d * d
+            slope_out[i, j] = -2.0 * pressure * d / onset
 
 
 @njit(cache=True)
