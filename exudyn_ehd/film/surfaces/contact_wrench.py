@@ -134,22 +134,6 @@ def contact_tangent(
 
 
 @njit(cache=True)
-def contact_adjoint_rhs(order, count, weight, by_pressure, cos_x, sin_x, z, rhs_out):
-    """Weights of the five integrals of `contact_wrench` at the unknowns,
-    rhs_out (5, count), with d(contact pressure)/dP (n, m)."""
-    m = z.size
-    for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        w = weight[i, j] * by_pressure[i, j]
-        rhs_out[0, r] = w * cos_x[i]
-        rhs_out[1, r] = w * sin_x[i]
-        rhs_out[2, r] = w * cos_x[i] * z[j]
-        rhs_out[3, r] = w * sin_x[i] * z[j]
-        rhs_out[4, r] = w
-
-
-@njit(cache=True)
 def contact_weights(motion, friction, transition, R, out):
     """Weights (6, 5) of the integrals of `contact_wrench` in the wrench."""
     a, b, _ = _slip(motion, transition, R)

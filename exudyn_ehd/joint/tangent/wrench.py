@@ -18,7 +18,6 @@ from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_wei
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
     chain_links,
-    contact_adjoint_rhs,
     contact_tangent,
     contact_weights,
     couette_gradient_ratio,
@@ -222,10 +221,11 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     if closure.clips and closure.line_in_cells:
         rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
     if rows.shape[0] > own and p.liner is not None:
-        by_pressure = p.liner.contact_by_pressure
-        contact_adjoint_rhs(
-            w.order, w.count, g.weight, by_pressure, p.directions.cos_x, p.directions.sin_x, g.z, rows[own:]
+        by_pressure = g.weight * p.liner.contact_by_pressure
+        load_adjoint_rhs(
+            w.order, w.count, by_pressure, p.directions.cos_x, p.directions.sin_x, g.z, w.active, rows[own:]
         )
+        rows[own + 4] = by_pressure.ravel()[w.order[: w.count]]
     return rows
 
 
