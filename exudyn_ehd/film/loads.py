@@ -54,14 +54,6 @@ def slope_integrals(P, weight, slope_x, slope_z):
 
 
 @njit(cache=True)
-def unknown_weights(order, count, weight, active, out):
-    """Weights at the unknowns (count,), zero where the pressure is clipped."""
-    weights, actives = weight.reshape(-1), active.reshape(-1)
-    for r in range(count):
-        out[r] = weights[order[r]] if actives[order[r]] else 0.0
-
-
-@njit(cache=True)
 def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
     """Weights of the integrals of `slope_integrals` at the unknowns: rhs_out (2, count).
 
@@ -155,18 +147,6 @@ def _add_gap_answer(order, count, weight, H, known, ratio, ratio_h, H_P, rhs_out
         at = order[r]
         if known[at]:
             rhs_out[r] += weight[at] / H[at] * (ratio_h[at] - ratio[at] / H[at]) * H_P[at]
-
-
-@njit(cache=True)
-def weigh_rows(order, count, factor, rows):
-    """Multiply rows (k, count) of the unknowns by a field (n, m), in place."""
-    flat = factor.reshape(-1)
-    own = np.empty(count)
-    for r in range(count):
-        own[r] = flat[order[r]]
-    for k in range(rows.shape[0]):
-        for r in range(count):
-            rows[k, r] *= own[r]
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -62,7 +62,7 @@ from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
-from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
+from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
 from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
@@ -190,7 +190,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
 
     def smallest_gap(self) -> float:
         """Smallest scaled gap of the deformed surfaces."""
-        return float(smallest_true_gap(self.elements.rigid, self.elements.gaps.D))
+        return float(min(self.true_gap.min(), self.true_link.min()))
 
     def stored_power(self) -> float:
         """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
@@ -201,7 +201,8 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     rows = np.empty((own + 5 * _pressed_contact(film), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, p.directions.cos_x, p.directions.sin_x, g.z, w.active, rows)
     if P_q is not None:
-        weigh_rows(w.order, w.count, P_q, rows[:4])
+        P_q = P_q.ravel()[w.order[: w.count]]
+        rows[:4] *= P_q
     if shear_needs_adjoint(film):
         _shear_row(film, rows[4])
     if has_extra_rows(film):
@@ -214,7 +215,7 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         if uneven:
             add_drag_rows(film, extra)
         if P_q is not None:
-            weigh_rows(w.order, w.count, P_q, extra)
+            extra *= P_q
         if uneven and p.liner is not None:
             extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     y, closure = film.solver.system, film.solver.closure

@@ -332,19 +332,6 @@ def smallest_of(gap_fields):
     return min(_smallest(gaps.H.reshape(-1)), _smallest(gaps.HF.reshape(-1)))
 
 
-@njit(cache=True, fastmath=_FAST)
-def smallest_true_gap(rigid, D):
-    """Smallest gap of the deformed surfaces, at vertices and links."""
-    n, m = D.shape
-    smallest = np.inf
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            smallest = min(smallest, rigid[0, i, j] + D[i, j])
-            smallest = min(smallest, rigid[1, i, j] + 0.5 * (D[i, j] + D[nxt, j]))
-    return smallest
-
-
 @njit(cache=True)
 def ends_open(rigid, p, beta, fixed):
     """Whether the gap is open where the pressure is prescribed, which is beyond the liner's reach."""
