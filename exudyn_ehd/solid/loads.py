@@ -188,6 +188,12 @@ class FollowerPressure(_SurfacePressure):
         size = 3 * shapes.shape[1]
         return block.reshape(len(corners), size, size)
 
+    def places(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of `stiffness` among the nodes' coordinates, (faces, size size) each."""
+        size = 3 * self.surface.faces.shape[1]
+        dofs = (3 * self.surface.faces[:, :, None] + np.arange(3)).reshape(-1, size)
+        return np.repeat(dofs, size, axis=1), np.tile(dofs, (1, size))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Gravity:

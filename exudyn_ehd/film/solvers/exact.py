@@ -11,7 +11,6 @@ from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.solvers.linear import FilmSolver
 
 
@@ -73,8 +72,12 @@ class NewtonFilmSolver(FilmSolver, abc.ABC):
         masses if compressible."""
         if self.law is None:
             return super().couette_flows()
-        flow_x, flow_z = mass_flows(self.carried, self.rho, (self.system.fx, self.system.fz))
-        return flow_x, flow_z, self.rho * self.H_t
+        fill, rho = self.carried, self.rho
+        flow_x, flow_z = (
+            f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis)) * 0.5 * (rho + np.roll(rho, -1, axis))
+            for axis, f in enumerate((self.system.fx, self.system.fz))
+        )
+        return flow_x, flow_z, rho * self.H_t
 
     def inflow(self) -> np.ndarray:
         """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""

@@ -168,10 +168,8 @@ class ClassicSolver(FilmSolver):
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) through the difference equations."""
-        cell, speed = np.zeros_like(lam), np.zeros((lam.shape[0], 2))
-        difference_sensitivity(
-            lam, self.system.linear_pressure, self.H, self.vx, self.vz, self.step_x, self.step_z, cell, speed
-        )
+        steps = self.step_x, self.step_z
+        cell, speed = difference_sensitivity(lam, self.system.linear_pressure, self.H, (self.vx, self.vz), steps)
         return Sensitivities(cell, np.zeros_like(lam), lam.copy() if self.squeeze else np.zeros_like(lam), speed)
 
 
@@ -244,31 +242,23 @@ def assemble_differences(H, dx, dz, number, order, count, width, lower, upper):
                 lower[col, r - col] += around[k]
 
 
-@njit(cache=True)
-def difference_sensitivity(lam, P, H, vx, vz, dx, dz, cell_out, speed_out):
-    """Add ``-lam . dr`` to cell_out (k, n, m) and speed_out (k, 2), r the left minus the right side of the equation."""
-    count, n, m = lam.shape
-    for k in range(count):
-        for i in range(n):
-            prv = i - 1 if i > 0 else n - 1
-            nxt = i + 1 if i + 1 < n else 0
-            for j in range(1, m - 1):
-                g = -lam[k, i, j]
-                if g == 0.0:
-                    continue
-                h = H[i, j]
-                hx = (H[nxt, j] - H[prv, j]) / (2.0 * dx)
-                hz = (H[i, j + 1] - H[i, j - 1]) / (2.0 * dz)
-                px = (P[nxt, j] - P[prv, j]) / (2.0 * dx)
-                pz = (P[i, j + 1] - P[i, j - 1]) / (2.0 * dz)
-                curvature = (P[nxt, j] - 2.0 * P[i, j] + P[prv, j]) / (dx * dx)
-                curvature += (P[i, j + 1] - 2.0 * P[i, j] + P[i, j - 1]) / (dz * dz)
-                cell_out[k, i, j] += g * (3.0 * h * h * curvature + 6.0 * h * (hx * px + hz * pz))
-                dhx = g * (3.0 * h * h * px - vx) / (2.0 * dx)
-                dhz = g * (3.0 * h * h * pz - vz) / (2.0 * dz)
-                cell_out[k, nxt, j] += dhx
-                cell_out[k, prv, j] -= dhx
-                cell_out[k, i, j + 1] += dhz
-                cell_out[k, i, j - 1] -= dhz
-                speed_out[k, 0] -= g * hx
-                speed_out[k, 1] -= g * hz
+def difference_sensitivity(
+    lam: np.ndarray, P: np.ndarray, H: np.ndarray, speeds: tuple[float, float], steps: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """``-lam . dr`` by the gap (k, n, m) and by the speeds (k, 2), r the left minus the right side of the equation."""
+    (vx, vz), (dx, dz) = speeds, steps
+
+    def slopes(F: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        along = np.roll(F, -1, axis=0) - np.roll(F, 1, axis=0)
+        return along[:, 1:-1] / (2.0 * dx), (F[:, 2:] - F[:, :-2]) / (2.0 * dz)
+
+    g, h, (hx, hz), (px, pz) = -lam[:, :, 1:-1], H[:, 1:-1], slopes(H), slopes(P)
+    curvature = (np.roll(P, -1, axis=0) - 2.0 * P + np.roll(P, 1, axis=0))[:, 1:-1] / (dx * dx)
+    curvature += (P[:, 2:] - 2.0 * P[:, 1:-1] + P[:, :-2]) / (dz * dz)
+    by_hx, by_hz = g * (3.0 * h * h * px - vx) / (2.0 * dx), g * (3.0 * h * h * pz - vz) / (2.0 * dz)
+    cell = np.zeros_like(lam)
+    cell[:, :, 1:-1] = g * (3.0 * h * h * curvature + 6.0 * h * (hx * px + hz * pz))
+    cell[:, :, 1:-1] += np.roll(by_hx, 1, axis=1) - np.roll(by_hx, -1, axis=1)
+    cell[:, :, 2:] += by_hz
+    cell[:, :, :-2] -= by_hz
+    return cell, -np.stack((np.sum(g * hx, axis=(1, 2)), np.sum(g * hz, axis=(1, 2))), axis=1)
