@@ -14,8 +14,6 @@ two surfaces: the torque on the journal about its own axis carries +, that on th
 of it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

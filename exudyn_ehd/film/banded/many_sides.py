@@ -7,8 +7,6 @@ Coefficients are packed by such blocks first. The loads of an elastic bore need 
 are faster still.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

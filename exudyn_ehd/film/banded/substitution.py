@@ -13,8 +13,6 @@ Three rows of the factor meet four right-hand sides at a time: twelve dot produc
 unsigned indices, which spare the slices and sign checks that would outweigh the arithmetic of short rows.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

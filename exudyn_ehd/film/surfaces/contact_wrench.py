@@ -4,8 +4,6 @@ Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z
 (m,); basis e = (cos, sin, z cos, z sin, 1).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -24,8 +24,6 @@ Symbols of `exudyn_ehd.film.loads`; cx, cz carriers and cx_h, cz_h their slopes 
 the film's gaps at vertices and links, slope and face_slope h' there.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -6,8 +6,6 @@ difference of E, up its upstream fill times its mean density. A link's flow is
 ``up f - k (P_b - P_a)``, with a Couette flux f(h) and ``k = g(h) (1 + (d / h)^2)`` with its metric.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 
