@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -14,13 +13,12 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.display import FilmDisplay
-from exudyn_ehd.coupling.record.history import JointHistory, Quantity
+from exudyn_ehd.coupling.record.history import Quantity
 from exudyn_ehd.coupling.record.results import JointResults
-from exudyn_ehd.coupling.record.sensors import add_sensor, reader
-from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check_owner, digest
-from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
+from exudyn_ehd.coupling.record.sensors import reader
+from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import InputError
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 
 
-class LubricatedJoint(JointResults):
+class LubricatedJoint(Joint, JointResults):
     """Handle of one lubricated joint.
 
     Attributes
@@ -90,20 +88,6 @@ class LubricatedJoint(JointResults):
         )
         return f"<LubricatedJoint '{self.name}': object {int(self.objectNumber)}{size}>"
 
-    @property
-    def history(self) -> JointHistory:
-        """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
-
-        Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
-        current state, completed at this moment (during a run it is the start of the current step). A run that starts at
-        the end of the record goes on with it, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other
-        starts a new one, also a run at that time from the old initial values. A last state without a film is left out,
-        and a warning says why.
-
-        What the film remembers follows the state, not the record: see `forget`.
-        """
-        return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
-
     def place_in_equilibrium(
         self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
     ) -> EquilibriumResult:
@@ -135,72 +119,6 @@ class LubricatedJoint(JointResults):
 
         self.element.require_items(self.mbs)
         return place(self.mbs, self.element, self.name, load, speed)
-
-    def state(self) -> JointState:
-        """What the joint knows besides Exudyn's coordinates at the last accepted state: memory of the film, and record.
-
-        See `SaveState` for the whole system.
-        """
-        if not self.mbs.systemIsConsistent:
-            raise InputError(
-                f"LubricatedJoint.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
-            )
-        self.element.require_items(self.mbs)
-        time, memory, begin, rows = self.element.steps.remembered(self.mbs)
-        return JointState(
-            name=self.name,
-            bearing=digest(self.bearing),
-            time=time,
-            memory=memory,
-            rows=rows,
-            begin=begin,
-            modes=bore_modes_of(self.element),
-        )
-
-    def forget(self) -> None:
-        """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.
-
-        Without it what a film remembers follows the state: a run that starts where the last one has ended goes on with
-        the film of its end, at whatever time and with static solves in between; a run that starts where the last one
-        has started has the film of its start. At any other state the film of the last end goes on, with a
-        `MemoryWarning`.
-        """
-        self.element.steps.forget()
-
-    def stop_at(self, *, force: float = math.inf, pressure: float = HIGHEST_PEAK) -> None:
-        """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.
-
-        Without it runs end where the film is none: pressures beyond 3 GPa, which neither oil nor steel bears
-        (`SolveDynamic` and `SolveDynamicSparse` try smaller steps first), rigid surfaces pressed through each other by
-        more than the clearance, forces that alternate at many times what they move and carry. Steps with more than
-        1 GPa on the projected area, or with more than 3 GPa where you allow them, give an `OverloadWarning`.
-
-        Parameters
-        ----------
-        force : float
-            Largest force of film and contact, N.
-        pressure : float
-            Largest peak pressure of the film, and mean pressure of film and contact on the projected area, Pa;
-            `math.inf` allows any.
-        """
-        for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
-            if value != math.inf:
-                require_number(f"LubricatedJoint.stop_at.{name}", value, unit, above=0.0)
-        failures = self.element.failures
-        failures.largest_force, failures.largest_pressure = force, pressure
-
-    def restore_state(self, state: JointState) -> None:
-        """Let the next run go on with the memory of a state, and with its record if it starts at its time.
-
-        `SolveDynamic` does it with ``restart``.
-
-        Raises
-        ------
-        InputError
-            If the state is of another joint or bearing.
-        """
-        check_owner(self, state)
-        self.element.steps.resume(state.time, state.memory, state.rows, state.begin)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were without effect.
@@ -277,6 +195,4 @@ class LubricatedJoint(JointResults):
         exudyn.SensorIndex
         """
         title, read = reader(self.element, self.constraintNumber, quantity)
-        write = bool(fileName) if writeToFile is None else writeToFile
-        self.element.require_items(self.mbs)
-        return add_sensor(self.mbs, self.element, read, name or f"{self.name} {title}", fileName, write)
+        return self._add_sensor(title, read, fileName, name, writeToFile)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import functools
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import cast
 
@@ -21,23 +20,22 @@ from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, 
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.kinematics.spherical import motion_of
 from exudyn_ehd.coupling.record.history import Quantity
-from exudyn_ehd.coupling.record.sensors import OUTPUTS, add_sensor, reader
+from exudyn_ehd.coupling.record.sensors import OUTPUTS, reader
 from exudyn_ehd.coupling.record.spherical import SphericalDisplay, SphericalHistory, spherical_history
-from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner, digest
+from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
-from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
 from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
+from exudyn_ehd.status import InputError, require_bool, require_type, require_vector
 
 _WHERE = "CreateLubricatedSphericalJoint"
 _QUANTITIES = ("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load")
 
 
-class LubricatedSphericalJoint:
+class LubricatedSphericalJoint(Joint):
     """Handle of one lubricated ball joint.
 
     Attributes
@@ -58,6 +56,8 @@ class LubricatedSphericalJoint:
     <LubricatedSphericalJoint 'ball': object 2, ball of 30 mm, clearance 30 µm>
     """
 
+    bearing: SphericalBearing  # type: ignore[assignment]
+
     def __init__(self, mbs: exu.MainSystem, name: str, element: SphericalFilmElement, number: Index) -> None:
         self.mbs, self.name, self.element, self.objectNumber = mbs, name, element, number
         self.bearing = cast(SphericalBearing, element.model.bearing)
@@ -73,10 +73,9 @@ class LubricatedSphericalJoint:
         )
 
     @property
-    def history(self) -> SphericalHistory:
+    def history(self) -> SphericalHistory:  # type: ignore[override]
         """All accepted steps up to now; as `LubricatedJoint.history`."""
-        present = self.element.presence.found(self.mbs) is not None
-        return spherical_history(self.element.steps.history(self.mbs, complete=present))
+        return spherical_history(super().history)
 
     def film(self) -> SphericalResult:
         """The film at the last accepted state; ``film().plot_pressure()`` draws it.
@@ -124,33 +123,7 @@ class LubricatedSphericalJoint:
                 f"got {quantity!r}."
             )
         title, read = reader(self.element, None, Quantity(asked) if asked in _QUANTITIES else asked)
-        write = bool(fileName) if writeToFile is None else writeToFile
-        self.element.require_items(self.mbs)
-        return add_sensor(self.mbs, self.element, read, name or f"{self.name} {title}", fileName, write)
-
-    def stop_at(self, *, force: float = math.inf, pressure: float = HIGHEST_PEAK) -> None:
-        """End runs with a `FilmError` at the first accepted step beyond a force (N) or peak pressure (Pa) of yours."""
-        for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
-            if value != math.inf:
-                require_number(f"LubricatedSphericalJoint.stop_at.{name}", value, unit, above=0.0)
-        self.element.failures.largest_force, self.element.failures.largest_pressure = force, pressure
-
-    def forget(self) -> None:
-        """Let the next run start with a new record."""
-        self.element.steps.forget()
-
-    def state(self) -> JointState:
-        """Record at the last accepted state; `SaveState` stores the whole system."""
-        self.element.require_items(self.mbs)
-        time, memory, begin, rows = self.element.steps.remembered(self.mbs)
-        # a digest tells any description
-        bearing = digest(self.element.model.bearing)
-        return JointState(name=self.name, bearing=bearing, time=time, memory=memory, rows=rows, begin=begin)
-
-    def restore_state(self, state: JointState) -> None:
-        """Let the next run go on from a state; `SolveDynamic` does it with ``restart``."""
-        check_owner(cast(Joint, self), state)
-        self.element.steps.resume(state.time, state.memory, state.rows, state.begin)
+        return self._add_sensor(title, read, fileName, name, writeToFile)
 
 
 def CreateLubricatedSphericalJoint(
@@ -257,7 +230,7 @@ def CreateLubricatedSphericalJoint(
     if stepControl is not None:
         element.steps.control = GapWatch(stepControl, element.model.bearing)
     make = functools.partial(LubricatedSphericalJoint, name=name, element=element, number=number)
-    register_joint(mbs, cast(Callable[[exu.MainSystem], Joint], make))
+    register_joint(mbs, make)
     return make(mbs)
 
 

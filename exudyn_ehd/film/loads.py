@@ -12,38 +12,10 @@ Shear: on the bush acts ``tau = mu U/h - (h/2) dp/dx``, on the journal, at the s
 part, summed by parts, is ``sum (h/2) dp/dx = -(1/2) sum p dh/dx`` (+ the ends' part in z). It splits e x F between the
 two surfaces: the torque on the journal about its own axis carries +, that on the bush about its own carries - of half
 of it.
-
-Drag. Between rough surfaces the relative speed V of the journal (1) carries ``V/2 (h_T + sigma phi_s)`` in the bore's
-(2) frame. Stokes flow is reciprocal (H. A. Lorentz): with the wall force as flux of V and the volume flow as flux of
-the pressure gradient, the cross terms are each other's opposite, since together they neither dissipate nor produce
-anything. So a pressure gradient pulls the surfaces, shear and pressure on their slopes together, by
-
-    f_1 = -(h_T + sigma phi_s) / 2 dp/dx,        f_2 = -(h_T - sigma phi_s) / 2 dp/dx        per area,
-
-the rougher one more; the sum is what the pressure does on the film's cross section, whatever phi_s. With one surface
-smooth the force on it is its shear alone: ``phi_fp h = h_T - sigma Phi_s`` of Patir and Cheng. What departs from equal
-shares, ``-+ sigma phi_s / 2 dp/ds`` in both directions, is summed over the links as the carriers' part of the flow is,
-so that work and heat match link by link: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``; its torque on the journal
-is 6 mu R^4 / c E_x, its axial force 6 mu R^3 / c E_z.
-
-Closed gaps. Where surfaces touch, the film has a gap h (a limiter's, an average one) that changes less than the gap g
-between them, ``dh = h' dg``. The pressure presses on the whole area, on the journal along its normal; the film pulls
-either surface by ``-h/2 dp/dx``, and what the slopes leave, ``p (1 - h') dg/dx``, goes from solid to solid as contact
-pressure does, without a torque on the journal about its own axis. That is the same sum with g for the gap,
-``E_x = sum (carrier - g) (P_i - P_i+1) width``, the carrier being that of h. Then what sliding puts in is heat,
-however closely the surfaces touch.
-
-Symbols: P pressure; cx, cz carriers and cx_h, cz_h their slopes to the film's gap on the link, HF, gap_z the links'
-true gaps, slope and face_slope h' at vertices and links.
 """
-
-from __future__ import annotations
 
 import numpy as np
 from numba import njit
-
-from exudyn_ehd.film.grid import Directions
-from exudyn_ehd.film.reynolds.gap import contract_pose
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -77,14 +49,6 @@ def slope_integrals(P, weight, slope_x, slope_z):
             along_x += pw * slope_x[i, j]
             along_z += pw * slope_z[i, j]
     return along_x, along_z
-
-
-@njit(cache=True)
-def unknown_weights(order, count, weight, active, out):
-    """Weights at the unknowns (count,), zero where the pressure is clipped."""
-    weights, actives = weight.reshape(-1), active.reshape(-1)
-    for r in range(count):
-        out[r] = weights[order[r]] if actives[order[r]] else 0.0
 
 
 @njit(cache=True)
@@ -212,18 +176,6 @@ def _add_gap_answer(order, count, weight, H, known, ratio, ratio_h, H_P, rhs_out
             rhs_out[r] += weight[at] / H[at] * (ratio_h[at] - ratio[at] / H[at]) * H_P[at]
 
 
-@njit(cache=True)
-def weigh_rows(order, count, factor, rows):
-    """Multiply rows (k, count) of the unknowns by a field (n, m), in place."""
-    flat = factor.reshape(-1)
-    own = np.empty(count)
-    for r in range(count):
-        own[r] = flat[order[r]]
-    for k in range(rows.shape[0]):
-        for r in range(count):
-            rows[k, r] *= own[r]
-
-
 @njit(cache=True, fastmath=_FAST)
 def load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, rhs_out):
     """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped."""
@@ -284,82 +236,3 @@ def _taken(q, carried, rate, full):
     if full or (q > 0.0 and q >= B):
         return q + B
     return 2.0 * np.sqrt(q * B) if q > 0.0 else q
-
-
-@njit(cache=True, fastmath=_FAST)
-def drag_sums(P, cx, HF, cz, gap_z, mesh):
-    """(E_x, E_z) of the pressures P (n, m)."""
-    n, m = P.shape
-    width_x, width_z, link_x, link_z = mesh
-    along = 0.0
-    across = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        if link_x[i] != 0.0:
-            for j in range(m):
-                along += (cx[i, j] - HF[i, j]) * width_z[j] * (P[i, j] - P[nxt, j])
-        wx = width_x[i]
-        for j in range(m - 1):
-            across += (wx if link_z[j] != 0.0 else 0.0) * (cz[i, j] - gap_z[i, j]) * (P[i, j] - P[i, j + 1])
-    return along, across
-
-
-@njit(cache=True, fastmath=_FAST)
-def drag_rhs(order, count, active, cx, HF, cz, gap_z, mesh, rows):
-    """Add the unknown pressures' weights in E_x and E_z to rows (2, count); nothing where the pressure is clipped."""
-    n, m = active.shape
-    width_x, width_z, link_x, link_z = mesh
-    along, across = np.empty((n, m)), np.empty((n, m))
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        own = 1.0 if link_x[i] != 0.0 else 0.0
-        before = 1.0 if link_x[prv] != 0.0 else 0.0
-        for j in range(m):
-            along[i, j] = (own * (cx[i, j] - HF[i, j]) - before * (cx[prv, j] - HF[prv, j])) * width_z[j]
-        last = 0.0
-        for j in range(m - 1):
-            link = (width_x[i] if link_z[j] != 0.0 else 0.0) * (cz[i, j] - gap_z[i, j])
-            across[i, j] = link - last
-            last = link
-        across[i, m - 1] = -last
-    x, z, actives = along.reshape(-1), across.reshape(-1), active.reshape(-1)
-    for r in range(count):
-        at = order[r]
-        if actives[at]:
-            rows[0, r] += x[at]
-            rows[1, r] += z[at]
-
-
-@njit(cache=True, fastmath=_FAST)
-def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face_out, cell_out):
-    """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices."""
-    n, m = P.shape
-    width_x, width_z, link_x, link_z = mesh
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if link_x[i] != 0.0 else 0.0
-        for j in range(m):
-            share = cx_h[i, j] * face_slope[i, j] - 1.0
-            face_out[i, j] = linked * share * width_z[j] * (P[i, j] - P[nxt, j])
-        half = 0.5 * width_x[i]
-        carried = last = 0.0
-        for j in range(m - 1):
-            link = (half if link_z[j] != 0.0 else 0.0) * (P[i, j] - P[i, j + 1])
-            carrier = link * cz_h[i, j]
-            cell_out[i, j] = (carried + carrier) * slope[i, j] - (last + link)
-            carried, last = carrier, link
-        cell_out[i, m - 1] = carried * slope[i, m - 1] - last
-
-
-@njit(cache=True)
-def drag_pose_gradient(P, cx_h, cz_h, slope, face_slope, mesh, at, out):
-    """Add the gradients of `drag_gap_slopes` to the scaled pose to out (2, >= 4): of E_x and of E_z."""
-    face, cell = np.empty((1, *P.shape)), np.empty((1, *P.shape))
-    drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face[0], cell[0])
-    along, across = np.zeros((1, 4)), np.zeros((1, 4))
-    at = Directions(*at)
-    contract_pose(face, at.cos_f, at.sin_f, at.z, along)
-    contract_pose(cell, at.cos_x, at.sin_x, at.z, across)
-    for q in range(4):
-        out[0, q] += along[0, q]
-        out[1, q] += across[0, q]

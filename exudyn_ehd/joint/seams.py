@@ -147,7 +147,7 @@ class Effects:
         Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
     liner : ElasticLiner or None
     uneven_drag : bool
-        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.loads`.
+        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()

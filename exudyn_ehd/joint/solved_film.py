@@ -148,7 +148,7 @@ class FilmParts:
     flow_scale : float
         m3/s per scaled flow.
     uneven_drag : bool
-        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.loads`.
+        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
     evaluations : Evaluations
     """
 

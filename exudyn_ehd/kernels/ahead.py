@@ -64,10 +64,11 @@ def _may_start() -> bool:
     if multiprocessing.parent_process() is not None or getattr(sys, "frozen", False) or not sys.executable:
         return False
     # the table knows integers of 64 bits
-    return np.int_ is np.int64 and _cores() > 1
+    return np.int_ is np.int64 and cores() > 1
 
 
-def _cores() -> int:
+def cores() -> int:
+    """Cores that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 

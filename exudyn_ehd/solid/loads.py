@@ -181,11 +181,18 @@ class FollowerPressure(_SurfacePressure):
         weights, shapes, slopes = self.surface.kind.rule
         slope = np.einsum("qar,fai->fqri", slopes, corners)
         pressure = weights * self.pressure * _at_points(self.distribution, self.surface)
-        along_r, along_s = _cross_matrix(slope[:, :, 0]), _cross_matrix(slope[:, :, 1])
+        # of the cross products with both slopes
+        along_r, along_s = np.cross(slope.transpose(2, 0, 1, 3)[..., None, :], np.eye(3)).swapaxes(-1, -2)
         block = np.einsum("fq,qa,qb,fqij->faibj", pressure, shapes, slopes[..., 1], along_r)
         block -= np.einsum("fq,qa,qb,fqij->faibj", pressure, shapes, slopes[..., 0], along_s)
         size = 3 * shapes.shape[1]
         return block.reshape(len(corners), size, size)
+
+    def places(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of `stiffness` among the nodes' coordinates, (faces, size size) each."""
+        size = 3 * self.surface.faces.shape[1]
+        dofs = (3 * self.surface.faces[:, :, None] + np.arange(3)).reshape(-1, size)
+        return np.repeat(dofs, size, axis=1), np.tile(dofs, (1, size))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -271,15 +278,6 @@ def _at_points(distribution: np.ndarray | None, surface: Surface) -> np.ndarray:
     if distribution is None:
         return np.ones((len(surface.faces), len(surface.kind.rule[0])))
     return np.asarray(distribution, dtype=float)[surface.local_faces] @ surface.kind.rule[1].T
-
-
-def _cross_matrix(vector: np.ndarray) -> np.ndarray:
-    matrix = np.zeros((*vector.shape, 3))
-    x, y, z = np.moveaxis(vector, -1, 0)
-    matrix[..., 0, 1], matrix[..., 0, 2] = -z, y
-    matrix[..., 1, 0], matrix[..., 1, 2] = z, -x
-    matrix[..., 2, 0], matrix[..., 2, 1] = -y, x
-    return matrix
 
 
 def _require_history(where: str, history: History | None) -> None:

@@ -130,12 +130,8 @@ def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperL
 
 
 def _follower_matrix(load: FollowerPressure, positions: np.ndarray) -> csr_matrix:
-    faces = load.surface.faces
-    size = 3 * faces.shape[1]
-    dofs = (3 * faces[:, :, None] + np.arange(3)).reshape(-1, size)
-    rows, columns = np.repeat(dofs, size, axis=1).ravel(), np.tile(dofs, (1, size)).ravel()
-    values = load.stiffness(positions).ravel()
-    return csr_matrix((values, (rows, columns)), shape=(positions.size, positions.size))
+    places = tuple(place.ravel() for place in load.places())
+    return csr_matrix((load.stiffness(positions).ravel(), places), shape=(positions.size, positions.size))
 
 
 def _failure(step: int, steps: int, error: float) -> EquilibriumError:

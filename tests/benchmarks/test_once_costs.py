@@ -30,7 +30,7 @@ def test_what_is_paid_once():
     assert times[modes, once.EMPTY] < 3.0 and times[modes, once.FULL] < 0.1
 
 
-@pytest.mark.skipif(ahead._cores() < 2, reason="the helper needs a core of its own")
+@pytest.mark.skipif(ahead.cores() < 2, reason="the helper needs a core of its own")
 def test_half_of_the_first_compilation_is_the_helper_s(tmp_path):
     """Processor time of the first process alone, which is what somebody waits for where two cores are free."""
     code = f"{once.FIRST_RESULT}import time; print(time.process_time())"

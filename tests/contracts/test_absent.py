@@ -42,7 +42,7 @@ def oil(**laws):
 EFFECTS = {
     "contact": (("film.surfaces.wall",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
     "contact loads": (
-        ("film.surfaces.contact_wrench", "film.surfaces.closed_gap"),
+        ("film.surfaces.contact_wrench", "film.surfaces.drag"),
         {"contact": ehd.RegularisedWall(onset=0.9 * C)},
     ),
     "asperity": (("film.surfaces.asperity", "film.surfaces.average_gap"), {"asperity": ASPERITY}),
@@ -88,6 +88,7 @@ EFFECTS = {
             "film.solvers.liner.elements",
             "film.solvers.liner.gap_response",
             "film.solvers.liner.continuation",
+            "film.solvers.liner.newton",
             "film.solvers.compiled",
             "film.solvers.steps",
         ),

@@ -118,13 +118,13 @@ def test_without_a_helper_who_calls_a_kernel_compiles_it(monkeypatch):
         ("multiprocessing.parent_process", lambda: 1),
         ("sys.frozen", True),
         ("sys.executable", None),
-        ("exudyn_ehd.kernels.ahead._cores", lambda: 1),
+        ("exudyn_ehd.kernels.ahead.cores", lambda: 1),
     ],
 )
 def test_there_is_no_helper(monkeypatch, place, value):
     monkeypatch.delenv("PYTEST_XDIST_WORKER", raising=False)
     monkeypatch.delenv(ahead.HELPER_VARIABLE, raising=False)
-    monkeypatch.setattr("exudyn_ehd.kernels.ahead._cores", lambda: 2)
+    monkeypatch.setattr("exudyn_ehd.kernels.ahead.cores", lambda: 2)
     assert ahead._may_start()
     if place.startswith("os.environ:"):
         monkeypatch.setitem(os.environ, place.split(":")[1], value)

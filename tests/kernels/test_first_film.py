@@ -13,7 +13,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.kernels import ahead
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-HELPERS = 1 if ahead._cores() > 1 else 0
+HELPERS = 1 if ahead.cores() > 1 else 0
 FILM = """
 import exudyn_ehd as ehd
 from exudyn_ehd.kernels import ahead

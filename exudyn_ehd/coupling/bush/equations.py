@@ -263,13 +263,7 @@ class BushEquations:
 
     @cached_property
     def _follower_places(self) -> list[np.ndarray]:
-        result = []
-        for pressure in self._followers:
-            size = 3 * pressure.surface.faces.shape[1]
-            dofs = (3 * pressure.surface.faces[:, :, None] + np.arange(3)).reshape(-1, size)
-            rows, columns = np.repeat(dofs, size, axis=1), np.tile(dofs, (1, size))
-            result.append(self.solid.pattern.places(rows, columns))
-        return result
+        return [self.solid.pattern.places(*pressure.places()) for pressure in self._followers]
 
     @cached_property
     def _moving_block(self) -> Block:

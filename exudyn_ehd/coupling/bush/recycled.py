@@ -16,6 +16,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from exudyn_ehd.solid.linear.gmres import gmres
+
 # Columns of V at most, after which it starts anew.
 LARGEST = 60
 # Part of a direction outside of V, relative, from which it becomes a column.
@@ -53,36 +55,19 @@ class RecycledSolver:
         most : int
             Products at most.
         """
-        size = float(np.linalg.norm(right))
         tried: list[np.ndarray] = []
         answers: list[np.ndarray] = []
-        weights: np.ndarray = np.zeros(0)
-        if not size > tolerance:
-            return tried, weights
         if len(self.V) != len(right):
             self.V = self.G = np.empty((len(right), 0))
-        basis: list[np.ndarray] = [right / size]
-        H = np.zeros((most + 1, most))
-        for k in range(most):
-            x = self._approximate(basis[k])
-            y = product(x)
-            tried.append(x)
-            answers.append(y)
-            w = y.copy()
-            # twice is enough
-            for _ in range(2):
-                part = np.array([v @ w for v in basis])
-                H[: k + 1, k] += part
-                w -= part @ np.array(basis)
-            H[k + 1, k] = np.linalg.norm(w)
-            wanted = np.zeros(k + 2)
-            wanted[0] = size
-            weights, *_ = np.linalg.lstsq(H[: k + 2, : k + 1], wanted, rcond=None)
-            left = np.linalg.norm(wanted - H[: k + 2, : k + 1] @ weights)
-            if left <= tolerance or not H[k + 1, k] > 1e-14 * np.linalg.norm(y):
-                break
-            basis.append(w / H[k + 1, k])
-        self._learn(tried, answers)
+
+        def preconditioned(b: np.ndarray) -> np.ndarray:
+            tried.append(self._approximate(b))
+            answers.append(product(tried[-1]))
+            return answers[-1]
+
+        _, weights = gmres(preconditioned, right, tolerance, most)
+        if tried:
+            self._learn(tried, answers)
         return tried, weights
 
     def _approximate(self, b: np.ndarray) -> np.ndarray:

@@ -86,9 +86,8 @@ class BoreFilmElement(FilmElement):
     def _wrench_map(self) -> np.ndarray:
         """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
         housing, journal = self.sides
-        out = np.empty((self.rigid_size, 6))
-        relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac, out)
-        return out
+        found: np.ndarray = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
+        return found
 
 
 class ModalFilmElement(BoreFilmElement):

@@ -21,7 +21,7 @@ from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.side_by_side import SideBySide
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, read_state
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, read_state
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
@@ -278,19 +278,9 @@ class FilmElement:
         assert trial.evaluation is not None
         if solver_state.is_implicit(self.steps.solver):
             self.steps.tangent = tangent
-        housing, journal = self.sides
-        n_h, n, loads = housing.size, housing.size + journal.size, self._loads
-        q, q_t = np.array(trial.q[:n]), np.array(trial.q_t[:n])
-        frames, jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
-        relative.global_loads(*frames, trial.evaluation.wrench, loads)
-        housing.vary(mbs, q[:n_h], q_t[:n_h])
-        journal.vary(mbs, q[n_h:], q_t[n_h:])
-        motion_q, motion_qt = self.kinematics.variation_of(*frames, *jacobians)
-        stiffness, damping = np.zeros((n, n)), np.empty((n, n))
-        housing.geometric(mbs, q[:n_h], loads[0], loads[1], stiffness[:n_h, :n_h])
-        journal.geometric(mbs, q[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])
-        relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_q, motion_qt, stiffness, damping)
-        return stiffness, damping, motion_q, motion_qt
+        n = self.sides[0].size + self.sides[1].size
+        state = np.array(trial.q[:n]), np.array(trial.q_t[:n])
+        return derivatives_between(mbs, self.sides, state, trial.evaluation.wrench, tangent, self.kinematics)
 
     @property
     def last(self) -> Trial | None:

@@ -19,7 +19,6 @@ waits for the lock some 20 us.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -28,6 +27,7 @@ from typing import Protocol
 import exudyn as exu
 
 from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.kernels.ahead import cores
 from exudyn_ehd.status import Status, require_integer
 
 _CURRENT = exu.ConfigurationType.Current
@@ -143,12 +143,6 @@ def _work(left: Iterator[tuple[Callable[..., object], tuple[object, ...]]]) -> N
         # it comes again in the film's own call
         with suppress(Exception):
             call(*arguments)
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    affinity = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 @contextmanager

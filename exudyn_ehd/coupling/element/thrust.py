@@ -27,7 +27,7 @@ from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
-from exudyn_ehd.coupling.kinematics.sides import bind
+from exudyn_ehd.coupling.kinematics.sides import bind, derivatives_between
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
 from exudyn_ehd.joint.feed.films import FedEvaluation, FedFilms
@@ -86,22 +86,11 @@ class ThrustElement:
         found, n = self._evaluate(mbs, t, q, q_t), len(q)
         if not self._has_film(t, found):
             return np.full((n, n), np.nan)
-        (housing, journal), n_h, (frames, jacobians) = self.sides, self.sides[0].size, self._arrays()
-        state, rates, tangent, loads = np.array(q), np.array(q_t), found.tangent(), self._loads
-        relative.global_loads(*frames, found.wrench, loads)
-        housing.vary(mbs, state[:n_h], rates[:n_h])
-        journal.vary(mbs, state[n_h:], rates[n_h:])
-        by_q, by_rate, turned = np.empty((MOTION_SIZE, n)), np.empty((MOTION_SIZE, n)), np.empty((n, 6))
-        relative.motion_variation(*frames, *jacobians, by_q, by_rate)
-        relative.wrench_map(*frames, *jacobians, turned)
-        stiffness, damping = np.zeros((n, n)), np.empty((n, n))
-        housing.geometric(mbs, state[:n_h], loads[0], loads[1], stiffness[:n_h, :n_h])
-        journal.geometric(mbs, state[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])
-        own = np.ascontiguousarray(tangent[:, :MOTION_SIZE])
-        relative.tangent_matrices(*frames, *jacobians, loads, own, by_q, by_rate, stiffness, damping)
-        stiffness += np.outer(
-            turned @ tangent[:, MOTION_SIZE], self.position_change(frames, jacobians, found.motion, by_q)
-        )
+        (frames, jacobians), tangent = self._arrays(), found.tangent()
+        own, state = np.ascontiguousarray(tangent[:, :MOTION_SIZE]), (np.array(q), np.array(q_t))
+        stiffness, damping, by_q, _ = derivatives_between(mbs, self.sides, state, found.wrench, own)
+        turned = relative.wrench_map(*frames, *jacobians) @ tangent[:, MOTION_SIZE]
+        stiffness += np.outer(turned, self.position_change(frames, jacobians, found.motion, by_q))
         return np.asarray(-(f_q * stiffness + f_qt * damping))
 
     def at(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> ThrustEvaluation:
@@ -122,9 +111,8 @@ class ThrustElement:
 
     def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
         """Force and moment about O (6,) on the journal at the state to which the arrays of ``sides`` belong."""
-        frames, motion = (sides[0].frame, sides[1].frame), np.empty(MOTION_SIZE)
-        relative.relative_motion(*frames, motion)
-        return self.at(frames, motion).wrench
+        frames = sides[0].frame, sides[1].frame
+        return self.at(frames, relative.motion_of(*frames)).wrench
 
     def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
         """Scalars of the films at an accepted state, to which the arrays of ``sides`` belong."""
@@ -149,12 +137,11 @@ class ThrustElement:
         if not self._bound:
             bind(mbs, *self.sides)
             self._bound = True
-        (housing, journal), n, motion = self.sides, self.sides[0].size, np.empty(MOTION_SIZE)
+        (housing, journal), n = self.sides, self.sides[0].size
         state, rates = np.array(q), np.array(q_t)
         housing.update(mbs, state[:n], rates[:n], _CURRENT)
         journal.update(mbs, state[n:], rates[n:], _CURRENT)
-        relative.relative_motion(housing.frame, journal.frame, motion)
-        found = self.at((housing.frame, journal.frame), motion)
+        found = self.at((housing.frame, journal.frame), relative.motion_of(housing.frame, journal.frame))
         self._last = q, q_t, found
         return found
 
@@ -270,8 +257,7 @@ def attach_faces(
     make = ThrustElement if faces is None or faces.feed is None else FedThrustElement
     element = make(film, (housing, journal), offset)
     frames = initial_frame(mbs, items[0], housing), initial_frame(mbs, items[1], journal)
-    motion = np.empty(MOTION_SIZE)
-    relative.relative_motion(*frames, motion)
+    motion = relative.motion_of(*frames)
     with announced(MESSAGE):
         start = element.at(frames, motion)
         start.tangent()

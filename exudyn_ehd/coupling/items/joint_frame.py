@@ -15,6 +15,7 @@ from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
+from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.status import InputError, require_vector
 
 _WHERE = "CreateLubricatedJoint"
@@ -64,13 +65,9 @@ def joint_rotation(
         return rotation
     if not given:
         raise InputError(f"{_WHERE}.axis is missing; give the direction of the joint axis, e.g. axis=[0, 0, 1].")
-    for k in (0, 1):
-        x = housing.rotation[:, k] - z * (z @ housing.rotation[:, k])
-        # parallel to rounding only: anything else has a defined projection
-        if np.linalg.norm(x) > 1e-6:
-            break
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
+    x, y, _ = housing.rotation.T
+    # parallel to rounding only: anything else has a defined projection
+    return frame_of(z, x if np.linalg.norm(np.cross(z, x)) > 1e-6 else y)
 
 
 def _checked_rotation(matrix: ArrayLike) -> np.ndarray:

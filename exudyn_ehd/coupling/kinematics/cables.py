@@ -10,8 +10,6 @@ With tau = t d0 and c = t x d0, the frame turns with omega = G ds/dt, G = (skew(
 t^T) / |s|.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -18,7 +18,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.relative import skew, skews
 
 # Smallest extent of the nodes normal to a line, over that along it (both squared), that fixes a rotation.
 SLENDER = 1e-8
@@ -91,7 +91,7 @@ class FittedSide:
         self.products = np.einsum("k,ki,kj->ij", w, self.turned, x - self.mean)
         self.inverse = np.linalg.inv(np.trace(self.products) * np.eye(3) - self.products)
         self.arm = R @ self.offset
-        self.levers = w[:, None, None] * _skews(self.turned)
+        self.levers = w[:, None, None] * skews(self.turned.T)
         turn = self.inverse @ self._columns(self.levers)
         self.jac[0] = self._columns(w[:, None, None] * np.eye(3)) - skew(self.arm) @ turn
         self.jac[1] = turn
@@ -130,7 +130,7 @@ class FittedSide:
         change = self.inverse @ (by_turn @ turn + self._fit_change(torque))
         # d(t x r) = dt x r + t x (dphi x r); a skew matrix is minus its transpose
         out[:] = self._columns(self.levers).T @ change
-        out[:] -= self._columns(self.weights[:, None, None] * (_skews(self.turned) @ skew(torque))).T @ turn
+        out[:] -= self._columns(self.weights[:, None, None] * (skews(self.turned.T) @ skew(torque))).T @ turn
 
 
 def fitted_rotation(weights: np.ndarray, spokes: np.ndarray, x: np.ndarray) -> np.ndarray | None:
@@ -145,8 +145,3 @@ def fitted_rotation(weights: np.ndarray, spokes: np.ndarray, x: np.ndarray) -> n
     if not s[1] + sign * s[2] > SLENDER * s[0]:
         return None
     return (U * [1.0, 1.0, sign]) @ Vt
-
-
-def _skews(vectors: np.ndarray) -> np.ndarray:
-    """Matrices (m, 3, 3) of the cross products with vectors (m, 3)."""
-    return np.cross(vectors[:, None, :], np.eye(3)).transpose(0, 2, 1)

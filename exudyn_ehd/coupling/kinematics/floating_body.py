@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, column, cross, times
+from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, column, cross, dot, in_frame, times
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
 _SPIN_CHANGE = np.int64(3)
@@ -127,21 +127,6 @@ class FloatingBody:
 
 
 @njit(cache=True)
-def _in_frame(A, v):
-    """Global 3-tuple in the frame A, the first columns of a matrix."""
-    return (
-        A[0, 0] * v[0] + A[1, 0] * v[1] + A[2, 0] * v[2],
-        A[0, 1] * v[0] + A[1, 1] * v[1] + A[2, 1] * v[2],
-        A[0, 2] * v[0] + A[1, 2] * v[1] + A[2, 2] * v[2],
-    )
-
-
-@njit(cache=True)
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@njit(cache=True)
 def _sum(a, fa, b, fb):
     """Combination fa a + fb b of 3-tuples."""
     return fa * a[0] + fb * b[0], fa * a[1] + fb * b[1], fa * a[2] + fb * b[2]
@@ -152,7 +137,7 @@ def _settle(of, frame, jac, q, at_out):
     """Fill what coordinates ``q`` make of a body."""
     n, k = at_out.G.shape[1], at_out.R.shape[0]
     for c in range(n):
-        g = _in_frame(frame, (jac[1, 0, c], jac[1, 1, c], jac[1, 2, c]))
+        g = in_frame(frame, (jac[1, 0, c], jac[1, 1, c], jac[1, 2, c]))
         at_out.G[0, c], at_out.G[1, c], at_out.G[2, c] = g
     for i in range(3):
         at_out.s[i] = of.moment[i]
@@ -191,13 +176,13 @@ def _mass_matrix(of, frame, at, out):
         for i in range(3):
             out[i, c] = out[c, i] = arm[i]
         for d in range(3, n):
-            out[d, c] = _dot(column(at.G, d), spin)
+            out[d, c] = dot(column(at.G, d), spin)
     for a in range(k):
         flow, turned = times(frame, column(of.S, a)), column(at.turned, a)
         for i in range(3):
             out[i, n + a] = out[n + a, i] = flow[i]
         for c in range(3, n):
-            out[c, n + a] = out[n + a, c] = -_dot(column(at.G, c), turned)
+            out[c, n + a] = out[n + a, c] = -dot(column(at.G, c), turned)
         for b in range(k):
             out[n + a, n + b] = of.modal_mass[a, b]
 
@@ -242,9 +227,9 @@ def _left_hand_side(of, frame, at, bryan, q, q_t, out):
     f, m = _force_and_moment(at, w, alpha, flow)
     out[0], out[1], out[2] = times(frame, f)
     for c in range(3, n):
-        out[c] = _dot(column(at.G, c), m)
+        out[c] = dot(column(at.G, c), m)
     for a in range(k):
-        g = -_dot(w, times(at.R[a], w)) - _dot(alpha, column(at.turned, a))
+        g = -dot(w, times(at.R[a], w)) - dot(alpha, column(at.turned, a))
         for b in range(k):
             g += of.stiffness[a, b] * q[n + b] + of.damping[a, b] * q_t[n + b]
             g -= 2.0 * q_t[n + b] * (w[0] * of.C[b, a, 0] + w[1] * of.C[b, a, 1] + w[2] * of.C[b, a, 2])
@@ -284,7 +269,7 @@ def _derivative(of, frame, jac, at, bryan, q, q_t, f_q, f_qt, moment_out, out):
     for c in range(n):
         g = column(at.G, c)
         spin = _sum(
-            _in_frame(frame, (jac[_SPIN_CHANGE, 0, c], jac[_SPIN_CHANGE, 1, c], jac[_SPIN_CHANGE, 2, c])),
+            in_frame(frame, (jac[_SPIN_CHANGE, 0, c], jac[_SPIN_CHANGE, 1, c], jac[_SPIN_CHANGE, 2, c])),
             1.0,
             cross(w, g),
             1.0,
@@ -299,7 +284,7 @@ def _derivative(of, frame, jac, at, bryan, q, q_t, f_q, f_qt, moment_out, out):
         for i in range(3):
             out[i, c] = df[i]
         for d in range(3, n):
-            out[d, c] = _dot(column(at.G, d), dm)
+            out[d, c] = dot(column(at.G, d), dm)
         _modes_by_motion(of.C, at, w, q_t, dw, da, c, out)
 
 
@@ -309,7 +294,7 @@ def _modes_by_motion(C, at, w, q_t, dw, da, c, out):
     n, k = at.G.shape[1], at.R.shape[0]
     for a in range(k):
         R = at.R[a]
-        g = -_dot(dw, times(R, w)) - _dot(w, times(R, dw)) - _dot(da, column(at.turned, a))
+        g = -dot(dw, times(R, w)) - dot(w, times(R, dw)) - dot(da, column(at.turned, a))
         for b in range(k):
             g -= 2.0 * q_t[n + b] * (dw[0] * C[b, a, 0] + dw[1] * C[b, a, 1] + dw[2] * C[b, a, 2])
         out[n + a, c] = g
@@ -329,12 +314,12 @@ def _by_modes(of, frame, at, w, alpha, q_t, f_q, f_qt, out):
             Pw = times(of.P[a, b], w)
             grown = _sum(grown, 1.0, Pw, q_t[n + b])
             turned = axis[0] * of.C[b, a, 0] + axis[1] * of.C[b, a, 1] + axis[2] * of.C[b, a, 2]
-            out[n + a, n + b] = f_q * (of.stiffness[a, b] - _dot(w, Pw)) + f_qt * of.damping[a, b] - turned
-        back = _in_frame(R, w)
+            out[n + a, n + b] = f_q * (of.stiffness[a, b] - dot(w, Pw)) + f_qt * of.damping[a, b] - turned
+        back = in_frame(R, w)
         both = _sum(times(R, w), 1.0, back, 1.0)
-        dm = _sum(_sum(times(R, alpha), 1.0, _in_frame(R, alpha), 1.0), 1.0, cross(w, both), 1.0)
+        dm = _sum(_sum(times(R, alpha), 1.0, in_frame(R, alpha), 1.0), 1.0, cross(w, both), 1.0)
         dm = _sum(_sum(dm, 1.0, grown, 2.0), f_q, back, 2.0 * f_qt)
         for i in range(3):
             out[i, n + a] = df[i]
         for c in range(3, n):
-            out[c, n + a] = _dot(column(at.G, c), dm)
+            out[c, n + a] = dot(column(at.G, c), dm)

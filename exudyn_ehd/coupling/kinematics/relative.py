@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCITY, column, cross, times
+from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCITY, column, cross, dot, in_frame, times
 
 # Rows of the Jacobians; numpy's integers, since numba compiles kernels anew for each plain one.
 _JP, _JR, _VQ, _WQ = (np.int64(k) for k in range(4))
@@ -43,16 +43,6 @@ def _plus(a, b):
 
 
 @njit(cache=True)
-def _in_frame(a, b):
-    """Global 3-tuple in a frame (3, 6)."""
-    return (
-        a[0, 0] * b[0] + a[1, 0] * b[1] + a[2, 0] * b[2],
-        a[0, 1] * b[0] + a[1, 1] * b[1] + a[2, 1] * b[2],
-        a[0, 2] * b[0] + a[1, 2] * b[1] + a[2, 2] * b[2],
-    )
-
-
-@njit(cache=True)
 def _jac_column(jac, which, k):
     """Column k of Jp, Jr, Vq or Wq."""
     return jac[which, 0, k], jac[which, 1, k], jac[which, 2, k]
@@ -72,10 +62,10 @@ def relative_motion(frame_h, frame_j, motion_out):
     """
     r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
     omega_h = column(frame_h, SPIN)
-    d = _in_frame(frame_h, r)
-    d_t = _in_frame(frame_h, _minus(_minus(column(frame_j, VELOCITY), column(frame_h, VELOCITY)), cross(omega_h, r)))
-    spin = _in_frame(frame_h, _minus(column(frame_j, SPIN), omega_h))
-    a = _in_frame(frame_h, column(frame_j, AXIS))
+    d = in_frame(frame_h, r)
+    d_t = in_frame(frame_h, _minus(_minus(column(frame_j, VELOCITY), column(frame_h, VELOCITY)), cross(omega_h, r)))
+    spin = in_frame(frame_h, _minus(column(frame_j, SPIN), omega_h))
+    a = in_frame(frame_h, column(frame_j, AXIS))
     if not a[2] > 0.1:
         for i in range(10):
             motion_out[i] = np.nan
@@ -120,7 +110,7 @@ def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out
     r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
     u = _minus(_minus(column(frame_j, VELOCITY), column(frame_h, VELOCITY)), cross(omega_h, r))
     spin_g = _minus(column(frame_j, SPIN), omega_h)
-    d, d_t, spin, a = _in_frame(frame_h, r), _in_frame(frame_h, u), _in_frame(frame_h, spin_g), _in_frame(frame_h, axis)
+    d, d_t, spin, a = in_frame(frame_h, r), in_frame(frame_h, u), in_frame(frame_h, spin_g), in_frame(frame_h, axis)
     a_t, zero = cross(spin, a), (0.0, 0.0, 0.0)
     n_h = jac_h.shape[2]
     for c in range(n_h + jac_j.shape[2]):
@@ -140,8 +130,8 @@ def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out
             spun = _plus(wq, cross(jr, spin_g))
         else:
             sign, place, rate, spun = 1.0, jp, _minus(vq, moved), wq
-        dd, dd_t, dspin = _in_frame(frame_h, place), _in_frame(frame_h, rate), _in_frame(frame_h, spun)
-        da, dspin_rate = _in_frame(frame_h, cross(jr, axis)), _in_frame(frame_h, jr)
+        dd, dd_t, dspin = in_frame(frame_h, place), in_frame(frame_h, rate), in_frame(frame_h, spun)
+        da, dspin_rate = in_frame(frame_h, cross(jr, axis)), in_frame(frame_h, jr)
         _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, motion_q_out)
         # the velocity changes with the rates as the place does with the coordinates
         _motion_variation(sign, d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, c, motion_qt_out)
@@ -198,23 +188,22 @@ def generalized_force(jac_h, jac_j, loads, force_out):
 
 
 @njit(cache=True)
-def wrench_map(frame_h, frame_j, jac_h, jac_j, map_out):
+def wrench_map(frame_h, frame_j, jac_h, jac_j):
     """Map (n, 6) from the wrench on the journal, joint frame, to the generalized forces of `generalized_force`."""
     n_h = jac_h.shape[2]
-    x, y, z = frame_j[0, 3] - frame_h[0, 3], frame_j[1, 3] - frame_h[1, 3], frame_j[2, 3] - frame_h[2, 3]
+    out = np.empty((n_h + jac_j.shape[2], 6))
+    r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
     for c in range(3):
-        a0, a1, a2 = frame_h[0, c], frame_h[1, c], frame_h[2, c]
+        a = column(frame_h, c)
         # moment about the journal's point of a force along axis c at O
-        m0, m1, m2 = z * a1 - y * a2, x * a2 - z * a0, y * a0 - x * a1
+        m = cross(a, r)
         for k in range(n_h):
-            map_out[k, c] = -(jac_h[0, 0, k] * a0 + jac_h[0, 1, k] * a1 + jac_h[0, 2, k] * a2)
-            map_out[k, 3 + c] = -(jac_h[1, 0, k] * a0 + jac_h[1, 1, k] * a1 + jac_h[1, 2, k] * a2)
+            out[k, c], out[k, 3 + c] = -dot(_jac_column(jac_h, _JP, k), a), -dot(_jac_column(jac_h, _JR, k), a)
         for k in range(jac_j.shape[2]):
-            r0, r1, r2 = jac_j[1, 0, k], jac_j[1, 1, k], jac_j[1, 2, k]
-            map_out[n_h + k, c] = (
-                jac_j[0, 0, k] * a0 + jac_j[0, 1, k] * a1 + jac_j[0, 2, k] * a2 + r0 * m0 + r1 * m1 + r2 * m2
-            )
-            map_out[n_h + k, 3 + c] = r0 * a0 + r1 * a1 + r2 * a2
+            turn = _jac_column(jac_j, _JR, k)
+            out[n_h + k, c] = dot(_jac_column(jac_j, _JP, k), a) + dot(turn, m)
+            out[n_h + k, 3 + c] = dot(turn, a)
+    return out
 
 
 @njit(cache=True)

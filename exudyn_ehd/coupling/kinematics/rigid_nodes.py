@@ -75,6 +75,22 @@ def times(a, b):
 
 
 @njit(cache=True)
+def in_frame(a, b):
+    """Global 3-tuple in a frame (3, 6)."""
+    return (
+        a[0, 0] * b[0] + a[1, 0] * b[1] + a[2, 0] * b[2],
+        a[0, 1] * b[0] + a[1, 1] * b[1] + a[2, 1] * b[2],
+        a[0, 2] * b[0] + a[1, 2] * b[1] + a[2, 2] * b[2],
+    )
+
+
+@njit(cache=True)
+def dot(a, b):
+    """Scalar product of two vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)
 def _euler_g(e0, e1, e2, e3, g_out):
     """Matrix G (3, 4), bilinear: omega = G(e) e_t for unit e, global components."""
     g_out[0, 0], g_out[0, 1], g_out[0, 2], g_out[0, 3] = -2.0 * e1, 2.0 * e0, -2.0 * e3, 2.0 * e2

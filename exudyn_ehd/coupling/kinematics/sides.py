@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
+from types import ModuleType
 from typing import TypeVar
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Index, Side
-from exudyn_ehd.coupling.kinematics import rigid_nodes
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import skew, skews
 
 _CURRENT = exu.ConfigurationType.Current
@@ -256,3 +257,42 @@ def read_state(
             q += np.atleast_1d(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates, configuration)).tolist()
             q_t += np.atleast_1d(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates_t, configuration)).tolist()
     return q, q_t
+
+
+def derivatives_between(
+    mbs: exu.MainSystem,
+    sides: tuple[Side, Side],
+    state: tuple[np.ndarray, np.ndarray],
+    wrench: np.ndarray,
+    tangent: np.ndarray,
+    kinematics: ModuleType = relative,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Derivatives of what a wrench between housing and journal makes of a state (q, q_t), to which both are brought.
+
+    Parameters
+    ----------
+    wrench : (6,) array
+        On the journal, joint frame.
+    tangent : (6, 10) array
+        Its derivatives to the motion.
+    kinematics : module
+        `relative`, or another one with its ``variation_of``.
+
+    Returns
+    -------
+    stiffness, damping : (n, n) arrays
+        dQ/dq and dQ/dq_t.
+    motion_q, motion_qt : (10, n) arrays
+        Derivatives of the motion.
+    """
+    (housing, journal), (q, q_t), n_h, loads = sides, state, sides[0].size, np.empty((4, 3))
+    frames, jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
+    relative.global_loads(*frames, wrench, loads)
+    housing.vary(mbs, q[:n_h], q_t[:n_h])
+    journal.vary(mbs, q[n_h:], q_t[n_h:])
+    motion_q, motion_qt = kinematics.variation_of(*frames, *jacobians)
+    stiffness, damping = np.zeros((q.size, q.size)), np.empty((q.size, q.size))
+    housing.geometric(mbs, q[:n_h], loads[0], loads[1], stiffness[:n_h, :n_h])
+    journal.geometric(mbs, q[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])
+    relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_q, motion_qt, stiffness, damping)
+    return stiffness, damping, motion_q, motion_qt

@@ -112,7 +112,7 @@ class RotorFilm:
         for side in (self.housing, self.journal):
             side.update(q, u)
         frames = self.housing.frame, self.journal.frame
-        relative.relative_motion(*frames, self.motion)
+        self.motion = relative.motion_of(*frames)
         self._on_faces = None if self.faces is None else self.faces.at(frames, self.motion)
 
     def evaluate(self) -> Evaluation | None:
@@ -133,8 +133,7 @@ class RotorFilm:
         loads, force = np.empty((4, 3)), np.empty(n)
         relative.global_loads(*frames, wrench, loads)
         relative.generalized_force(*jacobians, loads, force)
-        motion_x, motion_u = np.empty((10, n)), np.empty((10, n))
-        relative.motion_variation(*frames, *jacobians, motion_x, motion_u)
+        motion_x, motion_u = relative.variation_of(*frames, *jacobians)
         by_place, by_rate = np.zeros((n, n)), np.empty((n, n))
         by_place[:h, :h], by_place[h:, h:] = self.housing.geometric(loads[0]), self.journal.geometric(loads[2])
         tangent = np.ascontiguousarray(tangent)
@@ -149,8 +148,7 @@ class RotorFilm:
         by_motion = found.tangent()
         faces = self.loads(found.wrench, by_motion[:, :10])
         frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
-        turned = np.empty((self.places.size, 6))
-        relative.wrench_map(*frames, *jacobians, turned)
+        turned = relative.wrench_map(*frames, *jacobians)
         along = self.faces.position_change(frames, jacobians, self.motion, film.motion_by_place)
         by_place = faces.by_place + np.outer(turned @ by_motion[:, 10], along)
         return FilmLoads(

@@ -84,9 +84,7 @@ def _motion(mbs: exu.MainSystem, element: FilmElement, q: np.ndarray, q_t: np.nd
     n = element.sides[0].size
     for side, part in zip(element.sides, (slice(0, n), slice(n, n + element.sides[1].size)), strict=True):
         side.update(mbs, q[part], q_t[part], _INITIAL)
-    motion = np.empty(10)
-    relative.relative_motion(element.sides[0].frame, element.sides[1].frame, motion)
-    return motion
+    return relative.motion_of(element.sides[0].frame, element.sides[1].frame)
 
 
 def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) -> History | None:

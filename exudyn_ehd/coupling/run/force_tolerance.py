@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -20,18 +20,11 @@ import numpy as np
 from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.contract import ObjectIndex, Trial
 from exudyn_ehd.coupling.element.presence import force_owner
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.status import Status
 
 # Share of the relative tolerance times the films' forces.
 SHARE = 0.1
-
-
-class Film(Protocol):
-    """A joint's element."""
-
-    @property
-    def last(self) -> Trial | None:
-        """The state evaluated last."""
 
 
 class ForceTolerance:
@@ -39,7 +32,7 @@ class ForceTolerance:
 
     Parameters
     ----------
-    films : sequence of Film
+    films : sequence of FilmElement
         Elements of all joints of a system.
 
     Attributes
@@ -48,7 +41,7 @@ class ForceTolerance:
         Nodal bushes of the system with the places of their coordinates in its vectors; known from the first step on.
     """
 
-    def __init__(self, films: Sequence[Film]) -> None:
+    def __init__(self, films: Sequence[FilmElement]) -> None:
         self.films = films
         self.bushes: list[tuple[BushFunctions, np.ndarray]] = []
         self.given: float | None = None

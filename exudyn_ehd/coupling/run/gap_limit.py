@@ -24,12 +24,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from typing import Protocol
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.coupling.contract import Trial
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
@@ -40,39 +40,21 @@ _CURRENT = exu.ConfigurationType.Current
 SHARE = 0.5
 
 
-class Film(Protocol):
-    """What the limit asks of a joint's element.
-
-    Attributes
-    ----------
-    model : JointModel
-    last : Trial or None
-        The state evaluated last.
-    """
-
-    model: JointModel
-
-    @property
-    def last(self) -> Trial | None: ...
-    def peek(self, mbs: exu.MainSystem) -> np.ndarray:
-        """Motion of the journal at the current state, for which the film will be asked next."""
-
-
 class GapLimit:
     """Takes back what a step of Newton's method closes too much.
 
     Parameters
     ----------
-    films : collection of Film
+    films : collection of FilmElement
         Elements of all joints of a system.
     """
 
-    def __init__(self, films: Collection[Film]) -> None:
+    def __init__(self, films: Collection[FilmElement]) -> None:
         self.films = films
         self.bores = {film: BoreGap(film.model.bearing) for film in films}
         self.before: list[np.ndarray] = []
         # last motions behind the end of the films' pressure laws
-        self.behind: dict[Film, np.ndarray] = {}
+        self.behind: dict[FilmElement, np.ndarray] = {}
 
     def start(self, mbs: exu.MainSystem) -> None:
         """Remember where Newton's method starts."""
@@ -109,7 +91,7 @@ class GapLimit:
         for old, new in zip(self.before, state, strict=True):
             old[:] = new
 
-    def _allowed_at_end(self, film: Film, last: Trial, after: np.ndarray) -> float:
+    def _allowed_at_end(self, film: FilmElement, last: Trial, after: np.ndarray) -> float:
         """Part of a step from in front of the end of a film's law that goes half of the way back behind it."""
         bearing = film.model.bearing
         if last.status == Status.NO_PRESSURE and bearing.yielding is None:

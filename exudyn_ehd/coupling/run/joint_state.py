@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Protocol
+import math
+from collections.abc import Callable
 
+import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
@@ -12,12 +14,14 @@ from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.element.modal import ModalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.record.sensors import add_sensor
+from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.storage import fingerprint
 
 # Where the modes of a bore are compared: angles, shares of the length, and the part of the largest that is rounding
@@ -66,34 +70,121 @@ class JointState:
         return f"<JointState of '{self.name}' at {self.time:.6g} s, {len(self.rows)} steps recorded>"
 
 
-class Joint(Protocol):
-    """What runs ask of a lubricated joint."""
+class Joint:
+    """What all lubricated joints have in common.
 
-    @property
-    def name(self) -> str:
-        """Its name."""
+    Attributes
+    ----------
+    name : str
+    mbs : exudyn.MainSystem
+        The system it belongs to.
+    bearing : JournalBearing
+        What was given as bearing.
+    objectNumber : exudyn.ObjectIndex
+        The film element's object in Exudyn.
+    element : FilmElement
+        The film between the two frames.
+    """
 
-    @property
-    def bearing(self) -> JournalBearing:
-        """What was given as bearing."""
-
-    @property
-    def objectNumber(self) -> Index:
-        """The film element's object in Exudyn."""
-
-    @property
-    def element(self) -> FilmElement:
-        """The film between the two frames."""
+    name: str
+    mbs: exu.MainSystem
+    bearing: JournalBearing
+    objectNumber: Index
+    element: FilmElement
 
     @property
     def history(self) -> JointHistory:
-        """All accepted steps."""
+        """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
+
+        Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
+        current state, completed at this moment (during a run it is the start of the current step). A run that starts at
+        the end of the record goes on with it, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other
+        starts a new one, also a run at that time from the old initial values. A last state without a film is left out,
+        and a warning says why.
+
+        What the film remembers follows the state, not the record: see `forget`.
+        """
+        return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
 
     def state(self) -> JointState:
-        """Memory and record at the last accepted state."""
+        """What the joint knows besides Exudyn's coordinates at the last accepted state: memory of the film, and record.
+
+        See `SaveState` for the whole system.
+        """
+        if not self.mbs.systemIsConsistent:
+            raise InputError(
+                f"{type(self).__name__}.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() "
+                "first."
+            )
+        self.element.require_items(self.mbs)
+        time, memory, begin, rows = self.element.steps.remembered(self.mbs)
+        return JointState(
+            name=self.name,
+            bearing=digest(self.bearing),
+            time=time,
+            memory=memory,
+            rows=rows,
+            begin=begin,
+            modes=bore_modes_of(self.element),
+        )
+
+    def forget(self) -> None:
+        """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.
+
+        Without it what a film remembers follows the state: a run that starts where the last one has ended goes on with
+        the film of its end, at whatever time and with static solves in between; a run that starts where the last one
+        has started has the film of its start. At any other state the film of the last end goes on, with a
+        `MemoryWarning`.
+        """
+        self.element.steps.forget()
+
+    def stop_at(self, *, force: float = math.inf, pressure: float = HIGHEST_PEAK) -> None:
+        """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.
+
+        Without it runs end where the film is none: pressures beyond 3 GPa, which neither oil nor steel bears
+        (`SolveDynamic` and `SolveDynamicSparse` try smaller steps first), rigid surfaces pressed through each other by
+        more than the clearance, forces that alternate at many times what they move and carry. Steps with more than
+        1 GPa on the projected area, or with more than 3 GPa where you allow them, give an `OverloadWarning`.
+
+        Parameters
+        ----------
+        force : float
+            Largest force of film and contact, N.
+        pressure : float
+            Largest peak pressure of the film, and mean pressure of film and contact on the projected area, Pa;
+            `math.inf` allows any.
+        """
+        for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
+            if value != math.inf:
+                require_number(f"{type(self).__name__}.stop_at.{name}", value, unit, above=0.0)
+        failures = self.element.failures
+        failures.largest_force, failures.largest_pressure = force, pressure
 
     def restore_state(self, state: JointState) -> None:
-        """Let the next run go on from a state."""
+        """Let the next run go on with the memory of a state, and with its record if it starts at its time.
+
+        `SolveDynamic` does it with ``restart``.
+
+        Raises
+        ------
+        InputError
+            If the state is of another joint or bearing.
+        """
+        check_owner(self, state)
+        self.element.steps.resume(state.time, state.memory, state.rows, state.begin)
+
+    def _add_sensor(
+        self,
+        title: str,
+        read: Callable[[exu.MainSystem], np.ndarray],
+        file_name: str,
+        name: str,
+        write_to_file: bool | None,
+    ) -> Index:
+        """Number of a new sensor of what ``read`` gives."""
+        write = bool(file_name) if write_to_file is None else write_to_file
+        self.element.require_items(self.mbs)
+        return add_sensor(self.mbs, self.element, read, name or f"{self.name} {title}", file_name, write)
 
 
 def digest(bearing: JournalBearing) -> str:

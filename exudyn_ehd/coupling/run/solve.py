@@ -5,7 +5,8 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
-from typing import overload
+from functools import partial
+from typing import Any, overload
 
 import exudyn as exu
 import numpy as np
@@ -21,7 +22,7 @@ from exudyn_ehd.coupling.run.step_refusal import StepRefusal
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing
 from exudyn_ehd.coupling.watch.run_progress import run_progress
-from exudyn_ehd.coupling.watch.solver_state import user_function
+from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
@@ -372,27 +373,16 @@ def step_control(
 @contextmanager
 def _better_start(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Iterator[None]:
     """Let Newton's method start at lasting accelerations in the run within; the user's functions come back then."""
-    own = user_function(mbs.GetPreNewtonResidualUserFunction())
-    after = user_function(mbs.GetPostNewtonUserFunction())
-    start = start_guess(mbs, own or None)
-    mbs.SetPreNewtonResidualUserFunction(start)
-    mbs.SetPostNewtonUserFunction(ConstraintJumps(mbs, settings, start, after or None))
-    try:
+    with (
+        hooked(mbs, "PreNewtonResidual", lambda own: start_guess(mbs, own)) as start,
+        hooked(mbs, "PostNewton", lambda own: ConstraintJumps(mbs, settings, start, own)),
+    ):
         yield
-    finally:
-        mbs.SetPreNewtonResidualUserFunction(own)
-        mbs.SetPostNewtonUserFunction(after)
 
 
-@contextmanager
-def refusing(mbs: exu.MainSystem) -> Iterator[None]:
+def refusing(mbs: exu.MainSystem) -> AbstractContextManager[StepRefusal]:
     """Refuse steps without a film in the run within; the user's function comes back then."""
-    own = user_function(mbs.GetPostNewtonUserFunction())
-    mbs.SetPostNewtonUserFunction(StepRefusal([joint.element for joint in joints_of(mbs)], own or None))
-    try:
-        yield
-    finally:
-        mbs.SetPostNewtonUserFunction(own)
+    return hooked(mbs, "PostNewton", lambda own: StepRefusal([joint.element for joint in joints_of(mbs)], own))
 
 
 @contextmanager
@@ -409,23 +399,21 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
             f"{integration.endTime:.9g} s."
         )
     alpha = integration.generalizedAlpha
-    computes = alpha.computeInitialAccelerations
-    before = user_function(mbs.GetPreStepUserFunction())
     first = [True]
 
-    def pre_step(mbs: exu.MainSystem, t: float) -> bool:
+    def pre_step(own: Any, mbs: exu.MainSystem, t: float) -> bool:
         if first[0]:
             # Exudyn starts with algorithmic accelerations equal to the others; these differ once a run is under way
             mbs.systemData.SetODE2Coordinates_tt(state.accelerations.tolist(), exu.ConfigurationType.Current)
             first[0] = False
-        return bool(before(mbs, t)) if before else True
+        return bool(own(mbs, t)) if own else True
 
-    if state.algorithmic is not None:
-        alpha.computeInitialAccelerations = False
-        mbs.SetPreStepUserFunction(pre_step)
-    try:
+    if state.algorithmic is None:
         yield
+        return
+    computes, alpha.computeInitialAccelerations = alpha.computeInitialAccelerations, False
+    try:
+        with hooked(mbs, "PreStep", lambda own: partial(pre_step, own)):
+            yield
     finally:
         alpha.computeInitialAccelerations = computes
-        if state.algorithmic is not None:
-            mbs.SetPreStepUserFunction(before)

@@ -9,10 +9,11 @@ result is repeated with half its size, down to the smallest one, where it ends t
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import exudyn as exu
 
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch import solver_state
 
 PostNewton: TypeAlias = Callable[[exu.MainSystem, float], Sequence[float]]
@@ -21,25 +22,18 @@ PostNewton: TypeAlias = Callable[[exu.MainSystem, float], Sequence[float]]
 REFUSED = 1e100
 
 
-class Film(Protocol):
-    """A joint's element."""
-
-    def has_result(self) -> bool:
-        """Whether the state evaluated last can be accepted."""
-
-
 class StepRefusal:
     """User function after Newton's method.
 
     Parameters
     ----------
-    films : sequence of Film
+    films : sequence of FilmElement
         Elements of all joints of a system.
     before : callable or None
         The user's own function, called first.
     """
 
-    def __init__(self, films: Sequence[Film], before: PostNewton | None) -> None:
+    def __init__(self, films: Sequence[FilmElement], before: PostNewton | None) -> None:
         self.films, self.before = films, before
 
     def __call__(self, mbs: exu.MainSystem, t: float) -> list[float]:

@@ -13,15 +13,16 @@ over to the new one within a step or two. So sizes grow by a tenth at a time, an
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Protocol, TypeAlias
+from functools import partial
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import JointModel, Trial
-from exudyn_ehd.coupling.watch.solver_state import user_function
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, next_error
 from exudyn_ehd.status import Status
@@ -42,31 +43,13 @@ SHORTENED, ROUNDING = 0.99, 1e-6
 NEVER = 10**9
 
 
-class Steps(Protocol):
-    """What is asked of the accepted steps of a joint."""
-
-    @property
-    def tangent(self) -> np.ndarray | None: ...
-
-
-class Film(Protocol):
-    """What is asked of a joint's element."""
-
-    @property
-    def model(self) -> JointModel: ...
-    @property
-    def steps(self) -> Steps: ...
-    @property
-    def last(self) -> Trial | None: ...
-
-
 _State: TypeAlias = tuple[float, np.ndarray, tuple[float, float]]
 
 
 class _Joint:
     """The error of one joint: at the start of the step, and behind the one at hand."""
 
-    def __init__(self, film: Film, error: float) -> None:
+    def __init__(self, film: FilmElement, error: float) -> None:
         self.film, self.error = film, error
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_State] = []
@@ -105,14 +88,12 @@ class StepSize:
     Parameters
     ----------
     settings : exudyn.SimulationSettings
-    films : sequence of Film
+    films : sequence of FilmElement
         Elements of all joints.
     error : float
         Share of the minimum film thickness.
     output : bool
         Whether the system has sensors.
-    after_newton, after_step : function or 0
-        The user's own, called first.
 
     Attributes
     ----------
@@ -123,16 +104,13 @@ class StepSize:
     def __init__(
         self,
         settings: exu.SimulationSettings,
-        films: Sequence[Film],
+        films: Sequence[FilmElement],
         error: float,
         *,
         sensors: bool,
-        after_newton: Any = 0,
-        after_step: Any = 0,
     ) -> None:
         run, solution = settings.timeIntegration, settings.solution
         self.joints = [_Joint(film, error) for film in films]
-        self.after_newton, self.after_step = after_newton, after_step
         self.begin, self.end = run.startTime, run.endTime
         self.usual = (self.end - self.begin) / run.numberOfSteps
         self.periods = [solution.file.writePeriod] if solution.file.write else []
@@ -144,9 +122,9 @@ class StepSize:
         self.used: float | None = None
         self.refused = 0
 
-    def look(self, mbs: exu.MainSystem, time: float) -> list[float]:
-        """User function after Newton's method: error, and step size to repeat the step with."""
-        error, wanted = self.after_newton(mbs, time) if self.after_newton else (0.0, -1.0)
+    def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
+        """User function after Newton's method and the user's own: error, and step size to repeat the step with."""
+        error, wanted = own(mbs, time) if own else (0.0, -1.0)
         known = [used for joint in self.joints if (used := joint.used(time)) is not None]
         self.used = max(known, default=None)
         step = time - mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
@@ -157,9 +135,9 @@ class StepSize:
         step *= max(SHRINK, self.used**-0.5)
         return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
 
-    def choose(self, mbs: exu.MainSystem, time: float) -> bool:
-        """User function after an accepted step, and before the first one: sets the next size."""
-        goes_on = bool(self.after_step(mbs, time)) if self.after_step else True
+    def choose(self, own: Any, mbs: exu.MainSystem, time: float) -> bool:
+        """User function after the user's own, behind an accepted step and before the first one: sets the next size."""
+        goes_on = bool(own(mbs, time)) if own else True
         if not math.isnan(self.time):
             for joint in self.joints:
                 joint.accept()
@@ -195,23 +173,18 @@ class StepSize:
 
 @contextmanager
 def steps_by_error(
-    mbs: exu.MainSystem, settings: exu.SimulationSettings, films: Sequence[Film], error: float
+    mbs: exu.MainSystem, settings: exu.SimulationSettings, films: Sequence[FilmElement], error: float
 ) -> Iterator[None]:
     """Choose the steps of the run within; the user's functions and settings come back then."""
-    own: tuple[Callable[..., Any], ...] = (
-        user_function(mbs.GetPostNewtonUserFunction()),
-        user_function(mbs.GetPostStepUserFunction()),
-    )
-    sensors = mbs.systemData.NumberOfSensors() > 0
-    control = StepSize(settings, films, error, sensors=sensors, after_newton=own[0], after_step=own[1])
+    control = StepSize(settings, films, error, sensors=mbs.systemData.NumberOfSensors() > 0)
     run = settings.timeIntegration
     kept = run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize
     run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = NEVER, True
-    mbs.SetPostNewtonUserFunction(control.look)
-    mbs.SetPostStepUserFunction(control.choose)
-    try:
-        yield
-    finally:
-        mbs.SetPostNewtonUserFunction(own[0])
-        mbs.SetPostStepUserFunction(own[1])
-        run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = kept
+    with (
+        hooked(mbs, "PostNewton", lambda own: partial(control.look, own)),
+        hooked(mbs, "PostStep", lambda own: partial(control.choose, own)),
+    ):
+        try:
+            yield
+        finally:
+            run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = kept

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from typing import Protocol
 
 import exudyn as exu
@@ -19,7 +19,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.watch.solver_state import user_function
+from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, RunError, require_number
 
@@ -211,10 +211,9 @@ class Closing:
         )
 
 
-@contextmanager
 def closing(
     mbs: exu.MainSystem, films: Sequence[tuple[str, Steps]], aim: UntilPeriodic, settings: exu.SimulationSettings
-) -> Iterator[Closing]:
+) -> AbstractContextManager[Closing]:
     """End the run within when its orbits have closed; the user's function comes back then."""
     run = settings.timeIntegration
     if not films:
@@ -230,13 +229,7 @@ def closing(
             f"SolveDynamic.until_periodic: the run must have room for three periods of {aim.period:.6g} s, got "
             f"{run.startTime:.6g} to {run.endTime:.6g} s; endTime says how long it may take."
         )
-    own = user_function(mbs.GetPostStepUserFunction())
-    watch = Closing(films, aim, run.startTime, own or None)
-    mbs.SetPostStepUserFunction(watch)
-    try:
-        yield watch
-    finally:
-        mbs.SetPostStepUserFunction(own)
+    return hooked(mbs, "PostStep", lambda own: Closing(films, aim, run.startTime, own))
 
 
 def _change(history: JointHistory, begin: float, end: float, period: float) -> float:

@@ -10,7 +10,7 @@ from typing import Protocol
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.watch.solver_state import user_function
+from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.progress import Progress, is_shown
 
@@ -82,11 +82,8 @@ def run_progress(
     if not is_shown() or settings.timeIntegration.verboseMode > 0:
         yield
         return
-    own = user_function(mbs.GetPostStepUserFunction())
-    progress = RunProgress(settings, films, own or None)
-    mbs.SetPostStepUserFunction(progress)
-    try:
-        yield
-    finally:
-        mbs.SetPostStepUserFunction(own)
-        progress.close()
+    with hooked(mbs, "PostStep", lambda own: RunProgress(settings, films, own)) as progress:
+        try:
+            yield
+        finally:
+            progress.close()

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any, TypeAlias, cast
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeAlias, TypeVar, cast
 
 import exudyn as exu
 
@@ -11,6 +13,7 @@ Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | e
 Stored: TypeAlias = tuple[Solver | None, Solver | None]
 # Before the first run: not even no solver is the same object.
 NO_RUN: Stored = (cast(Solver, object()), cast(Solver, object()))
+Hook = TypeVar("Hook")
 _REJECTING = (exu.MainSolverImplicitSecondOrder, exu.MainSolverStatic)
 
 
@@ -80,3 +83,24 @@ def user_function(hook: Any) -> Any:
     """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
     function = hook["function"] if isinstance(hook, dict) else hook
     return function if callable(function) else 0
+
+
+@contextmanager
+def hooked(mbs: exu.MainSystem, moment: str, make: Callable[[Any], Hook]) -> Iterator[Hook]:
+    """Put a function in the place of the user's own at a moment of the solver, within; the user's comes back then.
+
+    Parameters
+    ----------
+    moment : str
+        As in the names of Exudyn's functions, e.g. ``"PostNewton"``.
+    make : callable
+        Gives the function for the user's own, which it has to call; None if there is none.
+    """
+    own = user_function(getattr(mbs, f"Get{moment}UserFunction")())
+    put = getattr(mbs, f"Set{moment}UserFunction")
+    function = make(own or None)
+    put(function)
+    try:
+        yield function
+    finally:
+        put(own)

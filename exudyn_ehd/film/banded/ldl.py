@@ -7,8 +7,6 @@ Symbols: n columns (theta), m rows (z), w half-bandwidth, kx / kz conductances o
 (i, j)-(i, j+1).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

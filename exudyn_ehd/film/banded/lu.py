@@ -6,8 +6,6 @@ needed. Storage: ``lower[r, d] = A[r + d, r]`` and ``upper[r, d] = A[r, r + d]``
 rows, ``inv_diag = 1 / diag(U)``.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -7,13 +7,13 @@ Coefficients are packed by such blocks first. The loads of an elastic bore need 
 are faster still.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 TILE = 48
+# numpy's integers, since numba compiles kernels anew for each plain one
+_ONE, _FOUR = np.int64(1), np.int64(4)
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -157,27 +157,12 @@ def pack_blocks(band, scale, scaled, count, width):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _subtract(c, known, x):
-    """Subtract the transpose of a block c (16,) times four rows ``known`` from four rows x, both (4 TILE,)."""
-    c00, c01, c02, c03 = c[0], c[1], c[2], c[3]
-    c10, c11, c12, c13 = c[4], c[5], c[6], c[7]
-    c20, c21, c22, c23 = c[8], c[9], c[10], c[11]
-    c30, c31, c32, c33 = c[12], c[13], c[14], c[15]
-    for q in range(TILE):
-        y0, y1, y2, y3 = known[q], known[TILE + q], known[2 * TILE + q], known[3 * TILE + q]
-        x[q] -= c00 * y0 + c10 * y1 + c20 * y2 + c30 * y3
-        x[TILE + q] -= c01 * y0 + c11 * y1 + c21 * y2 + c31 * y3
-        x[2 * TILE + q] -= c02 * y0 + c12 * y1 + c22 * y2 + c32 * y3
-        x[3 * TILE + q] -= c03 * y0 + c13 * y1 + c23 * y2 + c33 * y3
-
-
-@njit(cache=True, fastmath=_FAST)
-def _subtract_plain(c, known, x):
-    """Subtract a block c (16,) times four rows ``known`` from four rows x, both (4 TILE,)."""
-    c00, c01, c02, c03 = c[0], c[1], c[2], c[3]
-    c10, c11, c12, c13 = c[4], c[5], c[6], c[7]
-    c20, c21, c22, c23 = c[8], c[9], c[10], c[11]
-    c30, c31, c32, c33 = c[12], c[13], c[14], c[15]
+def _subtract(c, row, column, known, x):
+    """x -= C y for four rows of a tile each; entry (i, j) of C is ``c[i * row + j * column]``."""
+    c00, c01, c02, c03 = c[0], c[column], c[2 * column], c[3 * column]
+    c10, c11, c12, c13 = c[row], c[row + column], c[row + 2 * column], c[row + 3 * column]
+    c20, c21, c22, c23 = c[2 * row], c[2 * row + column], c[2 * row + 2 * column], c[2 * row + 3 * column]
+    c30, c31, c32, c33 = c[3 * row], c[3 * row + column], c[3 * row + 2 * column], c[3 * row + 3 * column]
     for q in range(TILE):
         y0, y1, y2, y3 = known[q], known[TILE + q], known[2 * TILE + q], known[3 * TILE + q]
         x[q] -= c00 * y0 + c01 * y1 + c02 * y2 + c03 * y3
@@ -199,7 +184,7 @@ def solve_tiles(forward, backward, diagonal, x):
         for k in range(blocks):
             own, c = rows[k], forward[k, 0]
             for b in range(min(k, reach), 0, -1):
-                _subtract(forward[k - b, b], rows[k - b], own)
+                _subtract(forward[k - b, b], _ONE, _FOUR, rows[k - b], own)
             c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
             for q in range(TILE):
                 y0 = own[q]
@@ -217,7 +202,7 @@ def solve_tiles(forward, backward, diagonal, x):
                 own[2 * TILE + q] *= i2
                 own[3 * TILE + q] *= i3
             for b in range(min(blocks - 1 - k, reach), 0, -1):
-                _subtract_plain(backward[k, b], rows[k + b], own)
+                _subtract(backward[k, b], _FOUR, _ONE, rows[k + b], own)
             c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
             for q in range(TILE):
                 y3 = own[3 * TILE + q]

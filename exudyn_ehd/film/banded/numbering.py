@@ -11,8 +11,6 @@ unknown rows. The ring of columns is cut
 The numbering, and with it every bit of the solution, depends on the active set alone and not on how it was found.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -14,8 +14,6 @@ products that stay in registers, with flat unsigned indices, which spare the sli
 the arithmetic of short rows.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -6,8 +6,6 @@ The unknowns lam of the full vertices and nu of the cavitated ones follow from t
     z = (I - G)^-T V^T (g + K^T T^T mu),    nu = T^T (mu + R^T z),    A lam = g + K^T nu + C^T z.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

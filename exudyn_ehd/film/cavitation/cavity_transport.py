@@ -28,8 +28,6 @@ Not every film is of that kind: where a row is cavitated all around, or the fron
 factor of the whole.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

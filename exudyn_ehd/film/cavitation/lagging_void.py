@@ -19,8 +19,6 @@ that it neither changes sign nor stays for ``w C < 1``. What ``late`` takes alon
 for any C; w vanishes in gaps that open or close by more than the oil in them.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -19,6 +19,7 @@ areas.
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 
@@ -39,115 +40,45 @@ def film_heat(P, q, kx, kz, heat_out):
 
 
 @njit(cache=True)
-def film_flows(q, fill, kx, kz, fx, fz, qx_out, qz_out, source_out):
-    """Flows over the links i -> i+1 and j -> j+1; ``source_out`` (n, m) takes what leaves by them in addition."""
+def film_flows(q, fill, kx, kz, fx, fz, qx_out, qz_out, leaving_out):
+    """Flows over the links i -> i+1 and j -> j+1, and what leaves every vertex by them, (n, m)."""
     n, m = q.shape
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
-            f = _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
-            qx_out[i, j] = f
-            source_out[i, j] += f
-            source_out[nxt, j] -= f
-            qz_out[i, j] = 0.0
-            if j + 1 < m:
-                f = _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
-                qz_out[i, j] = f
-                source_out[i, j] += f
-                source_out[i, j + 1] -= f
+            up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
+            qx_out[i, j] = kx[i, j] * (q[i, j] - q[nxt, j]) + fx[i, j] * up
+        for j in range(m - 1):
+            up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
+            qz_out[i, j] = kz[i, j] * (q[i, j] - q[i, j + 1]) + fz[i, j] * up
+        qz_out[i, m - 1] = 0.0
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        leaving_out[i, 0] = qx_out[i, 0] - qx_out[prv, 0] + qz_out[i, 0]
+        for j in range(1, m):
+            leaving_out[i, j] = qx_out[i, j] - qx_out[prv, j] + qz_out[i, j] - qz_out[i, j - 1]
 
 
-@njit(cache=True)
-def content_rate(H, H_t, fill, mass_old, inverse_step, squeeze, rate_out):
+def content_rate(
+    H: np.ndarray, H_t: np.ndarray, fill: np.ndarray, mass_old: np.ndarray, inverse_step: float, squeeze: bool
+) -> np.ndarray:
     """Rate of the content fill H: by the old content if ``inverse_step`` > 0, else by the gap's rate if ``squeeze``."""
-    n, m = H.shape
-    for i in range(n):
-        for j in range(m):
-            rate_out[i, j] = _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
-
-
-@njit(cache=True, inline="always")
-def _rate(h, h_t, fill, old, inverse_step, squeeze):
-    rate = 0.0
     if inverse_step > 0.0:
-        rate = (fill * h - old) * inverse_step
-    elif squeeze:
-        rate = fill * h_t
-    return rate
+        return (fill * H - mass_old) * inverse_step
+    return fill * H_t if squeeze else np.zeros_like(H)
 
 
-@njit(cache=True, inline="always")
-def _flow(k, f, q0, q1, fill0, fill1):
-    """Flow over a link from vertex 0 to vertex 1."""
-    return k * (q0 - q1) + f * (fill0 if f >= 0.0 else fill1)
+def outside_flows(qz: np.ndarray, balance: np.ndarray, fixed: np.ndarray, unbroken: np.ndarray) -> np.ndarray:
+    """What enters at fixed vertices (n, m): their balance; next to a ruptured film only the flow over the end's link.
 
-
-@njit(cache=True)
-def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_out):
-    """What enters at fixed vertices: their balance; next to a ruptured film only the flow over the end's link.
-
-    ``unbroken`` (n, m) is all True for cavitation models that conserve mass.
+    ``qz`` and ``balance`` (n, m): over the links in z, and what leaves or is stored, as of `film_flows`. ``unbroken``
+    (n, m) is all True for cavitation models that conserve mass.
     """
-    n, m = q.shape
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            outside_out[i, j] = 0.0
-            if not fixed[i, j]:
-                continue
-            up = 0.0
-            down = 0.0
-            if j + 1 < m:
-                up = _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
-            if j > 0:
-                down = _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
-            outside_out[i, j] = up - down
-            if (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2]):
-                continue
-            out = _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
-            into = _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
-            outside_out[i, j] += out - into + area[i, j] * rate[i, j]
-
-
-@njit(cache=True)
-def exchange_sums(P, q, fill, carried, active, conserves, mass_old, inverse_step, squeeze, film, cavity):
-    """Sums over what `outside_flows` gives, without fields in between.
-
-    Rates as in `content_rate`. ``carried`` (n, m): the fill that Couette flows take along, ``active`` (n, m): the
-    unbroken film of cavitation models that do not conserve mass, ``film``: `Coefficients`, ``cavity``: the scaled
-    cavity pressure.
-
-    Returns
-    -------
-    leaving, work : float
-        What leaves, and ``sum (P - cavity) (inflow - area rate)``.
-    """
-    n, m = q.shape
-    kx, kz, fx, fz, H, H_t, area, fixed, _, _ = film
-    leaving = 0.0
-    work = 0.0
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            rate = area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
-            work -= (P[i, j] - cavity) * rate
-            if not fixed[i, j]:
-                continue
-            inflow = 0.0
-            if j + 1 < m:
-                inflow += _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], carried[i, j], carried[i, j + 1])
-            if j > 0:
-                inflow -= _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], carried[i, j - 1], carried[i, j])
-            end = 1 if j == 0 else m - 2
-            if conserves or 0 < j < m - 1 or active[i, end] or fixed[i, end]:
-                inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], carried[i, j], carried[nxt, j])
-                inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], carried[prv, j], carried[i, j])
-                inflow += rate
-            leaving -= min(inflow, 0.0)
-            work += (P[i, j] - cavity) * inflow
-    return leaving, work
+    out = np.where(fixed, balance, 0.0)
+    for end, beside, over in ((0, 1, qz[:, 0]), (-1, -2, -qz[:, -2])):
+        alone = fixed[:, end] & ~unbroken[:, beside]
+        out[alone, end] = over[alone]
+    return out
 
 
 @njit(cache=True)

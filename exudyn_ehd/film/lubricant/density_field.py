@@ -9,8 +9,6 @@ Symbols: P scaled transformed pressures (n, m), ``scale`` Pa per unit of P, ``fl
 the density stays; ``share`` = 1: the law's density, less: that share of its difference to a constant one.
 """
 
-from __future__ import annotations
-
 from numba import njit
 
 from exudyn_ehd.film.lubricant.density import density_ratio

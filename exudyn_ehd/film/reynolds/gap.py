@@ -92,16 +92,10 @@ def contract_pose(field, cos_x, sin_x, z, out):
         out[k, 3] += oby
 
 
-@njit(cache=True, fastmath=_FAST)
-def contract_ends(slope, lower, upper, cos_x, sin_x, z):
+def contract_ends(
+    slope: np.ndarray, lower: float, upper: float, cos_x: np.ndarray, sin_x: np.ndarray, z: np.ndarray
+) -> np.ndarray:
     """`contract_pose` (4,) of a field that is ``lower`` and ``upper`` times the slope (n, m) on the ends, else zero."""
-    last = z.size - 1
-    out = np.zeros(4)
-    for i in range(cos_x.size):
-        a, b = lower * slope[i, 0], upper * slope[i, last]
-        flat, tilt = a + b, a * z[0] + b * z[last]
-        out[0] -= flat * cos_x[i]
-        out[1] -= flat * sin_x[i]
-        out[2] -= tilt * cos_x[i]
-        out[3] -= tilt * sin_x[i]
-    return out
+    a, b = lower * slope[:, 0], upper * slope[:, -1]
+    flat, tilt = a + b, a * z[0] + b * z[-1]
+    return -np.array([flat @ cos_x, flat @ sin_x, tilt @ cos_x, tilt @ sin_x])

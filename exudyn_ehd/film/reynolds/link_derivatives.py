@@ -48,21 +48,6 @@ def _convected(fill, rho, couette, axis, i, j, p, q):
     return sigma
 
 
-@njit(cache=True)
-def mass_flows(fill, rho, couette):
-    """Couette flows (2, n, m) of the links in theta and z with what they carry; arguments as for `link_derivatives`."""
-    n, m = rho.shape
-    fx, fz = couette
-    out = np.zeros((2, n, m))
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            out[0, i, j] = fx[i, j] * _convected(fill, rho, couette, 0, i, j, nxt, j)
-        for j in range(m - 1):
-            out[1, i, j] = fz[i, j] * _convected(fill, rho, couette, 1, i, j, i, j + 1)
-    return out
-
-
 @njit(cache=True, fastmath=_FAST)
 def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flow_x, mesh, out):
     """Derivatives of all links' flows, in loops of one result.

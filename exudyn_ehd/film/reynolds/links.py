@@ -260,17 +260,9 @@ def set_links(H, HF, H_t, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz
         add_squeeze(H_t, mesh[0], mesh[1], b_out)
 
 
-@njit(cache=True)
-def vertex_balance(P, kx, kz, b, out):
+def vertex_balance(P: np.ndarray, kx: np.ndarray, kz: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
     """Residual ``A P - b`` of every vertex (n, m); at fixed vertices this is minus the inflow that they supply."""
-    n, m = P.shape
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            r = kx[i, j] * (P[i, j] - P[nxt, j]) + kx[prv, j] * (P[i, j] - P[prv, j]) - b[i, j]
-            if j > 0:
-                r += kz[i, j - 1] * (P[i, j] - P[i, j - 1])
-            if j + 1 < m:
-                r += kz[i, j] * (P[i, j] - P[i, j + 1])
-            out[i, j] = r
+    along, across = kx * (P - np.roll(P, -1, axis=0)), kz[:, :-1] * (P[:, :-1] - P[:, 1:])
+    np.subtract(along - np.roll(along, 1, axis=0), b, out=out)
+    out[:, :-1] += across
+    out[:, 1:] -= across

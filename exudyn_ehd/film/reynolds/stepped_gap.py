@@ -15,7 +15,6 @@ it the mean gap of both vertices is used, which is of first order at a step.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 
@@ -43,19 +42,11 @@ class SteppedGap(FluxEffect):
         flux.gx_h[:] = flux.cx_h[:] = flux.gz_h[:] = flux.cz_h[:] = 0.0
 
 
-@njit(cache=True)
-def stepped_links(H, gx_out, cx_out, gz_out, cz_out):
+def stepped_links(
+    H: np.ndarray, gx_out: np.ndarray, cx_out: np.ndarray, gz_out: np.ndarray, cz_out: np.ndarray
+) -> None:
     """Conductance and carrier of all links (n, m) from the gaps at the vertices."""
-    n, m = H.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            a, b = H[i, j], H[nxt, j]
-            a3, b3 = a * a * a, b * b * b
-            gx_out[i, j] = 2.0 * a3 * b3 / (a3 + b3)
-            cx_out[i, j] = (a * b3 + b * a3) / (a3 + b3)
-            if j + 1 < m:
-                b = H[i, j + 1]
-                b3 = b * b * b
-                gz_out[i, j] = 2.0 * a3 * b3 / (a3 + b3)
-                cz_out[i, j] = (a * b3 + b * a3) / (a3 + b3)
+    H3 = H * H * H
+    for axis, g, c in ((0, gx_out, cx_out), (1, gz_out, cz_out)):
+        b, b3 = np.roll(H, -1, axis), np.roll(H3, -1, axis)
+        g[:], c[:] = 2.0 * H3 * b3 / (H3 + b3), (H * b3 + b * H3) / (H3 + b3)

@@ -9,8 +9,6 @@ balance of vertex (i, j) changes with the true gap by
 An adjoint functional's gradient is ``-lam . dr``.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

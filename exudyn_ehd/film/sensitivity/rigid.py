@@ -4,8 +4,6 @@ An adjoint functional has the gradient ``-lam . dr``: the same as `exudyn_ehd.fi
 `exudyn_ehd.film.reynolds.gap.contract_pose` give one after the other, without the fields, which elastic bores want.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -4,7 +4,7 @@ Module map
 ----------
 closure         what a cavitation model offers
 linear          linear for given sets: rigid surfaces, incompressible
-newton          the driver for gaps or densities that depend on the pressure
+newton          rules of Newton's method for gaps or densities that depend on the pressure
 exact           adjoints of what it finds
 compiled        the driver compiled as a whole, for the fast ones among them
 steps           their matrix, steps and sets

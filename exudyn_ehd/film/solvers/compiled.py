@@ -1,8 +1,6 @@
 """`newton.newton` compiled as a whole for two films so fast that calls from Python would cost half as much again: one
 on a liner without further effects, and one between rigid surfaces whose density follows its pressure."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

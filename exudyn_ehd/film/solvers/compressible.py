@@ -32,8 +32,7 @@ from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
+from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compiled import factor, solve
@@ -63,6 +62,8 @@ class CompressibleFilmSolver(NewtonFilmSolver):
     rho : (n, m) array
         Density over that at ambient pressure, of the last solution.
     """
+
+    law: CompressibleLaw
 
     def __init__(
         self,
@@ -99,18 +100,9 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         self.reusable = False
 
     @property
-    def content(self) -> np.ndarray:
-        """Scaled mass rho fill H of the last solution (n, m)."""
-        return self.rho * self._fill * self.H
-
-    @property
     def _floor(self) -> float:
         """Scaled pressure below which the density stays."""
         return self.system.cavity_pressure if self.ruptures else -np.inf
-
-    @property
-    def _fill(self) -> np.ndarray:
-        return self.system.fill if self.closure.conserves_mass else self.ones
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
@@ -263,15 +255,10 @@ class CompressibleFilmSolver(NewtonFilmSolver):
 
     def _finish(self, steps: int) -> tuple[Status, int]:
         """Clip what the closure clips; factors of the Couette flows on the links."""
-        s, w, fixed = self.system, self.work, self.grid.fixed
-        P = s.linear_pressure
+        s, w = self.system, self.work
         w.warm = True
-        if self.closure.clips:
-            np.copyto(s.pressure, np.where(fixed, P, np.maximum(P, s.cavity_pressure)))
-            np.logical_and(~fixed, s.cavity_pressure <= P, out=w.active)
-        elif not self.complementary:
-            np.logical_not(fixed, out=w.active)
-        elif self.closure.conserves_mass:
+        self._clip()
+        if self.closure.conserves_mass:
             np.maximum(s.fill, 0.0, out=s.fill)
         elif self.edge is not None:
             self.edge.settle(w.active)
@@ -289,11 +276,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, self.known, self.rho, *out
         ):
             return True
-        inside = self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out)
-        p_out /= self.pressure_scale
-        ratio_P_out *= self.pressure_scale
-        np.divide(ratio_out, self.rho, out=p_P_out)
-        return inside
+        return super().viscosity(*out)
 
     def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
         """Scaled pressure of the last solution (n, m) and its derivative to the
@@ -301,25 +284,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         s, table = self.system, self.law.kernel_table
         if pressure_at(s.pressure, self.pressure_scale, self._floor, table, self.known, p_out, p_P_out):
             return True
-        rest = np.empty((2, *p_out.shape))
-        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
-
-    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette mass flows of the links in theta and z, and the rate at which
-        a full film's mass grows with its gap."""
-        flow_x, flow_z = mass_flows(self.carried, self.rho, (self.system.fx, self.system.fz))
-        return flow_x, flow_z, self.rho * self.H_t
-
-    def flow_work(self, P: np.ndarray) -> np.ndarray:
-        """Scaled integral of dp over the density ratio up to scaled true
-        pressures P; see `DowsonHigginson.flow_work`."""
-        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
-
-    def inflow(self) -> np.ndarray:
-        """Scaled mass flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
-        balance = np.empty(self.grid.shape)
-        film_balance(self.system.pressure, self._fill, self.rho, self.film, balance)
-        return np.where(self.grid.fixed, balance, 0.0)
+        return super().pressure_of_solution(p_out, p_P_out)
 
     def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
         """L and U of Newton's matrix at the solution, factored if the last one was before."""

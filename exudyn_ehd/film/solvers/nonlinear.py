@@ -56,15 +56,15 @@ from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, contract_l
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
-from exudyn_ehd.film.reynolds.balance import film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, mass_flows
+from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
-from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
+from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
+from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import Status
@@ -120,6 +120,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         # the balance's own arrays, which its kernels take as one
         self.H, self.HF, self.H_t = e.gaps.H, e.gaps.HF, e.gaps.rate
         self.system.H, self.system.H_t = self.H, self.H_t
+        self.film, self.rho = e.terms, self.ones if e.rho is None else e.rho
         s = self.system
         s.kx, s.kz, s.fx, s.fz = e.terms[:4]
         self.line, s.line = e.line, None
@@ -187,19 +188,9 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         e = self.elements
         return np.where(self.work.active, e.contact_G * e.scale * e.gap_slopes.D_P, 0.0)
 
-    @property
-    def rho(self) -> np.ndarray:
-        """Density over that at ambient pressure (n, m), of the last solution."""
-        return self.ones if self.elements.rho is None else self.elements.rho
-
-    @property
-    def content(self) -> np.ndarray:
-        """Scaled mass rho fill H of the last solution (n, m)."""
-        return self.rho * self.system.fill * self.H
-
     def smallest_gap(self) -> float:
         """Smallest scaled gap of the deformed surfaces."""
-        return float(smallest_true_gap(self.elements.rigid, self.elements.gaps.D))
+        return float(min(self.true_gap.min(), self.true_link.min()))
 
     def stored_power(self) -> float:
         """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
@@ -236,7 +227,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         if e.contact is None and not ends_open(e.rigid, P if e.oil is None else e.load.p, e.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
-        ok, steps = e.solve() if self.work.warm else (False, 0)
+        ok, steps = solve(e) if self.work.warm else (False, 0)
         if not ok:
             ok, more = self._start(mass_old, step)
             steps += more
@@ -305,12 +296,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""
         g, s, e = self.grid, self.system, self.elements
         e.settle_line()
-        P = s.linear_pressure
-        if self.closure.clips:
-            np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
-            np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
-        elif not self.ruptures:
-            np.logical_not(g.fixed, out=self.work.active)
+        self._clip()
         e.gradients()
         if self.closure.conserves_mass and e.rates.mass > 0.0:
             s.mass_old[:] = e.mass_old
@@ -361,45 +347,3 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         cell, rate = own + other - lam * by_gap, e.deflection_weights(lam)
         contract_line(lam, self.line_gradients(), cell, face, rate, speed)
         return Sensitivities(cell, face, rate, speed)
-
-    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette flows of the links in theta and z, and the rate of a full
-        film's content per area, all (n, m); of masses if compressible."""
-        s, e = self.system, self.elements
-        if e.rho is None:
-            return super().couette_flows()
-        flow_x, flow_z = mass_flows(self.carried, e.rho, (s.fx, s.fz))
-        return flow_x, flow_z, e.rho * self.H_t
-
-    def inflow(self) -> np.ndarray:
-        """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
-        e = self.elements
-        if e.rho is None:
-            return super().inflow()
-        balance = np.empty(self.grid.shape)
-        film_balance(self.system.pressure, e.u.fill, e.rho, e.terms, balance)
-        return np.where(self.grid.fixed, balance, 0.0)
-
-    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure and viscosity ratio of a compressible film (n, m)
-        with their derivatives to the transformed pressure.
-
-        False where that has no pressure; there the law goes on in a line.
-        """
-        assert self.law is not None
-        inside = self.law.inverse(self.system.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out)
-        p_out /= self.pressure_scale
-        ratio_P_out *= self.pressure_scale
-        np.divide(ratio_out, self.rho, out=p_P_out)
-        return inside
-
-    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure of a compressible film (n, m) and its derivative to
-        the transformed one; False where that has no pressure."""
-        rest = np.empty((2, *p_out.shape))
-        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
-
-    def flow_work(self, P: np.ndarray) -> np.ndarray:
-        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DowsonHigginson.flow_work`."""
-        assert self.law is not None
-        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale

@@ -168,11 +168,19 @@ class ClassicSolver(FilmSolver):
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) through the difference equations."""
-        cell, speed = np.zeros_like(lam), np.zeros((lam.shape[0], 2))
-        difference_sensitivity(
-            lam, self.system.linear_pressure, self.H, self.vx, self.vz, self.step_x, self.step_z, cell, speed
-        )
+        steps = self.step_x, self.step_z
+        cell, speed = difference_sensitivity(lam, self.system.linear_pressure, self.H, (self.vx, self.vz), steps)
         return Sensitivities(cell, np.zeros_like(lam), lam.copy() if self.squeeze else np.zeros_like(lam), speed)
+
+
+@njit(cache=True)
+def _differences(H, prv, i, nxt, j, dx, dz):
+    """Differences of the gap in theta and in z, and the coefficients of P at a vertex and at its neighbours."""
+    h, ix, iz = H[i, j], 1.0 / (dx * dx), 1.0 / (dz * dz)
+    x, z = H[nxt, j] - H[prv, j], H[i, j + 1] - H[i, j - 1]
+    cube, lean_x, lean_z = h * h * h, 0.75 * h * h * x, 0.75 * h * h * z
+    around = (cube - lean_x) * ix, (cube + lean_x) * ix, (cube - lean_z) * iz, (cube + lean_z) * iz
+    return x, z, -2.0 * cube * (ix + iz), around
 
 
 @njit(cache=True)
@@ -182,20 +190,14 @@ def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, lar
     Returns the sweeps, negative if not converged.
     """
     n, m = H.shape
-    ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
     a = np.zeros((n, m, 5))
     for i in range(n):
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
         for j in range(1, m - 1):
-            h = H[i, j]
-            jump_x = H[nxt, j] - H[prv, j]
-            jump_z = H[i, j + 1] - H[i, j - 1]
-            diagonal = -2.0 * h * h * h * (ix + iz)
-            a[i, j, 0] = (h * h * h - 0.75 * h * h * jump_x) * ix / diagonal
-            a[i, j, 1] = (h * h * h + 0.75 * h * h * jump_x) * ix / diagonal
-            a[i, j, 2] = (h * h * h - 0.75 * h * h * jump_z) * iz / diagonal
-            a[i, j, 3] = (h * h * h + 0.75 * h * h * jump_z) * iz / diagonal
+            jump_x, jump_z, diagonal, around = _differences(H, prv, i, nxt, j, dx, dz)
+            for k in range(4):
+                a[i, j, k] = around[k] / diagonal
             source = 0.5 * (vx * jump_x / dx + vz * jump_z / dz)
             if squeeze:
                 source += H_t[i, j]
@@ -226,57 +228,37 @@ def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, lar
 def assemble_differences(H, dx, dz, number, order, count, width, lower, upper):
     """The difference operator on the numbered vertices (fixed ones are known) in the storage of `lu`."""
     n, m = H.shape
-    ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
-    for r in range(count):
-        for d in range(width + 1 + PAD):
-            lower[r, d] = 0.0
-            upper[r, d] = 0.0
+    lower[:count, : width + 1 + PAD] = upper[:count, : width + 1 + PAD] = 0.0
     for r in range(count):
         i = order[r] // m
         j = order[r] - i * m
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
-        h = H[i, j]
-        jump_x = H[nxt, j] - H[prv, j]
-        jump_z = H[i, j + 1] - H[i, j - 1]
-        upper[r, 0] = -2.0 * h * h * h * (ix + iz)
-        for col, value in (
-            (number[prv, j], (h * h * h - 0.75 * h * h * jump_x) * ix),
-            (number[nxt, j], (h * h * h + 0.75 * h * h * jump_x) * ix),
-            (number[i, j - 1], (h * h * h - 0.75 * h * h * jump_z) * iz),
-            (number[i, j + 1], (h * h * h + 0.75 * h * h * jump_z) * iz),
-        ):
+        _, _, upper[r, 0], around = _differences(H, prv, i, nxt, j, dx, dz)
+        for k, col in enumerate((number[prv, j], number[nxt, j], number[i, j - 1], number[i, j + 1])):
             if col > r:
-                upper[r, col - r] += value
+                upper[r, col - r] += around[k]
             elif col >= 0:
-                lower[col, r - col] += value
+                lower[col, r - col] += around[k]
 
 
-@njit(cache=True)
-def difference_sensitivity(lam, P, H, vx, vz, dx, dz, cell_out, speed_out):
-    """Add ``-lam . dr`` to cell_out (k, n, m) and speed_out (k, 2), r the left minus the right side of the equation."""
-    count, n, m = lam.shape
-    for k in range(count):
-        for i in range(n):
-            prv = i - 1 if i > 0 else n - 1
-            nxt = i + 1 if i + 1 < n else 0
-            for j in range(1, m - 1):
-                g = -lam[k, i, j]
-                if g == 0.0:
-                    continue
-                h = H[i, j]
-                hx = (H[nxt, j] - H[prv, j]) / (2.0 * dx)
-                hz = (H[i, j + 1] - H[i, j - 1]) / (2.0 * dz)
-                px = (P[nxt, j] - P[prv, j]) / (2.0 * dx)
-                pz = (P[i, j + 1] - P[i, j - 1]) / (2.0 * dz)
-                curvature = (P[nxt, j] - 2.0 * P[i, j] + P[prv, j]) / (dx * dx)
-                curvature += (P[i, j + 1] - 2.0 * P[i, j] + P[i, j - 1]) / (dz * dz)
-                cell_out[k, i, j] += g * (3.0 * h * h * curvature + 6.0 * h * (hx * px + hz * pz))
-                dhx = g * (3.0 * h * h * px - vx) / (2.0 * dx)
-                dhz = g * (3.0 * h * h * pz - vz) / (2.0 * dz)
-                cell_out[k, nxt, j] += dhx
-                cell_out[k, prv, j] -= dhx
-                cell_out[k, i, j + 1] += dhz
-                cell_out[k, i, j - 1] -= dhz
-                speed_out[k, 0] -= g * hx
-                speed_out[k, 1] -= g * hz
+def difference_sensitivity(
+    lam: np.ndarray, P: np.ndarray, H: np.ndarray, speeds: tuple[float, float], steps: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """``-lam . dr`` by the gap (k, n, m) and by the speeds (k, 2), r the left minus the right side of the equation."""
+    (vx, vz), (dx, dz) = speeds, steps
+
+    def slopes(F: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        along = np.roll(F, -1, axis=0) - np.roll(F, 1, axis=0)
+        return along[:, 1:-1] / (2.0 * dx), (F[:, 2:] - F[:, :-2]) / (2.0 * dz)
+
+    g, h, (hx, hz), (px, pz) = -lam[:, :, 1:-1], H[:, 1:-1], slopes(H), slopes(P)
+    curvature = (np.roll(P, -1, axis=0) - 2.0 * P + np.roll(P, 1, axis=0))[:, 1:-1] / (dx * dx)
+    curvature += (P[:, 2:] - 2.0 * P[:, 1:-1] + P[:, :-2]) / (dz * dz)
+    by_hx, by_hz = g * (3.0 * h * h * px - vx) / (2.0 * dx), g * (3.0 * h * h * pz - vz) / (2.0 * dz)
+    cell = np.zeros_like(lam)
+    cell[:, :, 1:-1] = g * (3.0 * h * h * curvature + 6.0 * h * (hx * px + hz * pz))
+    cell[:, :, 1:-1] += np.roll(by_hx, 1, axis=1) - np.roll(by_hx, -1, axis=1)
+    cell[:, :, 2:] += by_hz
+    cell[:, :, :-2] -= by_hz
+    return cell, -np.stack((np.sum(g * hx, axis=(1, 2)), np.sum(g * hz, axis=(1, 2))), axis=1)

@@ -6,8 +6,6 @@ is None between rigid surfaces; ``matrix`` is (slopes, number, factored), ``fact
 diagonal).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

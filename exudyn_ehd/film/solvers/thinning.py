@@ -15,6 +15,7 @@ from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.status import Status
 
@@ -74,7 +75,7 @@ class ThinningFilmSolver(NonlinearFilmSolver):
             if e.fills:
                 np.logical_or(self.work.active, self.grid.fixed, out=e.u.full)
             self.work.warm = True
-            ok, more = e.solve()
+            ok, more = solve(e)
         if not ok:
             steps += more
             ok, more = super()._start(mass_old, step)

@@ -10,6 +10,7 @@ asperity        Greenwood-Tripp
 wall            RegularisedWall
 contact         what a contact and a gap limiter must offer
 contact_wrench  forces of the contacts
+drag            of a pressure gradient, where the surfaces share it unevenly
 elastic_liner   ElasticLiner, the option
 wear            Archard
 """

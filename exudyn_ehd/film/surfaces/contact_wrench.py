@@ -4,13 +4,27 @@ Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z
 (m,); basis e = (cos, sin, z cos, z sin, 1).
 """
 
-from __future__ import annotations
-
 import math
 
+import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@njit(cache=True)
+def _slip(motion, transition, R):
+    """Direction of the slip in theta and in z, shares of its regularised size, and that size, m/s."""
+    v = R * motion[8]
+    w = motion[9]
+    size = math.sqrt(v * v + w * w + transition * transition)
+    return v / size, w / size, size
+
+
+@njit(cache=True)
+def _dragged(a, b, sc, ss, szc, szs, sn, R):
+    """Force and moment about O of a traction of -a in theta and -b in z per pressure."""
+    return a * ss, -a * sc, -b * sn, R * (a * szc - b * ss), R * (a * szs + b * sc), -a * R * sn
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -58,12 +72,8 @@ def contact_wrench(P, weight, cos_x, sin_x, z, motion, friction, transition, R, 
     wrench[5] += area * (motion[1] * sc - motion[0] * ss + R * (motion[3] * szc - motion[2] * szs))
     if friction == 0.0:
         return
-    v = R * motion[8]
-    w = motion[9]
-    size = math.sqrt(v * v + w * w + transition * transition)
-    a = friction * area * v / size
-    b = friction * area * w / size
-    drag = (a * ss, -a * sc, -b * sn, R * (a * szc - b * ss), R * (a * szs + b * sc), -a * R * sn)
+    a, b, _ = _slip(motion, transition, R)
+    drag = _dragged(friction * area * a, friction * area * b, sc, ss, szc, szs, sn, R)
     for r in range(6):
         drag_out[r] += drag[r]
         wrench[r] += drag[r]
@@ -93,84 +103,40 @@ def contact_tangent(
             s2 += pw * z[j] * z[j]
         if s0 == 0.0:
             continue
-        c = cos_x[i]
-        s = sin_x[i]
-        G[0, 0] -= s0 * c * c
-        G[0, 1] -= s0 * c * s
-        G[1, 1] -= s0 * s * s
-        G[2, 0] -= s1 * c * c
-        G[2, 1] -= s1 * c * s
-        G[3, 1] -= s1 * s * s
-        G[2, 2] -= s2 * c * c
-        G[2, 3] -= s2 * c * s
-        G[3, 3] -= s2 * s * s
-        G[4, 0] -= s0 * c
-        G[4, 1] -= s0 * s
-        G[4, 2] -= s1 * c
-        G[4, 3] -= s1 * s
-    G[1, 0] = G[0, 1]
-    G[3, 0] = G[2, 1]
-    G[0, 2] = G[2, 0]
-    G[0, 3] = G[1, 2] = G[2, 1]
-    G[1, 3] = G[3, 1]
-    G[3, 2] = G[2, 3]
+        along, turn = (s0, s1, s2), (cos_x[i], sin_x[i])
+        for q in range(4):
+            G[4, q] -= along[q // 2] * turn[q % 2]
+            for k in range(4):
+                G[k, q] -= along[q // 2 + k // 2] * turn[q % 2] * turn[k % 2]
+    weights = np.empty((6, 5))
+    contact_weights(motion, friction, transition, R, weights)
+    for r in range(6):
+        for q in range(4):
+            change = 0.0
+            for k in range(5):
+                change += weights[r, k] * G[k, q]
+            tangent[r, q] += change * pose_scale[q]
     sc, ss, szc, szs, sn = integrals[0], integrals[1], integrals[2], integrals[3], integrals[4]
-    v = R * motion[8]
-    w = motion[9]
-    size = math.sqrt(v * v + w * w + transition * transition)
-    a = v / size
-    b = w / size
-    for q in range(4):
-        scale = R * R * pose_scale[q]
-        gc, gs, gzc, gzs, gn = G[0, q] * scale, G[1, q] * scale, G[2, q] * scale, G[3, q] * scale, G[4, q] * scale
-        tangent[0, q] += friction * a * gs - gc
-        tangent[1, q] -= friction * a * gc + gs
-        tangent[2, q] -= friction * b * gn
-        tangent[3, q] += R * (gzs + friction * (a * gzc - b * gs))
-        tangent[4, q] += R * (friction * (a * gzs + b * gc) - gzc)
-        tangent[5, q] += motion[1] * gc - motion[0] * gs + R * (motion[3] * gzc - motion[2] * gzs - friction * a * gn)
     area = R * R
     tangent[5, 0] -= area * ss
     tangent[5, 1] += area * sc
     tangent[5, 2] -= area * R * szs
     tangent[5, 3] += area * R * szc
     # the slip (a, b) with omega and with the axial speed
+    a, b, size = _slip(motion, transition, R)
     scale = friction * area / size
     for q, at, bt in ((8, (1.0 - a * a) * R, -a * b * R), (9, -a * b, 1.0 - b * b)):
-        at *= scale
-        bt *= scale
-        tangent[0, q] += at * ss
-        tangent[1, q] -= at * sc
-        tangent[2, q] -= bt * sn
-        tangent[3, q] += R * (at * szc - bt * ss)
-        tangent[4, q] += R * (at * szs + bt * sc)
-        tangent[5, q] -= at * R * sn
-
-
-@njit(cache=True)
-def contact_adjoint_rhs(order, count, weight, by_pressure, cos_x, sin_x, z, rhs_out):
-    """Weights of the five integrals of `contact_wrench` at the unknowns,
-    rhs_out (5, count), with d(contact pressure)/dP (n, m)."""
-    m = z.size
-    for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        w = weight[i, j] * by_pressure[i, j]
-        rhs_out[0, r] = w * cos_x[i]
-        rhs_out[1, r] = w * sin_x[i]
-        rhs_out[2, r] = w * cos_x[i] * z[j]
-        rhs_out[3, r] = w * sin_x[i] * z[j]
-        rhs_out[4, r] = w
+        drag = _dragged(scale * at, scale * bt, sc, ss, szc, szs, sn, R)
+        for r in range(6):
+            tangent[r, q] += drag[r]
 
 
 @njit(cache=True)
 def contact_weights(motion, friction, transition, R, out):
     """Weights (6, 5) of the integrals of `contact_wrench` in the wrench."""
-    v = R * motion[8]
-    w = motion[9]
-    size = math.sqrt(v * v + w * w + transition * transition)
-    a = friction * v / size
-    b = friction * w / size
+    a, b, _ = _slip(motion, transition, R)
+    a *= friction
+    b *= friction
     area = R * R
     out[:] = 0.0
     out[0, 0], out[0, 1] = -area, area * a

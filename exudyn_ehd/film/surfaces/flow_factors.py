@@ -82,7 +82,8 @@ class RoughShear:
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> None:
         """Friction factor at average gaps H (n, m) and its derivatives with respect to H and vx."""
-        rough_friction(H, 1.0 / self.sigma, self.table, ratio_out, ratio_h_out, ratio_v_out)
+        look_up(H, 1.0 / self.sigma, self.table, ratio_out, ratio_h_out)
+        ratio_v_out[:] = 0.0
 
 
 # Checks for a division by zero would keep the compiler from vectorising the loops below; the tables' gathers stand
@@ -93,24 +94,13 @@ def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
 
     In place.
     """
-    n, m = gap.shape
-    scale = inverse_sigma / TABLE_MIDDLE
-    flat = table.reshape(-1)
-    if not _aligned(gap):
-        f, f_h = np.empty(gap.size), np.empty(gap.size)
-        look_up(gap.reshape(-1), scale, flat, f, f_h)
-        v, v_h = value.reshape(-1), value_h.reshape(-1)
-        for k in range(v.size):
-            factor = base + share * f[k]
-            v_h[k] = v_h[k] * factor + v[k] * (share * f_h[k])
-            v[k] *= factor
-        return
-    for i in range(n):
-        one, one_h = _table_at(1.0 / (1.0 + gap[i, 0] * scale), scale, flat)
-        factor, factor_h = base + share * one, share * one_h
-        for j in range(m):
-            value_h[i, j] = value_h[i, j] * factor + value[i, j] * factor_h
-            value[i, j] *= factor
+    factor, factor_h = np.empty(gap.shape), np.empty(gap.shape)
+    look_up(gap, inverse_sigma, table, factor, factor_h)
+    v, v_h, f, f_h = value.reshape(-1), value_h.reshape(-1), factor.reshape(-1), factor_h.reshape(-1)
+    for k in range(v.size):
+        by = base + share * f[k]
+        v_h[k] = v_h[k] * by + v[k] * (share * f_h[k])
+        v[k] *= by
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
@@ -121,81 +111,36 @@ def rough_flux(H, HF, inverse_sigma, table_x, table_z, gap_z_out, gx, gx_h, gz, 
         for j in range(m - 1):
             gap_z_out[i, j] = 0.5 * (H[i, j] + H[i, j + 1])
         gap_z_out[i, m - 1] = H[i, m - 1]
-    _rough_conductance(HF, inverse_sigma / TABLE_MIDDLE, table_x.reshape(-1), gx, gx_h)
-    _rough_conductance(gap_z_out, inverse_sigma / TABLE_MIDDLE, table_z.reshape(-1), gz, gz_h)
+    _rough_conductance(HF, inverse_sigma, table_x, gx, gx_h)
+    _rough_conductance(gap_z_out, inverse_sigma, table_z, gz, gz_h)
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _rough_conductance(gap, scale, table, g_out, g_h_out):
+def _rough_conductance(gap, inverse_sigma, table, g_out, g_h_out):
     """``gap^3 f`` and its derivative."""
-    n, m = gap.shape
-    if not _aligned(gap):
-        h, g, g_h = gap.reshape(-1), g_out.reshape(-1), g_h_out.reshape(-1)
-        look_up(h, scale, table, g, g_h)
-        for k in range(h.size):
-            square = h[k] * h[k]
-            g_h[k] = square * (3.0 * g[k] + h[k] * g_h[k])
-            g[k] *= square * h[k]
-        return
-    for i in range(n):
-        a = gap[i, 0]
-        f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table)
-        f_h = a * a * (3.0 * f + a * f_h)
-        f *= a * a * a
-        for j in range(m):
-            g_out[i, j] = f
-        for j in range(m):
-            g_h_out[i, j] = f_h
+    look_up(gap, inverse_sigma, table, g_out, g_h_out)
+    h, g, g_h = gap.reshape(-1), g_out.reshape(-1), g_h_out.reshape(-1)
+    for k in range(h.size):
+        square = h[k] * h[k]
+        g_h[k] = square * (3.0 * g[k] + h[k] * g_h[k])
+        g[k] *= square * h[k]
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def rough_carriers(gap_x, gap_z, inverse_sigma, table_x, table_z, share, cx_out, cx_h_out, cz_out, cz_h_out):
     """Carriers ``gap (1 + share table)`` of the links and their slopes."""
-    _rough_carrier(gap_x, inverse_sigma / TABLE_MIDDLE, table_x.reshape(-1), share, cx_out, cx_h_out)
-    _rough_carrier(gap_z, inverse_sigma / TABLE_MIDDLE, table_z.reshape(-1), share, cz_out, cz_h_out)
+    _rough_carrier(gap_x, inverse_sigma, table_x, share, cx_out, cx_h_out)
+    _rough_carrier(gap_z, inverse_sigma, table_z, share, cz_out, cz_h_out)
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _rough_carrier(gap, scale, table, share, c_out, c_h_out):
-    n, m = gap.shape
-    if not _aligned(gap):
-        h, c, c_h = gap.reshape(-1), c_out.reshape(-1), c_h_out.reshape(-1)
-        look_up(h, scale, table, c, c_h)
-        for k in range(h.size):
-            factor = 1.0 + share * c[k]
-            c_h[k] = factor + h[k] * share * c_h[k]
-            c[k] = h[k] * factor
-        return
-    for i in range(n):
-        a = gap[i, 0]
-        f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table)
-        f = 1.0 + share * f
-        f_h = f + a * share * f_h
-        f *= a
-        for j in range(m):
-            c_out[i, j] = f
-        for j in range(m):
-            c_h_out[i, j] = f_h
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def rough_friction(H, inverse_sigma, table, ratio_out, ratio_h_out, ratio_v_out):
-    """The table's factor with its derivatives to the gap and to the speed, which is zero."""
-    n, m = H.shape
-    scale = inverse_sigma / TABLE_MIDDLE
-    flat = table.reshape(-1)
-    v = ratio_v_out.reshape(-1)
-    for k in range(v.size):
-        v[k] = 0.0
-    if not _aligned(H):
-        look_up(H.reshape(-1), scale, flat, ratio_out.reshape(-1), ratio_h_out.reshape(-1))
-        return
-    for i in range(n):
-        f, f_h = _table_at(1.0 / (1.0 + H[i, 0] * scale), scale, flat)
-        for j in range(m):
-            ratio_out[i, j] = f
-        for j in range(m):
-            ratio_h_out[i, j] = f_h
+def _rough_carrier(gap, inverse_sigma, table, share, c_out, c_h_out):
+    look_up(gap, inverse_sigma, table, c_out, c_h_out)
+    h, c, c_h = gap.reshape(-1), c_out.reshape(-1), c_h_out.reshape(-1)
+    for k in range(h.size):
+        factor = 1.0 + share * c[k]
+        c_h[k] = factor + h[k] * share * c_h[k]
+        c[k] = h[k] * factor
 
 
 @njit(cache=True)
@@ -212,12 +157,23 @@ def _aligned(gap):
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def look_up(gap, scale, table, f_out, f_h_out):
-    """`_table_at` for gaps (k,), with the quotients first."""
-    for k in range(gap.size):
-        f_out[k] = 1.0 / (1.0 + gap[k] * scale)
-    for k in range(gap.size):
-        f_out[k], f_h_out[k] = _table_at(f_out[k], scale, table)
+def look_up(gap, inverse_sigma, table, f_out, f_h_out):
+    """Value of a table at gaps (n, m), and its derivative by them."""
+    n, m = gap.shape
+    scale, flat = inverse_sigma / TABLE_MIDDLE, table.reshape(-1)
+    if _aligned(gap):
+        for i in range(n):
+            value, slope = _table_at(1.0 / (1.0 + gap[i, 0] * scale), scale, flat)
+            for j in range(m):
+                f_out[i, j] = value
+            for j in range(m):
+                f_h_out[i, j] = slope
+        return
+    h, f, f_h = gap.reshape(-1), f_out.reshape(-1), f_h_out.reshape(-1)
+    for k in range(h.size):
+        f[k] = 1.0 / (1.0 + h[k] * scale)
+    for k in range(h.size):
+        f[k], f_h[k] = _table_at(f[k], scale, flat)
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy", inline="always")

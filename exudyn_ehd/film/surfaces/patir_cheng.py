@@ -29,8 +29,8 @@ and as both factors are linear in the variances (heights of the two surfaces are
 of the two. For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small
 roughness). Beyond H = 7 Phi_fs falls on by the power that it has there. Under a pressure gradient the tangential
 forces, shear and ripples together, are ``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with
-``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.loads`. Where peaks touch (h below 2 sigma)
-the pressure is taken to act on the whole area, the flow to have the open part of it.
+``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.surfaces.drag`. Where peaks touch (h below
+2 sigma) the pressure is taken to act on the whole area, the flow to have the open part of it.
 
 The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as
 phi = phi_x h^3 / h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as

@@ -9,7 +9,7 @@ For a gap h below the onset h0, with s = h / h0:
 
 The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction of its own. Where it
 acts, the film sees another gap than the one on whose slope its pressure rests. The rest of the slope is the solids',
-which the journal meets along its normal, without a torque on it: see Closed gaps in `exudyn_ehd.film.loads`.
+which the journal meets along its normal, without a torque on it: see Closed gaps in `exudyn_ehd.film.surfaces.drag`.
 """
 
 from __future__ import annotations
@@ -102,13 +102,9 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
     n, m = H.shape
     for i in range(n):
         for j in range(m):
-            d = 1.0 - H[i, j] / onset
-            if d > 0.0:
-                P_out[i, j] = pressure * d * d
-                slope_out[i, j] = -2.0 * pressure * d / onset
-            else:
-                P_out[i, j] = 0.0
-                slope_out[i, j] = 0.0
+            d = max(1.0 - H[i, j] / onset, 0.0)
+            P_out[i, j] = pressure * d * d
+            slope_out[i, j] = -2.0 * pressure * d / onset
 
 
 @njit(cache=True)

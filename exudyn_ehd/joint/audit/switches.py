@@ -43,7 +43,8 @@ def _oil(bearing: JournalBearing, **laws: object) -> JournalBearing:
     return replace(bearing, lubricant=replace(bearing.lubricant, **laws))  # type: ignore[arg-type]
 
 
-def _ring(bearing: JournalBearing, axial: int, radial: int, around: int, tolerance: float) -> JournalBearing:
+def _ring(elements: tuple[int, int, int], tolerance: float, bearing: JournalBearing) -> JournalBearing:
+    """With a steel ring half a radius thick, held at its outer surface, of elements (axial, radial, around)."""
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ModalBush
     from exudyn_ehd.solid.mesh import HollowCylinder
@@ -51,24 +52,14 @@ def _ring(bearing: JournalBearing, axial: int, radial: int, around: int, toleran
 
     radius = bearing.journal_radius + bearing.radial_clearance
     sizes = {"inner_radius": radius, "thickness": RING_THICKNESS * radius, "length": bearing.length}
+    axial, radial, around = elements
     mesh = HollowCylinder(**sizes, axial=axial, radial=radial, circumferential=around)
     bush = ModalBush(mesh=mesh, material=SaintVenantKirchhoff(**STEEL), tolerance=tolerance)
     return replace(bearing, bush=bush)
 
 
-def steel_ring(bearing: JournalBearing) -> JournalBearing:
-    """With a steel ring half a radius thick, held at its outer surface."""
-    return _ring(bearing, 4, 2, 40, 0.02)
-
-
-def coarse_ring(bearing: JournalBearing) -> JournalBearing:
-    """As `steel_ring`, within 0.1 s: peak and minimum film thickness 2 % off where they change by 15 %, 8 % at 60 %."""
-    return _ring(bearing, 2, 1, 24, 0.08)
-
-
-def rigid(bearing: JournalBearing) -> JournalBearing:
-    """Without a bush."""
-    return replace(bearing, bush=None)
+# the coarse one within 0.1 s: peak and minimum film thickness 2 % off where they change by 15 %, 8 % at 60 %
+steel_ring, coarse_ring = partial(_ring, (4, 2, 40), 0.02), partial(_ring, (2, 1, 24), 0.08)
 
 
 def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
@@ -84,19 +75,9 @@ def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
 steel_pin, coarse_pin = partial(_pin, 0.02), partial(_pin, 0.08)
 
 
-def rigid_journal(bearing: JournalBearing) -> JournalBearing:
-    """Without an elastic journal."""
-    return replace(bearing, journal=None)
-
-
 def piezoviscous(bearing: JournalBearing) -> JournalBearing:
     """With a mineral oil's Roelands law."""
     return _oil(bearing, pressure_law=RoelandsPressure(coefficient=TYPICAL_PRESSURE_COEFFICIENT))
-
-
-def isoviscous(bearing: JournalBearing) -> JournalBearing:
-    """Without a pressure law."""
-    return _oil(bearing, pressure_law=None)
 
 
 def heated(bearing: JournalBearing) -> JournalBearing:
@@ -164,11 +145,6 @@ def thinning(bearing: JournalBearing) -> JournalBearing:
     return _oil(bearing, shear_law=law)
 
 
-def newtonian(bearing: JournalBearing) -> JournalBearing:
-    """Without a shear law."""
-    return _oil(bearing, shear_law=None)
-
-
 def roughness_height(bearing: JournalBearing) -> float:
     """Composite roughness that a bearing names, m, or a typical one."""
     if bearing.asperity is not None:
@@ -188,31 +164,6 @@ def touching(bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, asperity=asperity)
 
 
-def smooth(bearing: JournalBearing) -> JournalBearing:
-    """Without flow factors."""
-    return replace(bearing, roughness=None)
-
-
-def untouching(bearing: JournalBearing) -> JournalBearing:
-    """Without contacts, and what they wear."""
-    return replace(bearing, asperity=None, contact=None, wear=None)
-
-
-def unworn(bearing: JournalBearing) -> JournalBearing:
-    """Without wear."""
-    return replace(bearing, wear=None)
-
-
-def turbulent(bearing: JournalBearing) -> JournalBearing:
-    """With `NgPan`."""
-    return replace(bearing, turbulence=NgPan())
-
-
-def laminar(bearing: JournalBearing) -> JournalBearing:
-    """Without turbulence."""
-    return replace(bearing, turbulence=None)
-
-
 def cavity_pressure(bearing: JournalBearing) -> float:
     """Pressure of a bearing's cavities, Pa, or oil vapour's where nothing feeds them at their own."""
     pressure = max(bearing.cavitation.cavity_pressure, TYPICAL_CAVITY_PRESSURE)
@@ -230,11 +181,6 @@ def swift_stieber(bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, cavitation=SwiftStieber(cavity_pressure=pressure))
 
 
-def two_dimensional(bearing: JournalBearing) -> JournalBearing:
-    """With the two-dimensional film."""
-    return replace(bearing, film=FiniteLength())
-
-
 def refined(n_theta: int, n_z: int) -> Switch:
     """With a grid of this size."""
     return partial(_on_grid, n_theta, n_z)
@@ -242,3 +188,16 @@ def refined(n_theta: int, n_z: int) -> Switch:
 
 def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
+
+
+# What an effect is taken away by, and what one without numbers of its own is added by.
+rigid: Switch = partial(replace, bush=None)
+rigid_journal: Switch = partial(replace, journal=None)
+isoviscous: Switch = partial(_oil, pressure_law=None)
+newtonian: Switch = partial(_oil, shear_law=None)
+smooth: Switch = partial(replace, roughness=None)
+untouching: Switch = partial(replace, asperity=None, contact=None, wear=None)
+unworn: Switch = partial(replace, wear=None)
+turbulent: Switch = partial(replace, turbulence=NgPan())
+laminar: Switch = partial(replace, turbulence=None)
+two_dimensional: Switch = partial(replace, film=FiniteLength())

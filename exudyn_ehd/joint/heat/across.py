@@ -10,10 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.banded.lu import factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.substitution import solve_lu
-from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.heat.across import (
     HEIGHTS,
     at_heights,
@@ -68,33 +64,6 @@ class FluidityField(ViscosityField):
                 carrier *= factor
 
 
-class PairSolver:
-    """Systems of mean and tilt on one film grid (n, m); its buffers stay."""
-
-    def __init__(self, shape: tuple[int, int]) -> None:
-        n, m = shape
-        self.number, self.order = np.zeros(shape, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
-        _, width = number_cells(np.ones(shape, dtype=np.bool_), np.ones(shape), self.order, self.number)
-        self.size, self.width = 2 * n * m, 2 * width + 1
-        self.lower, self.upper = np.zeros((2, self.size, self.width + 1 + PAD))
-        self.inverse = np.zeros(self.size)
-
-    def factor(self, ends: np.ndarray, own: np.ndarray) -> None:
-        """Factor the system of `exudyn_ehd.film.heat.across.band_of_pairs`."""
-        band_of_pairs(ends, own, self.number, self.lower, self.upper)
-        self.regular = factor_lu(self.lower, self.upper, self.size, self.width, self.inverse)
-
-    def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Mean and tilt (2, n, m) for a right-hand side (2, n, m); inf for a singular system."""
-        if not self.regular:
-            return np.full(rhs.shape, np.inf)
-        pairs, out = rhs.reshape(2, -1), np.empty((2, rhs[0].size))
-        x = np.ascontiguousarray(pairs[:, self.order].T).reshape(1, -1)
-        solve_lu(self.lower, self.upper, self.inverse, self.size, self.width, x)
-        out[:, self.order] = x.reshape(-1, 2).T
-        return out.reshape(rhs.shape)
-
-
 class PairBetween(Between):
     """What warms mean and tilt of a solved film over a step, or for good with a step of 0.
 
@@ -110,7 +79,7 @@ class PairBetween(Between):
     def __init__(self, thermal: CubicTemperature, film: SolvedFilm, step: float) -> None:
         super().__init__(thermal, film, step)
         assert film.walls is not None and film.walls.across is not None
-        self.pairs, across = thermal.pairs, film.walls.across
+        self.pairs, across = thermal.band(film.grid.shape, 2), film.walls.across
         largest = float(max(np.abs(self.flows.x).max(), np.abs(self.flows.z).max(), self.store.max()))
         largest_lost = float(np.abs(self.own).max())
         self._carry(thermal.fluidity, np.array([self.old, *across]))
@@ -151,7 +120,9 @@ class PairBetween(Between):
 
     def solve(self) -> None:
         """Factor the system, which `between` and `change` use."""
-        self.pairs.factor(self.ends, self.own)
+        p = self.pairs
+        band_of_pairs(self.ends, self.own, p.number, p.lower, p.upper)
+        p.factor()
         if self.back > 0.0:
             self.returning = self.pairs.solve(self.back * self.brings)
 
@@ -227,7 +198,7 @@ class CubicTemperature(WalledTemperature):
     ) -> None:
         assert isinstance(field, FluidityField)
         super().__init__(spec, bearing, field, shape)
-        self.fluidity, self.pairs = field, PairSolver(shape)
+        self.fluidity = field
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, 4 m + k) state, K, at the start of a motion: one temperature, and the walls' at the surfaces."""

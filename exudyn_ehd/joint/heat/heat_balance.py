@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -20,30 +21,29 @@ STAGNANT = 1e-14
 
 
 class BandSolver:
-    """Systems of one film grid; its buffers stay."""
+    """Systems of ``unknowns`` at every vertex of a film grid (n, m); its buffers stay."""
 
-    def __init__(self) -> None:
-        self.number: np.ndarray | None = None
+    def __init__(self, shape: tuple[int, int], unknowns: int) -> None:
+        n, m = shape
+        self.number, self.order = np.zeros(shape, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
+        _, width = number_cells(np.ones(shape, dtype=np.bool_), np.ones(shape), self.order, self.number)
+        self.unknowns, self.size, self.width = unknowns, unknowns * n * m, unknowns * (width + 1) - 1
+        self.lower, self.upper = np.zeros((2, self.size, self.width + 1 + PAD))
+        self.inverse = np.zeros(self.size)
 
-    def factor(self, qx: np.ndarray, qz: np.ndarray, slopes: np.ndarray) -> None:
-        """Factor the system of ``slopes`` (5, n m)."""
-        n, m = qx.shape
-        if self.number is None:
-            self.number, self.order = np.zeros((n, m), dtype=np.int64), np.zeros(n * m, dtype=np.int64)
-            _, self.width = number_cells(np.ones((n, m), dtype=np.bool_), np.ones((n, m)), self.order, self.number)
-            self.lower, self.upper = np.zeros((2, n * m, self.width + 1 + PAD))
-            self.inverse = np.zeros(n * m)
-        assemble(qx, qz, slopes, self.number, self.order, n * m, self.lower, self.upper)
-        self.regular = factor_lu(self.lower, self.upper, n * m, self.width, self.inverse)
+    def factor(self) -> None:
+        """Factor what ``lower`` and ``upper`` hold."""
+        self.regular = factor_lu(self.lower, self.upper, self.size, self.width, self.inverse)
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Fields for right-hand sides (k, n, m); inf for a singular system."""
-        x = np.ascontiguousarray(rhs.reshape(len(rhs), -1)[:, self.order])
+        """Fields of each right-hand side's unknowns in turn (k, n, m), as ``rhs``; inf for a singular system."""
         if not self.regular:
             return np.full(rhs.shape, np.inf)
-        solve_lu(self.lower, self.upper, self.inverse, self.order.size, self.width, x)
-        out = np.empty_like(x)
-        out[:, self.order] = x
+        sides = rhs.reshape(-1, self.unknowns, self.order.size)
+        x = np.ascontiguousarray(sides[:, :, self.order].swapaxes(1, 2)).reshape(len(sides), -1)
+        solve_lu(self.lower, self.upper, self.inverse, self.size, self.width, x)
+        out = np.empty_like(sides)
+        out[:, :, self.order] = x.reshape(len(sides), -1, self.unknowns).swapaxes(1, 2)
         return out.reshape(rhs.shape)
 
 
@@ -53,7 +53,7 @@ class HeatedOil(Protocol):
     supply: float
     flow_capacity: float
     carry_over: float
-    band: BandSolver
+    band: Callable[[tuple[int, int], int], BandSolver]
 
     def follows(self, T: np.ndarray, heat: np.ndarray, store: np.ndarray) -> float | np.ndarray:
         """What heat loses per kelvin within a step."""
@@ -71,7 +71,7 @@ class HeatBalance:
     def __init__(self, thermal: HeatedOil, film: SolvedFilm, step: float, heat: np.ndarray) -> None:
         area, shape = film.solver.area, film.grid.shape
         assert film.temperature is not None
-        self.film, self.step, self.supply, self.band = film, step, thermal.supply, thermal.band
+        self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
         self.old = np.asarray(film.temperature)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
         self.heat, self.flows = heat, OilFlows(film)
@@ -95,7 +95,9 @@ class HeatBalance:
         held = store if self.step > 0.0 else np.full(store.shape, np.inf)
         slopes = np.empty((5, store.size))
         transport_slopes(flows.x, flows.z, diagonal, self.old, self.film.grid.link_z, held, slopes)
-        self.band.factor(flows.x, flows.z, slopes)
+        self.band = band = self.thermal.band(store.shape, 1)
+        assemble(flows.x, flows.z, slopes, band.number, band.order, band.size, band.lower, band.upper)
+        band.factor()
         self.given = self.heat / self.scale + (store + rigid + self.follows) * (self.old - self.supply)
 
     def temperatures(self, gain: np.ndarray) -> np.ndarray:

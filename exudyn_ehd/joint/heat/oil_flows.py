@@ -9,32 +9,30 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film.heat.energy import (
-    content_rate,
-    exchange_sums,
-    film_flows,
-    outside_flows,
-)
+from exudyn_ehd.film.heat.energy import content_rate, film_flows, outside_flows
 from exudyn_ehd.joint.heat.power import sliding_power
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 
 class Exchange:
-    """Oil that enters a solved film from outside, and the rate of its content.
+    """Flows of a solved film, oil that enters it from outside, and the rate of its content, in units of c R^2.
 
     Of a compressible film, flows and contents are masses over the density at ambient pressure.
 
     Attributes
     ----------
     fill, rate, outside : (n, m) arrays
-        Film fraction, times the density ratio; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies, in
-        units of c R^2.
+        Film fraction, times the density ratio; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies.
+    x, z : (n, m) arrays
+        Over the links i -> i+1 and j -> j+1.
+    balance : (n, m) array
+        What leaves a vertex over its links, or is stored there.
     fx, fz, convected : (n, m) arrays
         Couette flows of the links before they take the upstream value of ``convected`` along.
     """
 
     def __init__(self, film: SolvedFilm) -> None:
-        s, y, shape = film.solver, film.solver.system, film.grid.shape
+        s, y = film.solver, film.solver.system
         conserves, fixed = s.closure.conserves_mass, film.grid.fixed
         self.fill, self.convected = s.fill if conserves else s.ones, s.carried
         self.fx, self.fz = y.fx, y.fz
@@ -43,14 +41,14 @@ class Exchange:
             # these flows hold the upstream film fraction and the links' density already
             self.fx, self.fz, _ = oil.couette_flows()
             self.fill, self.convected = oil.rho * self.fill, s.ones
-        self.rate, self.outside = np.empty(shape), np.empty(shape)
         self.stepped = conserves and y.inverse_step > 0.0 and not s.instant
-        old = y.mass_old if self.stepped else s.H
-        content_rate(s.H, s.H_t, self.fill, old, y.inverse_step if self.stepped else 0.0, s.squeeze, self.rate)
-        unbroken = np.ones(shape, dtype=np.bool_) if conserves else s.work.active | fixed
-        outside_flows(
-            s.pressure, self.convected, y.kx, y.kz, self.fx, self.fz, s.area, self.rate, fixed, unbroken, self.outside
-        )
+        inverse_step = y.inverse_step if self.stepped else 0.0
+        self.rate = content_rate(s.H, s.H_t, self.fill, y.mass_old, inverse_step, s.squeeze)
+        unbroken = np.ones_like(fixed) if conserves else s.work.active | fixed
+        self.x, self.z, self.balance = np.empty((3, *film.grid.shape))
+        film_flows(s.pressure, self.convected, y.kx, y.kz, self.fx, self.fz, self.x, self.z, self.balance)
+        self.balance += s.area * self.rate
+        self.outside = outside_flows(self.z, self.balance, fixed, unbroken)
 
     @property
     def leaving(self) -> float:
@@ -59,12 +57,10 @@ class Exchange:
 
 
 class OilFlows(Exchange):
-    """All flows of a solved film, in units of c R^2.
+    """`Exchange` of a film with what its energy equation asks for in addition.
 
     Attributes
     ----------
-    x, z : (n, m) arrays
-        Over the links i -> i+1 and j -> j+1.
     found : (n, m) array
         Entering in addition, where a cavitation model does not conserve mass; negative where it loses oil.
     content : (n, m) array
@@ -73,13 +69,9 @@ class OilFlows(Exchange):
 
     def __init__(self, film: SolvedFilm) -> None:
         super().__init__(film)
-        s, y, shape = film.solver, film.solver.system, film.grid.shape
+        s, y = film.solver, film.solver.system
         self.content = y.mass_old if self.stepped else self.fill * s.H
-        self.x, self.z, self.found = np.empty(shape), np.empty(shape), s.area * self.rate
-        film_flows(s.pressure, self.convected, y.kx, y.kz, self.fx, self.fz, self.x, self.z, self.found)
-        self.found -= self.outside
-        if s.closure.conserves_mass:
-            self.found[:] = 0.0
+        self.found = s.nothing if s.closure.conserves_mass else self.balance - self.outside
 
 
 def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
@@ -95,30 +87,12 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     rupture line crosses a cell. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows and
     content are masses. The flow that leaves is that of `Exchange`.
     """
-    s, oil = film.solver, film.parts.compressible
-    cavity = film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0
-    if oil is not None:
-        flows = Exchange(film)
-        pressure = oil.flow_work(film.oil.P) - oil.flow_work(np.asarray(cavity))
-        work, leaving = float(np.sum(pressure * (flows.outside - s.area * flows.rate))), flows.leaving
-    else:
-        y, conserves = s.system, s.closure.conserves_mass
-        stepped = conserves and y.inverse_step > 0.0 and not s.instant
-        leaving, work = exchange_sums(
-            film.oil.P,
-            s.pressure,
-            s.fill if conserves else s.ones,
-            s.carried,
-            s.work.active,
-            conserves,
-            y.mass_old if stepped else s.H,
-            y.inverse_step if stepped else 0.0,
-            s.squeeze,
-            y.coefficients,
-            cavity,
-        )
+    flows, oil = Exchange(film), film.parts.compressible
+    P, cavity = film.oil.P, np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
+    pressure = P - cavity if oil is None else oil.flow_work(P) - oil.flow_work(cavity)
+    work = float(np.sum(pressure * (flows.outside - film.solver.area * flows.rate)))
     power = film.scales.pressure * film.parts.flow_scale
-    return sliding_power(film) + power * (work + _end_work(film)), leaving
+    return sliding_power(film) + power * (work + _end_work(film)), flows.leaving
 
 
 def _end_work(film: SolvedFilm) -> float:

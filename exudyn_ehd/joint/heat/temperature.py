@@ -5,7 +5,9 @@ Heat balance at accepted steps, viscosity for the next one, and the settled stea
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -202,7 +204,8 @@ class FilmTemperature(_Temperature):
         self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
         self._start: np.ndarray | None = None
         self._last: np.ndarray | None = None
-        self.carry_over, self.band = spec.carry_over, BandSolver()
+        self.carry_over = spec.carry_over
+        self.band: Callable[[tuple[int, int], int], BandSolver] = functools.cache(BandSolver)
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, m) array, K, at the start of a motion."""

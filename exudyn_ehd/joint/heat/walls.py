@@ -10,8 +10,6 @@ which is factored once, and from `exudyn_ehd.film.heat.passage`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
@@ -22,6 +20,7 @@ from exudyn_ehd.film.heat.passage import Passage
 from exudyn_ehd.joint.heat.heat_balance import HeatBalance
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, ViscosityField
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
+from exudyn_ehd.solid.linear.gmres import gmres
 
 # Share of the heat to which what the film gives and what the walls take agree.
 AGREED = 1e-13
@@ -250,7 +249,8 @@ class WalledTemperature(FilmTemperature):
             return lu_solve(lead, stiff @ w - self._gather(between.passed(between.change(at), at)))
 
         enough = AGREED * float(np.linalg.norm(lu_solve(lead, given)))
-        return _krylov(led, lu_solve(lead, missing + given), enough)
+        directions, weights = gmres(led, lu_solve(lead, missing + given), enough, self.unknowns)
+        return weights @ directions
 
     def equations(self, film: SolvedFilm, step: float) -> Between:
         """Of a solved film over a step, s; 0: for good."""
@@ -292,30 +292,6 @@ class WalledTemperature(FilmTemperature):
         if self.sides[0] is None:
             return journal.sum(keepdims=True)[None]
         return np.block([[np.diag(bush), both[:, None]], [both, journal.sum()]])
-
-
-def _krylov(apply: Callable[[np.ndarray], np.ndarray], rhs: np.ndarray, enough: float) -> np.ndarray:
-    """x (k,) with ``apply(x) = rhs`` to ``enough``, by GMRES."""
-    size, x = float(np.linalg.norm(rhs)), np.zeros_like(rhs)
-    if size <= enough:
-        return x
-    basis, table = rhs[None] / size, np.zeros((rhs.size + 1, rhs.size))
-    for k in range(rhs.size):
-        image = apply(basis[k])
-        for _ in range(2):  # orthogonal to rounding
-            part = basis @ image
-            table[: k + 1, k] += part
-            image = image - part @ basis
-        table[k + 1, k] = norm = float(np.linalg.norm(image))
-        target = np.zeros(k + 2)
-        target[0] = size
-        known = table[: k + 2, : k + 1]
-        weights = np.linalg.lstsq(known, target, rcond=None)[0]
-        x = weights @ basis
-        if np.linalg.norm(target - known @ weights) <= enough or norm == 0.0:
-            break
-        basis = np.vstack((basis, image / norm))
-    return x
 
 
 class Growth:

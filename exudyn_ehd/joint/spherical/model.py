@@ -26,7 +26,7 @@ The wrench is F = F_p + F_c and the moment about O, T_c + T_p + e x F; the socke
 N in loads and sources, work and heat match link by link: -(F v + T w) = sum H^3 (dP)^2 + Couette's heat >= 0.
 
 Where a wall limits the film's gap to H(g), g the true one, sources and T_p carry dH/dg, as in Closed gaps of
-`exudyn_ehd.film.loads`; what the slopes leave of the pressure goes from solid to solid, without a torque.
+`exudyn_ehd.film.surfaces.drag`; what the slopes leave of the pressure goes from solid to solid, without a torque.
 
 With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`),
 loads take p(q) and the viscosity of every vertex; heat is sum H^3 dq dP.

@@ -23,7 +23,7 @@ import numpy as np
 
 from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, add_line_stencil
-from exudyn_ehd.film.loads import couette_gradient, unknown_weights
+from exudyn_ehd.film.loads import couette_gradient
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     balance_change,
     gap_stencil,
@@ -212,11 +212,10 @@ def _wrench_rows(film: SolvedFilm, bore: Bore, balances: Balances) -> tuple[np.n
 def load_weights(film: SolvedFilm) -> np.ndarray:
     """Weight of every unknown (count,) in the scaled pressure integral over the bore."""
     w = film.solver.work
-    weight = np.empty(w.count)
-    unknown_weights(w.order, w.count, film.grid.weight, w.active, weight)
+    weight = np.where(w.active, film.grid.weight, 0.0)
     if film.oil.P_q is not None:
-        weight *= film.oil.P_q.ravel()[w.order[: w.count]]
-    return weight
+        weight *= film.oil.P_q
+    return weight.ravel()[w.order[: w.count]]
 
 
 def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, int]:

@@ -1,16 +1,16 @@
-"""Drag of a pressure gradient on surfaces that share it unevenly, and its derivatives; see `exudyn_ehd.film.loads`.
+"""Drag of a pressure gradient on surfaces that share it unevenly, and its derivatives.
 
-Of unequal roughness, and where a limiter leaves the film another gap than the surfaces have.
+Of unequal roughness, and where a limiter leaves the film another gap than the surfaces have; see
+`exudyn_ehd.film.surfaces.drag`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.loads import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.surfaces.closed_gap import closed_pose_gradient, closed_rhs, closed_sums
+from exudyn_ehd.film.surfaces.drag import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
 from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
 
 
@@ -20,24 +20,14 @@ def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
 
 
 def drag_integrals(parts: FilmParts, limited: LimiterFields | None, P: np.ndarray) -> tuple[float, float]:
-    """E_x and E_z of the film that ``parts.solver`` holds, with its pressure P (n, m)."""
-    f, mesh, closed = parts.solver.flux, parts.grid.mesh, _closed_gaps(parts, limited)
-    along = across = 0.0
-    if parts.uneven_drag and f is not None:
-        along, across = drag_sums(P, f.cx, f.gap_x, f.cz, f.gap_z, mesh)
-    if closed is None:
-        return along, across
-    x, z = closed_sums(P, *closed, mesh)
-    return along + x, across + z
+    """(E_x, E_z) of the film that ``parts.solver`` holds, at the pressures P (n, m)."""
+    return drag_sums(P, _gaps(parts, limited), parts.grid.mesh)
 
 
 def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
-    """Add the weights of the unknown pressures in E_x and E_z to ``rows`` (2, count)."""
-    w, f, mesh, closed = film.solver.work, film.solver.flux, film.grid.mesh, _closed_gaps(film.parts, film.limited)
-    if film.parts.uneven_drag and f is not None:
-        drag_rhs(w.order, w.count, w.active, f.cx, f.gap_x, f.cz, f.gap_z, mesh, rows)
-    if closed is not None:
-        closed_rhs(w.order, w.count, w.active, *closed, mesh, rows)
+    """Add the weights of E_x and E_z at the unknown pressures, their gaps fixed, to rows (2, count)."""
+    w = film.solver.work
+    drag_rhs(w.order, w.count, w.active, _gaps(film.parts, film.limited), film.grid.mesh, rows)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -56,25 +46,13 @@ def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
 def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     """Add the gradients of E_x and E_z at fixed pressure to the scaled pose to ``gradient`` (2, 10)."""
-    p, g = film.parts, film.grid
-    if p.liner is not None:
-        face, cell = drag_by_gap(film)
-        contract_pose(face, p.directions.cos_f, p.directions.sin_f, g.z, gradient[:1, :4])
-        contract_pose(cell[1:], p.directions.cos_x, p.directions.sin_x, g.z, gradient[1:, :4])
-        contract_pose(cell[:1], p.directions.cos_x, p.directions.sin_x, g.z, gradient[:1, :4])
+    g, at = film.grid, film.parts.directions
+    if film.parts.liner is None:
+        drag_pose_gradient(film.oil.P, *_carrier_slopes(film), *_gap_slopes(film), g.mesh, g.directions, gradient)
         return
-    drag_pose_gradient(film.oil.P, *_carrier_slopes(film), *_gap_slopes(film), g.mesh, g.directions, gradient)
-
-
-def add_closed_by_pose(
-    film: SolvedFilm, limited: LimiterFields, couette: np.ndarray, dc: np.ndarray, drag: np.ndarray
-) -> None:
-    """As `add_drag_by_pose` for a limited film of even carriers, to ``drag`` (2, 10); and to ``dc`` (10,) that of C.
-
-    ``couette`` (n, m) is dC/d(film gap).
-    """
-    g = film.grid
-    closed_pose_gradient(film.oil.P, limited.slope, limited.face_slope, couette, g.mesh, g.directions, dc, drag)
+    face, cell = drag_by_gap(film)
+    contract_pose(face, at.cos_f, at.sin_f, g.z, gradient[:1, :4])
+    contract_pose(cell, at.cos_x, at.sin_x, g.z, gradient[:, :4])
 
 
 def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
@@ -83,14 +61,16 @@ def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarr
     return np.stack((_ends(face), cell)) * liner.deflection_by_pressure
 
 
-def _closed_gaps(parts: FilmParts, limited: LimiterFields | None) -> tuple[np.ndarray, ...] | None:
-    """Film's and true gap at the vertices, and on the links i -> i+1; None where they are the same."""
+def _gaps(parts: FilmParts, limited: LimiterFields | None) -> tuple[object, ...]:
+    """Carriers, film's gaps and true gaps that ``parts.solver`` holds, as `link_excess` takes them."""
     s, liner = parts.solver, parts.liner
+    gap, link = s.H, s.HF
     if limited is not None:
-        return s.H, limited.gap, s.HF, limited.link
-    if liner is not None and liner.limited:
-        return s.H, liner.true_gap, s.HF, liner.true_link
-    return None
+        gap, link = limited.gap, limited.link
+    elif liner is not None and liner.limited:
+        gap, link = liner.true_gap, liner.true_link
+    carriers = (s.flux.cx, s.flux.cz) if parts.uneven_drag and s.flux is not None else None
+    return carriers, s.H, s.HF, gap, link
 
 
 def _carrier_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:

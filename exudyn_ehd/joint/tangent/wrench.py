@@ -11,21 +11,19 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
     chain_links,
-    contact_adjoint_rhs,
     contact_tangent,
     contact_weights,
     couette_gradient_ratio,
 )
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import (
-    add_closed_by_pose,
     add_drag_by_pose,
     add_drag_rows,
     drag_by_deflection,
@@ -102,9 +100,6 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     if fills is not None:
         dc += by_fills(film, fills, _ratio(film) * film.grid.weight / film.solver.H)[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
-    if film.limited is not None and not film.parts.uneven_drag:
-        add_closed_by_pose(film, film.limited, couette[0], dc, extra)
-        return gradient[:4], dc, extra
     _contract_couette(film, couette, dc)
     if pulls_unevenly(film.parts, film.limited):
         add_drag_by_pose(film, extra)
@@ -206,7 +201,8 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     rows = np.empty((own + 5 * _pressed_contact(film), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, p.directions.cos_x, p.directions.sin_x, g.z, w.active, rows)
     if P_q is not None:
-        weigh_rows(w.order, w.count, P_q, rows[:4])
+        P_q = P_q.ravel()[w.order[: w.count]]
+        rows[:4] *= P_q
     if shear_needs_adjoint(film):
         _shear_row(film, rows[4])
     if has_extra_rows(film):
@@ -219,17 +215,18 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         if uneven:
             add_drag_rows(film, extra)
         if P_q is not None:
-            weigh_rows(w.order, w.count, P_q, extra)
+            extra *= P_q
         if uneven and p.liner is not None:
             extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     y, closure = film.solver.system, film.solver.closure
     if closure.clips and closure.line_in_cells:
         rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
     if rows.shape[0] > own and p.liner is not None:
-        by_pressure = p.liner.contact_by_pressure
-        contact_adjoint_rhs(
-            w.order, w.count, g.weight, by_pressure, p.directions.cos_x, p.directions.sin_x, g.z, rows[own:]
+        by_pressure = g.weight * p.liner.contact_by_pressure
+        load_adjoint_rhs(
+            w.order, w.count, by_pressure, p.directions.cos_x, p.directions.sin_x, g.z, w.active, rows[own:]
         )
+        rows[own + 4] = by_pressure.ravel()[w.order[: w.count]]
     return rows
 
 

@@ -3,8 +3,6 @@
 Patterns are compressed columns of the whole matrix with sorted rows, in the order of elimination.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

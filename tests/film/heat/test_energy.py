@@ -44,30 +44,29 @@ def test_heat(fields):
 def test_flows_take_the_fill_from_upstream(fields):
     f = fields
     flow = {"x": np.zeros(SHAPE), "z": np.zeros(SHAPE)}
-    source = f["storage"] * f["rate"]
+    source = np.zeros(SHAPE)
     for kind, a, b in links(SHAPE):
         couette = f["f" + kind][a]
         flow[kind][a] = f["k" + kind][a] * (f["q"][a] - f["q"][b]) + couette * f["fill"][a if couette >= 0.0 else b]
         source[a] += flow[kind][a]
         source[b] -= flow[kind][a]
-    qx, qz, s = np.empty(SHAPE), np.empty(SHAPE), f["storage"] * f["rate"]
-    film_flows(f["q"], f["fill"], f["kx"], f["kz"], f["fx"], f["fz"], qx, qz, s)
+    qx, qz, leaving = np.empty((3, *SHAPE))
+    film_flows(f["q"], f["fill"], f["kx"], f["kz"], f["fx"], f["fz"], qx, qz, leaving)
     np.testing.assert_allclose(qx, flow["x"], rtol=1e-13, atol=1e-15)
     np.testing.assert_allclose(qz, flow["z"], rtol=1e-13, atol=1e-15)
-    np.testing.assert_allclose(s, source, rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(leaving, source, rtol=1e-12, atol=1e-14)
 
 
 def test_outside_flows_are_the_balance_of_fixed_vertices(fields):
     """Where the film next to an end is ruptured, only the link's flow passes."""
     f = fields
-    qx, qz, source, outside = np.empty(SHAPE), np.empty(SHAPE), f["storage"] * f["rate"], np.empty(SHAPE)
-    args = [f[k] for k in ("q", "fill", "kx", "kz", "fx", "fz", "storage", "rate")]
-    film_flows(*args[:6], qx, qz, source)
+    qx, qz, leaving = np.empty((3, *SHAPE))
+    film_flows(*(f[k] for k in ("q", "fill", "kx", "kz", "fx", "fz")), qx, qz, leaving)
+    source = f["storage"] * f["rate"] + leaving
     fixed = np.zeros(SHAPE, dtype=np.bool_)
     fixed[:, [0, -1]] = fixed[2, :] = True
     unbroken = np.random.default_rng(7).random(SHAPE) > 0.4
-    outside_flows(*args, fixed, unbroken, outside)
-    for (i, j), value in np.ndenumerate(outside):
+    for (i, j), value in np.ndenumerate(outside_flows(qz, source, fixed, unbroken)):
         twin = source[i, j] if fixed[i, j] else 0.0
         if j == 0 and not unbroken[i, 1]:
             twin = qz[i, 0]
@@ -77,14 +76,14 @@ def test_outside_flows_are_the_balance_of_fixed_vertices(fields):
 
 
 def test_content_rate(fields):
-    H, H_t, fill, old, out = (fields[k] for k in ("kx", "fx", "fill", "q", "P"))
+    H, H_t, fill, old = (fields[k] for k in ("kx", "fx", "fill", "q"))
     for inverse_step, squeeze, twin in (
         (5.0, True, (fill * H - old) * 5.0),
         (0.0, True, fill * H_t),
         (0.0, False, 0.0 * H),
     ):
-        content_rate(H, H_t, fill, old, inverse_step, squeeze, out)
-        np.testing.assert_allclose(out, twin, rtol=1e-14, atol=1e-15)
+        found = content_rate(H, H_t, fill, old, inverse_step, squeeze)
+        np.testing.assert_allclose(found, twin, rtol=1e-14, atol=1e-15)
 
 
 def twin_weight(T, z, j, flow):

@@ -267,7 +267,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     thin = None if e.thin is None else e.thin.response()
     numbering = number_cells if thin is None else number_with_corners
     count, width = numbering(~SMALL.fixed, e.metric[0], w.order, w.number)
-    sides = e._sides(e.u)
+    sides = e.sides(e.u)
     film_slopes(*sides[1:], None, None, e.terms, slopes)
     if thin is not None:
         add_tangents(thin[0], e.terms.kx, e.terms.kz, sides[2], slopes)

@@ -5,8 +5,6 @@ in s, in which balances are nearly linear. Steps are differences to the film bef
 rounding. Vertices change sides as those of the plain film, at the ends of their curve.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -8,6 +8,7 @@ kernels       balance as kernels
 film          the film on them: gaps, links, balance, derivatives
 line          its edge inside the cells
 balance       the film as Newton's method sees it
+newton        the driver of Newton's method
 continuation  dry guess and pseudo time
 parts         contact, gap limiter and oil, as the elements take them
 """

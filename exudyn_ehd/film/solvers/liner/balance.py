@@ -14,9 +14,9 @@ from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
-from exudyn_ehd.film.solvers.liner.line import FilmLine, GapChain
+from exudyn_ehd.film.solvers.liner.line import GapChain
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
-from exudyn_ehd.film.solvers.newton import RULE, Step, newton
+from exudyn_ehd.film.solvers.newton import RULE, Step
 from exudyn_ehd.film.solvers.steps import (
     BALANCED,
     ENDLESS,
@@ -25,7 +25,6 @@ from exudyn_ehd.film.solvers.steps import (
     ROUNDED,
     ROUNDING,
     SUCTION,
-    admit,
     factor_film,
     flow_rounding,
     newton_step,
@@ -39,7 +38,7 @@ TOUCHING = 1e-6
 
 
 class LinerBalance(LinerFilm):
-    """`newton.Balance` of a film whose gap yields to its pressure; parameters as for `LinerFilm`."""
+    """A film whose gap yields to its pressure, as `newton` sees it; parameters as for `LinerFilm`."""
 
     def __init__(self, film: FilmSolver, set_links: Callable[[], None], parts: LinerParts) -> None:
         super().__init__(film, set_links, parts)
@@ -48,26 +47,6 @@ class LinerBalance(LinerFilm):
         self.exact = self.reusable = False
         self.changes = self.taken = 0
         self.slight = self.noise = 0.0
-
-    def solve(self) -> tuple[bool, int]:
-        """Newton for the film that is asked for, from the present state and sets: (found, steps)."""
-        ok, steps = True, 0
-        if self.line is None or not self.film.work.warm:
-            # the way to a film without its line is the safer one
-            ok, steps = self.solve_with(None)
-        if self.line is None or not ok:
-            return ok, steps
-        self.film.work.warm = True
-        ok, more = self.solve_with(self.line)
-        return ok, steps + more
-
-    def solve_with(self, line: FilmLine | None) -> tuple[bool, int]:
-        """`solve` with the line inside the cells, or without."""
-        # prescribed vertices move with rotating supplies, the cavity's scaled pressure with the viscosity
-        if self.film.complementary:
-            admit(*self._sides(self.u), self.film.grid.fixed, self.film.system.cavity_pressure)
-        self.met = line
-        return self._solve_plain() if self.plain and not self.fills else newton(self)
 
     def see_cavity(self) -> None:
         """Take the line's coefficients of the film that is about to be solved; gaps and links are left as they are in
@@ -117,13 +96,13 @@ class LinerBalance(LinerFilm):
         liner rests, does not feel."""
         return -lam * self.storage_gradients()[1] if self.film.squeeze else np.zeros_like(lam)
 
-    def _solve_plain(self) -> tuple[bool, int]:
+    def solve_plain(self) -> tuple[bool, int]:
         """`newton` compiled as a whole."""
         f, w, start = self.film, self.film.work, self.reusable and self.film.work.warm
         self.reusable = self.exact = self.known_slopes = False
         ok, steps, self.exact, w.count, w.width = solve(
-            self._sides(self.u),
-            self._sides(self.trial),
+            self.sides(self.u),
+            self.sides(self.trial),
             f.grid.fixed,
             (f.system.cavity_pressure, f.vx, f.vz, self.beta),
             (self.clips, self._chooses()),
@@ -165,7 +144,7 @@ class LinerBalance(LinerFilm):
         self.slight = LEAST_PRESSURE * (abs(f.vx) + abs(f.vz))
         self.noise = flow_rounding(self.term_fields, self.rigid[2])
 
-    def _sides(self, u: FilmState) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
+    def sides(self, u: FilmState) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
         """P, fill and full of a state, as far as the film has them."""
         return (u.P, u.fill, u.full) if self.fills else (u.P, None, None)
 
@@ -179,7 +158,7 @@ class LinerBalance(LinerFilm):
         if not self.known_slopes:
             self.gradients()
         ok, w.count, w.width = factor_film(
-            self._sides(u),
+            self.sides(u),
             (self.rho, self.rho_P),
             self.term_fields,
             g.fixed,
@@ -191,10 +170,6 @@ class LinerBalance(LinerFilm):
         )
         return bool(ok)
 
-    def unknowns(self) -> int:
-        """Number of unknowns of the factor."""
-        return self.film.work.count
-
     def step(self, gap: float) -> Step:
         """Newton's step with the factor at hand, and the trial state after it; ``gap`` is the smallest one."""
         w, pc = self.film.work, self.film.system.cavity_pressure
@@ -205,7 +180,7 @@ class LinerBalance(LinerFilm):
             least = LEAST_DEFLECTION * opening
         *found, self.changes = newton_step(
             self.residual,
-            self._sides(self.u),
+            self.sides(self.u),
             (self.load_fields, self.gap_fields, self.slope_fields),
             ENDLESS,
             self.matrix[2],
@@ -213,7 +188,7 @@ class LinerBalance(LinerFilm):
             w.width,
             (self.clips, self._chooses()),
             (pc, self.cavity_load, max(least, self.slight), opening, ROUNDED * self.slight),
-            self._sides(self.trial),
+            self.sides(self.trial),
             NO_LINE if self.met is None else self.met.state,
             self.taken,
         )
@@ -225,7 +200,7 @@ class LinerBalance(LinerFilm):
         self.press(self.u.P)
         self.changes = int(
             take_step(
-                self._sides(self.u),
+                self.sides(self.u),
                 (self.load_fields, self.gap_fields, self.slope_fields),
                 ENDLESS,
                 self.matrix[2],
@@ -234,7 +209,7 @@ class LinerBalance(LinerFilm):
                 self.film.system.cavity_pressure,
                 self._chooses(),
                 max(SUCTION * peak, ROUNDED * self.slight),
-                self._sides(self.trial),
+                self.sides(self.trial),
             )
         )
         return self.changes

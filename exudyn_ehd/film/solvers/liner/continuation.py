@@ -14,7 +14,7 @@ from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.line import FilmLine
-from exudyn_ehd.film.solvers.newton import newton
+from exudyn_ehd.film.solvers.liner.newton import newton, solve, solve_with
 
 # Smallest gap of a dry guess, and the share of an oil's largest pressure that it may take at leisure.
 OPEN, MODERATE = 0.01, 0.1
@@ -28,14 +28,14 @@ def cold_start(film: LinerBalance) -> tuple[bool, int]:
     work.warm = False
     _dry_guess(film)
     if not film.fills:
-        return film.solve()
+        return solve(film)
     film.fills = False
     ok, steps = newton(film)
     film.fills, film.reusable = True, False
     if not ok:
         return False, steps
     film.all_full(np.logical_or(work.active, film.film.grid.fixed))
-    ok, more = film.solve()
+    ok, more = solve(film)
     return ok, steps + more
 
 
@@ -89,7 +89,7 @@ def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
     def attempt(extra: float, line: FilmLine | None = None) -> tuple[bool, int]:
         film.rates = rates._replace(pseudo=extra)
         film.pseudo_old[:] = _stored(film, start)
-        ok, steps = film.solve_with(line)
+        ok, steps = solve_with(film, line)
         film.rates, film.reusable = rates, film.reusable and extra == 0.0
         work.warm = work.warm or ok
         taken, given = (start, film.u) if ok else (film.u, start)

@@ -226,7 +226,7 @@ def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
         H_P[c] = s[c] * D_P[c]
     for c in range(size):
         H_r[c] = s[c] * follow[c]
-    _difference(H_r, rigid_slope.reshape(-1), out.E_r.reshape(-1))
+    combine(H_r, 1.0, rigid_slope.reshape(-1), -1.0, out.E_r.reshape(-1))
     _turn(turned, s, inverse, D_P, 0.0, out.rate_P.reshape(-1))
     _turn(turned, s, inverse, D_r, 1.0, out.rate_r.reshape(-1))
 
@@ -265,9 +265,10 @@ def _yield(x, drive, steep, follow, beta, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _difference(a, b, out):
+def combine(a, by_a, b, by_b, out):
+    """Sum of fields (k,) times factors."""
     for c in range(out.size):
-        out[c] = a[c] - b[c]
+        out[c] = by_a * a[c] + by_b * b[c]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -329,19 +330,6 @@ def smallest_of(gap_fields):
     """Smallest gap that the film sees."""
     gaps = gaps_of(gap_fields)
     return min(_smallest(gaps.H.reshape(-1)), _smallest(gaps.HF.reshape(-1)))
-
-
-@njit(cache=True, fastmath=_FAST)
-def smallest_true_gap(rigid, D):
-    """Smallest gap of the deformed surfaces, at vertices and links."""
-    n, m = D.shape
-    smallest = np.inf
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            smallest = min(smallest, rigid[0, i, j] + D[i, j])
-            smallest = min(smallest, rigid[1, i, j] + 0.5 * (D[i, j] + D[nxt, j]))
-    return smallest
 
 
 @njit(cache=True)

@@ -6,14 +6,12 @@ difference of E, up its upstream fill times its mean density. A link's flow is
 ``up f - k (P_b - P_a)``, with a Couette flux f(h) and ``k = g(h) (1 + (d / h)^2)`` with its metric.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.reynolds.balance import part, terms_of
 from exudyn_ehd.film.sensitivity.rigid import columns_of_links
-from exudyn_ehd.film.solvers.liner.elements import gaps_of, slopes_of
+from exudyn_ehd.film.solvers.liner.elements import combine, gaps_of, slopes_of
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -57,18 +55,6 @@ def _add_carriers(f, v, linked, carrier_h, fill_a, fill_b, rho_a, rho_b, by_h):
         by_h[c] += up
 
 
-@njit(cache=True, fastmath=_FAST)
-def _half_difference(a, b, out):
-    for c in range(out.size):
-        out[c] = 0.5 * (b[c] - a[c])
-
-
-@njit(cache=True, fastmath=_FAST)
-def _half_sum(a, b, out):
-    for c in range(out.size):
-        out[c] = 0.5 * (a[c] + b[c])
-
-
 @njit(cache=True)
 def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz, by):
     """by (4, n m): derivatives of the flows over links to h and d, in theta, then in z.
@@ -85,7 +71,7 @@ def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz
     lean, mean = np.empty(size), np.empty(size)
     g, g_h, c_h = of_axis(links, 0)
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        _half_difference(E[start:stop], E[there:end], lean[start:stop])
+        combine(E[start:stop], -0.5, E[there:end], 0.5, lean[start:stop])
         _conductance_gradients(
             p[start:stop], p[there:end], kx[start:stop], HF[start:stop], lean[start:stop], part(g, start, stop),
             part(g_h, start, stop), by[0, start:stop], by[1, start:stop],
@@ -101,8 +87,8 @@ def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz
             part(rho, there, end),
             by[0, start:stop],
         )
-    _half_difference(E[:e], E[1:], lean[:e])
-    _half_sum(H[:e], H[1:], mean[:e])
+    combine(E[:e], -0.5, E[1:], 0.5, lean[:e])
+    combine(H[:e], 0.5, H[1:], 0.5, mean[:e])
     g, g_h, c_h = of_axis(links, 1)
     _conductance_gradients(
         p[:e], p[1:], kz[:e], mean[:e], lean[:e], part(g, 0, e), part(g_h, 0, e), by[2, :e], by[3, :e]

@@ -1,7 +1,5 @@
 """Balance of a film on a liner; see `exudyn_ehd.film.solvers.liner.film`."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 
