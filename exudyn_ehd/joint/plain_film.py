@@ -87,7 +87,7 @@ def solve_plain(
         None,
         None,
         OilFields(y.pressure),
-        Loads(out[:6], _NO_CONTACT, out[6:10], *couette, s_theta),
+        Loads(out[:6], _NO_CONTACT, out[6:10], couette[0], couette[1], s_theta),
         parts.bearing.radial_clearance * smallest,
         None,
         parts.evaluations.count,
