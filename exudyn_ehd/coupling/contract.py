@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Protocol, SupportsInt, TypeAlias
 
@@ -82,7 +83,8 @@ class Trial:
         self.bodies = bodies
         self.motion = motion
         self.evaluation = evaluation
-        self.status = Status.NO_FILM if np.all(np.isfinite(q)) else Status.NOT_FINITE
+        # a sum is finite only if all its terms are
+        self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
         if evaluation is not None:
             self.take(evaluation)
 

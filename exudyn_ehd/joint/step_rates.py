@@ -77,18 +77,22 @@ class StepStart:
     def _expected(self) -> np.ndarray:
         return np.asarray(WEIGHTS[len(self.misses)] @ self.misses)
 
+    @functools.cached_property
+    def _largest(self) -> float:
+        """Of the places; journals have two places and two slopes, balls, whose motion is odd, three places."""
+        return float(np.abs(self._expected[: 2 + self.motion.size % 2]).max())
+
     def film_motion(self, motion: np.ndarray, time: float) -> np.ndarray:
         """Motion (10 + 2 k,) as given for the end of the step, with the rates that the film takes."""
         step, known = time - self.time, len(self.misses)
         if known == 0 or step > LARGEST_GROWTH * self.step:
             return motion
-        expected = step**2 * self._expected
-        # journals have two places and two slopes, balls, whose motion is odd, three places
-        if step * np.abs(expected[: 2 + motion.size % 2]).max() < SMALLEST_MISS * self.clearance:
+        if step**3 * self._largest < SMALLEST_MISS * self.clearance:
             return motion
-        out = motion.copy()
+        out, expected = motion.copy(), step**2 * self._expected
         out[_RATES] += expected[:4]
-        out[motion.size - expected.size + 4 :] += expected[4:]
+        if expected.size > 4:
+            out[motion.size - expected.size + 4 :] += expected[4:]
         return out
 
 
