@@ -17,9 +17,10 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import InputError, require_type
 from exudyn_ehd.storage import fingerprint
 
+FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
 # Where the modes of a bore are compared: angles, shares of the length, and the part of the largest that is rounding
 _ANGLES, _PLACES, _SAME_MODES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37]), 1e-6
 
@@ -119,6 +120,7 @@ def bore_modes_of(element: FilmElement) -> np.ndarray | None:
 
 def check_owner(joint: Joint, state: JointState) -> None:
     """Refuse a state of another joint or bearing."""
+    require_type("LubricatedJoint.restore_state: state", state, JointState, hint=FILE)
     if state.name != joint.name:
         raise InputError(
             f"LubricatedJoint.restore_state: the state is of joint '{state.name}', this one is '{joint.name}'."

@@ -230,6 +230,8 @@ def test_files_are_whole_and_foreign_ones_are_refused(tmp_path):
             ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / f"{name}.npz")
     with pytest.raises(FileNotFoundError):
         ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / "absent.npz")
+    with pytest.raises(ehd.InputError, match=r"restore_state: state must be JointState.*restart=path"):
+        system(PLAIN)[1].restore_state(good)
 
 
 def test_states_of_other_systems_are_refused():

@@ -147,3 +147,18 @@ class TestSolveFilm:
         for speed in (1.0, (1.0,), (math.nan, 0.0)):
             with pytest.raises(ehd.InputError, match="surface_speed"):
                 solve(self._gap(), surface_speed=speed)
+        for closure in (ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e4)):
+            with pytest.raises(ehd.InputError, match=r"boundary must not be below .*cavity_pressure .*got -20000 Pa"):
+                solve(self._gap(), boundary=-2e4, cavitation=closure)
+        solve(self._gap(), boundary=-2e4, cavitation=ehd.FullSommerfeld())
+        for name, wrong in {"boundary": "high", "cavitation": ehd.Gumbel, "stepped_gap": "no"}.items():
+            with pytest.raises(ehd.InputError, match=f"solve_film: {name} must be"):
+                solve(self._gap(), **{name: wrong})
+        with pytest.raises(ehd.InputError, match="boundary must have shape"):
+            solve(self._gap(), boundary=np.zeros(3))
+        with pytest.raises(ehd.InputError, match="history must be >= 0 m"):
+            solve(self._gap(), history=-self._gap(), step=1e-4, cavitation=ehd.ElrodAdams())
+        with pytest.raises(ehd.InputError, match="grid must be FilmGrid"):
+            ehd.solve_film(None, self._gap(), lubricant=self.OIL)
+        with pytest.raises(ehd.InputError, match="lubricant must be Lubricant"):
+            ehd.solve_film(self.GRID, self._gap(), lubricant=0.02)
