@@ -51,6 +51,13 @@ class TestSteady:
         force = [-(line * np.cos(film.theta)).sum() * step, -(line * np.sin(film.theta)).sum() * step]
         np.testing.assert_allclose(film.force[:2], force, rtol=2e-3)
 
+    def test_a_liner_is_displaced_by_what_the_gap_has_more(self, make_bearing):
+        b = make_bearing(bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9), cavitation=ehd.SwiftStieber())
+        film = ehd.steady(b, speed=SPEED, eccentricity_ratio=0.8)
+        rigid = b.radial_clearance * (1.0 - 0.8 * np.cos(film.theta))[:, None]
+        np.testing.assert_allclose(film.bore_displacement, film.gap - rigid, atol=1e-12)
+        assert film.bore_displacement.max() > 1e-7
+
     def test_attitude_and_load_in_every_direction(self, make_bearing):
         bearing = make_bearing(1.0, film=ehd.FiniteLength())
         reference = ehd.steady(bearing, speed=SPEED, eccentricity_ratio=0.7)
