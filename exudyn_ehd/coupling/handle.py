@@ -18,6 +18,7 @@ from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.results import JointResults
 from exudyn_ehd.coupling.record.sensors import add_sensor, reader
 from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check_owner, digest
+from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, require_number
@@ -146,6 +147,7 @@ class LubricatedJoint(JointResults):
                 f"LubricatedJoint.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
             )
         self.element.require_items(self.mbs)
+        require_end("LubricatedJoint.state", self.mbs, self.element.steps.solver)
         time, memory, begin, rows = self.element.steps.remembered(self.mbs)
         return JointState(
             name=self.name,
