@@ -95,11 +95,11 @@ class LubricatedJoint(JointResults):
     def history(self) -> JointHistory:
         """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
 
-        Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
-        current state, completed at this moment (during a run it is the start of the current step). A run that starts at
-        the end of the record goes on with it, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other
-        starts a new one, also a run at that time from the old initial values. A last state without a film is left out,
-        and a warning says why.
+        The last row is the end of the last run, during a run the start of the current step. Behind Exudyn's own
+        ``mbs.SolveDynamic`` read it before the system's state is changed (a linearisation, Assemble): it is completed
+        at this moment. A run that starts at the end of the record goes on with it, e.g. after ``SolveDynamic(...,
+        updateInitialValues=True)``; any other starts a new one, also a run at that time from the old initial values. A
+        last state without a film is left out, and a warning says why.
 
         What the film remembers follows the state, not the record: see `forget`.
         """
