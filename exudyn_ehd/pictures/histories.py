@@ -235,7 +235,8 @@ def plot_traces(
                 panel.margins(x=0.0)
             if kind in ("length", "ratio"):
                 largest = float(np.nanmax(shown(values)))
-                panel.set_ylim(0.0, max(panel.get_ylim()[1], 1.08 * largest))
+                # also of curves that were there before
+                panel.set_ylim(min(0.0, 1.08 * panel.dataLim.y0), max(panel.get_ylim()[1], 1.08 * largest, 0.0))
             if text:
                 panel.legend()
         if angle is not None:

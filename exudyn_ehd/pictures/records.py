@@ -36,7 +36,7 @@ class Film:
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
     bore_displacement : (n, m) array or None
-        Of a flexible bore, m, positive outward; None for a rigid one.
+        Of a flexible bore or a liner, m, positive outward; None for a rigid one.
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     bearing : JournalBearing

@@ -25,7 +25,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush
-from exudyn_ehd.status import EHDError, FilmError, InputError, require_number
+from exudyn_ehd.status import EHDError, FilmError, InputError, require_number, require_vector
 from exudyn_ehd.studies.film_errors import SCALES, measure_motions, motion_at, scale_of, time_of_sweep
 from exudyn_ehd.studies.richardson import converged
 from exudyn_ehd.tables import format_seconds
@@ -200,7 +200,9 @@ def _require(
         raise InputError(f"recommend: expected a JournalBearing, got {bearing!r}.")
     if eccentricity_ratio is None:
         raise InputError("recommend: a bearing needs eccentricity_ratio, a number or (lowest, highest).")
-    low, high = eccentricity_ratio if isinstance(eccentricity_ratio, tuple) else (eccentricity_ratio,) * 2
+    if isinstance(eccentricity_ratio, (int, float, np.number)):
+        eccentricity_ratio = (eccentricity_ratio, eccentricity_ratio)
+    low, high = require_vector("recommend: eccentricity_ratio", eccentricity_ratio, 2)
     if not 0.0 <= low <= high < 1.0:
         raise InputError(
             f"recommend: eccentricity_ratio must be within 0 and 1, lowest first, got {eccentricity_ratio!r}."

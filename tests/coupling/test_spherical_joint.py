@@ -1,5 +1,6 @@
 """A ball joint in Exudyn: kinematics, Jacobian, balance, frames, energy, Exudyn's ideal joint, what is refused."""
 
+import dataclasses
 import itertools
 
 import exudyn as exu
@@ -311,3 +312,19 @@ def test_input_is_checked():
     for options in ({"stepControl": ehd.StepControl(error=0.02)}, {"until_periodic": ehd.UntilPeriodic(period=0.002)}):
         with pytest.raises(ehd.InputError, match="joint 'ball' holds a ball"):
             ehd.SolveDynamic(mbs, settings, **options)
+
+
+@pytest.mark.parametrize("velocity", [(0.0, 0.0, -0.01), (0.01, 0.0, 0.0)])
+def test_newtons_method_comes_back_from_behind_the_end_of_a_pressure_law(velocity):
+    """First guesses squeeze faster than the oil's law carries, as at journals."""
+    oil = ehd.Lubricant(viscosity=0.1, pressure_law=ehd.RoelandsPressure(coefficient=1e-8))
+    ball = dataclasses.replace(BALL, lubricant=oil)
+    mbs = scenes.new_system()
+    arm = mbs.CreateRigidBody(
+        inertia=InertiaCuboid(7800, [0.06, 0.06, 0.06]),
+        initialVelocity=list(velocity),
+        nodeType=scenes.NODE_TYPES["Rxyz"],
+    )
+    joint = ehd.CreateLubricatedSphericalJoint(mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], ball, axis=[0, 0, -1])
+    assert run(mbs, 1e-3, 20)
+    assert joint.history.time.size >= 21 and np.all(np.isfinite(joint.history.force))

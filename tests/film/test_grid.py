@@ -113,6 +113,21 @@ def test_validation(spec, options):
         spec(96, 10)
 
 
+@pytest.mark.parametrize(
+    "options",
+    [{"n": 0}, {"n": 24.0}, {"n_z": 0}, {"n_z": True}, {"stretch": -0.5}, {"stretch": 1.5}, {"stretch": float("nan")}],
+)
+def test_grids_of_no_kind_are_refused(options):
+    given = {"n": 24, "n_z": 6} | options
+    n, name = given.pop("n"), next(iter(options))
+    with pytest.raises(InputError, match=f"bearing_grid: {name}"):
+        bearing_grid(0.03, 0.06, n, **given)
+    with pytest.raises(InputError, match=f"slider_grid: {name}"):
+        slider_grid(0.03, 0.06, n, **given)
+    with pytest.raises(InputError, match="sealed_sides must be True or False"):
+        slider_grid(0.03, 0.06, 24, 6, sealed_sides="no")
+
+
 def test_smallest_grids_are_accepted():
     assert FiniteLength(n_theta=16, n_z=4, stretch=0.0).n_theta == 16
     assert ShortBearing(n_theta=np.int64(16), n_z=4, stretch=0.95).n_z == 4

@@ -63,6 +63,15 @@ def test_traces_over_time_and_angle(history):
     assert list(np.diff(ax.get_xticks())[:3]) == [45.0] * 3
 
 
+def test_traces_below_zero_are_seen(history):
+    history.axial_position = -3e-6 + 1e-6 * np.sin(2.0 * np.pi * history.time / 0.02)
+    (ax,) = plot_traces(history, "axial_position").axes
+    low, high = ax.get_ylim()
+    assert low < -4.0 and high == 0.0
+    plot_traces(history, "minimum_gap", ax=ax)
+    assert ax.get_ylim()[0] == low and ax.get_ylim()[1] > 1e6 * history.minimum_gap.max()
+
+
 def test_traces_refuse_what_can_not_be_drawn(history):
     with pytest.raises(InputError, match="scalars of a history, got 'force'; known are axial_position"):
         plot_traces(history, ["force"])

@@ -150,6 +150,9 @@ def test_a_film_that_runs_dry_has_no_errors():
 def test_refuses():
     with pytest.raises(InputError, match="eccentricity_ratio"):
         ehd.recommend(_bearing())
+    for wrong in ("high", [0.5], [0.9, 0.5], float("nan")):
+        with pytest.raises(InputError, match="recommend: eccentricity_ratio must be"):
+            ehd.recommend(_bearing(), eccentricity_ratio=wrong)
     with pytest.raises(InputError, match="quantity"):
         ehd.recommend(_bearing(), quantity="colour", eccentricity_ratio=0.5)
     with pytest.raises(InputError, match="supply"):

@@ -358,30 +358,32 @@ class AcceptedSteps:
     def tell(self, mbs: exu.MainSystem) -> None:
         """Log the line of the run that has ended, once; bring its record to its file, if it has one."""
         self.record.write()
-        if self._told or not summary.is_on():
+        if self._told:
             return
         self._told = True
         history = self.history(mbs)
-        if history.time.size > 1:
+        if summary.is_on() and history.time.size > 1:
             implicit = solver_state.is_implicit(self.solver)
             summary.tell(self.film.failures.name, self.film.model.bearing, history, in_time=implicit)
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
-        """The record, completed by the current state if that is later than the last step; warns if it has no film."""
+        """The record, completed by the end of the run or the current state if that is later than the last step.
+
+        Warns if it has no film.
+        """
         if self.solver is not None and self.is_idle:
             self.tell(mbs)
-        final = None
-        if (
-            complete
-            and mbs.systemIsConsistent
-            and (time := mbs.systemData.GetTime(self._accepted)) > self.record.last_time
-        ):
-            trial = self.film.look(mbs, time, self._accepted)
-            final = self.film.row(time, trial)
-            if final is None and self.is_idle:
-                warnings.warn(
-                    f"{self.film.failures.no_film(time, trial, explicit=False)} The run ended there: history leaves "
-                    "this state out.",
-                    stacklevel=3,
-                )
-        return self.record.snapshot(final)
+        if complete and mbs.systemIsConsistent:
+            self._look_at_end(mbs)
+        return self.record.snapshot(self.record.end)
+
+    def _look_at_end(self, mbs: exu.MainSystem) -> None:
+        """Take the row of the state now, unless it is known or recorded, or was changed since the run."""
+        time, solver = mbs.systemData.GetTime(self._accepted), self.solver if self.is_idle else None
+        known = solver is not None and (self.record.end is not None or time != solver.it.currentTime)
+        if known or time <= self.record.last_time:
+            return
+        trial = self.film.look(mbs, time, self._accepted)
+        self.record.end = self.film.row(time, trial)
+        if self.record.end is None and self.is_idle:
+            self.film.failures.warn_of_end(time, trial)

@@ -15,7 +15,7 @@ from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above, seized
 from exudyn_ehd.joint.balance.overload import DEEPEST, HIGHEST_MEAN, HIGHEST_PEAK, PRESSED_THROUGH, mean_pressure
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status
+from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 
 # Mean over peak pressure below which no film is.
 SHARE = 0.01
@@ -57,6 +57,11 @@ class Failures:
         if explicit:
             message += " An explicit solver can't repeat a step: use smaller ones, or an implicit solver."
         return FilmError(f"LubricatedJoint '{self.name}' {message}")
+
+    def warn_of_end(self, time: float, trial: Trial) -> None:
+        """Warn that the state at which a run has ended has no film."""
+        text = f"{self.no_film(time, trial, explicit=False)} The run ended there: history leaves this state out."
+        warn_user(text, UserWarning)
 
     def no_mass(self) -> InputError:
         """Modes without mass under an explicit solver, which would integrate their numerical mass."""

@@ -39,6 +39,8 @@ class Record:
         # rows that are settled, thinned ones in memory or restored ones on their way to the file
         self._kept: list[np.ndarray] = []
         self._thinnest = math.nan
+        # the last state, which no further step has brought
+        self.end: np.ndarray | None = None
 
     def thin(self, rule: Thinning) -> None:
         """Drop rows by a rule from now on."""
@@ -62,6 +64,7 @@ class Record:
 
     def append(self, row: np.ndarray) -> None:
         """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
+        self.end = None
         if self._count:
             last = self._rows[self._count - 1, TIME]
             if row[TIME] < last:
@@ -77,7 +80,7 @@ class Record:
 
     def clear(self) -> None:
         """Begin a new record."""
-        self._count, self._thinnest, self._kept = 0, math.nan, []
+        self._count, self._thinnest, self._kept, self.end = 0, math.nan, [], None
         if self._thinner is not None:
             self._thinner.begin_anew()
         if self._disk is not None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, require_system
 from exudyn_ehd.pictures.records import Target
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import InputError, require_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -273,6 +273,7 @@ class RotorResult:
             For another system or speed.
         """
         require_system("RotorResult.place", mbs)
+        require_number("RotorResult.place: speed", speed, "rad/s")
         k = int(np.argmin(np.abs(self.speeds - speed)))
         if abs(self.speeds[k] - speed) > 1e-9 * abs(speed):
             raise InputError(f"RotorResult.place: speed must be one of the result's, got {speed!r}; see .speeds.")

@@ -1,4 +1,4 @@
-"""Newton's absolute tolerance in the measure of the films' and bushes' forces.
+"""Newton's tolerances in the measure of the films' and bushes' forces.
 
 Exudyn's Newton method ends where the residual is a share of the step's first one, or below an absolute tolerance. A
 start close to the solution makes the first residual so small that a share of it is below what positions resolve: metres
@@ -6,6 +6,10 @@ from the origin, or under meganewtons, a film's force has the rounding of the po
 itself and more. The step would be halved for nothing. From Exudyn's own start the first residual is about as large as
 the forces, so that its tolerance is a share of these; here too, with a tenth of it. The forces within a nodal bush, in
 a film or not, have the rounding of its displacements times the stiffness of its elements.
+
+Where no start is known, as in the first step, the first positions may lie deep in a contact, with a residual millions
+of times the forces: a share of it would let any state pass. The relative tolerance counts from no more than a hundred
+times the films' forces.
 """
 
 from __future__ import annotations
@@ -25,10 +29,12 @@ from exudyn_ehd.status import Status
 
 # Share of the relative tolerance times the films' forces.
 SHARE = 0.1
+# First residual over the films' forces from which on it says nothing of them.
+OUT_OF_PROPORTION = 100.0
 
 
 class ForceTolerance:
-    """Sets the absolute tolerance of a running solver, which is its own: settings stay.
+    """Sets the tolerances of a running solver, which are its own: settings stay.
 
     Parameters
     ----------
@@ -45,22 +51,37 @@ class ForceTolerance:
         self.films = films
         self.bushes: list[tuple[BushFunctions, np.ndarray]] = []
         self.given: float | None = None
+        self.relative, self.first, self.level = 0.0, 0.0, 0.0
 
     def set(self, mbs: exu.MainSystem, solver: Any) -> None:
         """At the start of a step, where the films were evaluated last at the end of the step before."""
         newton = solver.newton
         if self.given is None:
-            self.given = newton.absoluteTolerance
+            self.given, self.relative = newton.absoluteTolerance, newton.relativeTolerance
             self.bushes = _bushes(mbs)
+        newton.relativeTolerance = self.relative
         # mode 1 measures coordinates
         if newton.residualMode == 0:
-            forces = [force for film in self.films for force in _force(film.last)]
-            level = SHARE * newton.relativeTolerance * math.hypot(*forces)
+            self.level = self._forces()
+            level = SHARE * newton.relativeTolerance * self.level
             if self.bushes:
                 state = mbs.systemData.GetSystemStateDict(exu.ConfigurationType.StartOfStep, True)
                 reach = abs(state["ODE2Coords"]) + solver.it.currentStepSize * abs(state["ODE2Coords_t"])
                 level = max(level, math.hypot(*(bush.equations.rounding(reach[at]) for bush, at in self.bushes)))
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
+
+    def limit(self, solver: Any, iteration: int) -> None:
+        """Before an iteration of Newton's method, where the films were evaluated last in the one before."""
+        newton = solver.newton
+        if self.given is None or newton.residualMode != 0:
+            return
+        if iteration == 1:
+            self.first = solver.conv.residual
+        allowed = OUT_OF_PROPORTION * max(self._forces(), self.level)
+        newton.relativeTolerance = self.relative * min(1.0, allowed / self.first) if self.first > 0.0 else self.relative
+
+    def _forces(self) -> float:
+        return math.hypot(*(force for film in self.films for force in _force(film.last)))
 
 
 def free_bushes(mbs: exu.MainSystem) -> list[BushFunctions]:

@@ -97,7 +97,9 @@ class GapLimit:
         if last.status == Status.NO_PRESSURE and bearing.yielding is None:
             self.behind[film] = last.bodies
         elif film in self.behind:
-            return _allowed_towards(self.behind[film], last.bodies, after, 0.5 * bearing.length)
+            half = 0.5 * bearing.length
+            levers = np.array(getattr(bearing, "levers", (1.0, 1.0, half, half)))
+            return _allowed_towards(self.behind[film], last.bodies, after, levers)
         return 1.0
 
 
@@ -137,9 +139,8 @@ def _allowed_in_profile(bore: BoreGap, before: np.ndarray, after: np.ndarray) ->
     return float(np.min((gaps - SHARE * smallest)[beyond] / (gaps - ends)[beyond], initial=1.0))
 
 
-def _allowed_towards(other: np.ndarray, before: np.ndarray, after: np.ndarray, lever: float) -> float:
+def _allowed_towards(other: np.ndarray, before: np.ndarray, after: np.ndarray, levers: np.ndarray) -> float:
     """Part of a step between two motions that goes half of the way to the velocities of a third one, 1 if none does."""
-    levers = np.array([1.0, 1.0, lever, lever])
     way, step = levers * (other - before)[4:8], levers * (after - before)[4:8]
     half, along = 0.5 * float(way @ way), float(way @ step)
     return half / along if along > half else 1.0

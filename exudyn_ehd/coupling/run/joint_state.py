@@ -15,15 +15,17 @@ from exudyn_ehd.coupling.element.modal import ModalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.sensors import add_sensor
+from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import InputError, require_number, require_type
 from exudyn_ehd.storage import fingerprint
 
+FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
 # Where the modes of a bore are compared: angles, shares of the length, and the part of the largest that is rounding
 _ANGLES, _PLACES, _SAME_MODES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37]), 1e-6
 
@@ -96,11 +98,11 @@ class Joint:
     def history(self) -> JointHistory:
         """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
 
-        Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
-        current state, completed at this moment (during a run it is the start of the current step). A run that starts at
-        the end of the record goes on with it, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other
-        starts a new one, also a run at that time from the old initial values. A last state without a film is left out,
-        and a warning says why.
+        The last row is the end of the last run, during a run the start of the current step. Behind Exudyn's own
+        ``mbs.SolveDynamic`` read it before the system's state is changed (a linearisation, Assemble): it is completed
+        at this moment. A run that starts at the end of the record goes on with it, e.g. after ``SolveDynamic(...,
+        updateInitialValues=True)``; any other starts a new one, also a run at that time from the old initial values. A
+        last state without a film is left out, and a warning says why.
 
         What the film remembers follows the state, not the record: see `forget`.
         """
@@ -117,6 +119,7 @@ class Joint:
                 "first."
             )
         self.element.require_items(self.mbs)
+        require_end(f"{type(self).__name__}.state", self.mbs, self.element.steps.solver)
         time, memory, begin, rows = self.element.steps.remembered(self.mbs)
         return JointState(
             name=self.name,
@@ -210,6 +213,7 @@ def bore_modes_of(element: FilmElement) -> np.ndarray | None:
 
 def check_owner(joint: Joint, state: JointState) -> None:
     """Refuse a state of another joint or bearing."""
+    require_type("LubricatedJoint.restore_state: state", state, JointState, hint=FILE)
     if state.name != joint.name:
         raise InputError(
             f"LubricatedJoint.restore_state: the state is of joint '{state.name}', this one is '{joint.name}'."

@@ -71,6 +71,7 @@ class SystemState:
         finished = solver_state.is_finished(solver)
         configuration = exu.ConfigurationType.Current if finished else exu.ConfigurationType.StartOfStep
         data, algorithmic = mbs.systemData, None
+        solver_state.require_end("SystemState", mbs, solver)
         if isinstance(solver, exu.MainSolverImplicitSecondOrder):
             implicit: Any = solver
             last = implicit.GetAAlgorithmic if finished else implicit.GetStartOfStepStateAAlgorithmic

@@ -264,7 +264,7 @@ class _Newton:
         data.SetAECoordinates([0.0] * self.matrix.constraints)
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
-        error = first = self.residual(solver, mbs, settings)
+        error = first = solver.conv.residual = self.residual(solver, mbs, settings)
         if turn > 0:
             # a contact has opened or closed
             self.factor = None
@@ -289,7 +289,7 @@ class _Newton:
             self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
             previous, error = error, self.residual(solver, mbs, settings)
-            if error <= max(solver.newton.absoluteTolerance, newton.relativeTolerance * first):
+            if error <= max(solver.newton.absoluteTolerance, solver.newton.relativeTolerance * first):
                 self.run.steps += 1
                 self.baseline = self.baseline or iteration
                 self.excess += iteration - self.baseline

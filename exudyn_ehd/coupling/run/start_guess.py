@@ -92,6 +92,7 @@ class StartGuess:
         if solver is not self.old_solver and isinstance(solver, exu.MainSolverImplicitSecondOrder):
             if iteration > 0:
                 self.limit.shorten(mbs, self.additive)
+                self.tolerance.limit(solver, iteration)
             else:
                 if discontinuous == 0:
                     self._set_start(mbs, solver)

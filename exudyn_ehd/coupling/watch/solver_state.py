@@ -9,6 +9,8 @@ from typing import Any, TypeAlias, TypeVar, cast
 
 import exudyn as exu
 
+from exudyn_ehd.status import InputError
+
 Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | exu.MainSolverExplicit
 Stored: TypeAlias = tuple[Solver | None, Solver | None]
 # Before the first run: not even no solver is the same object.
@@ -64,6 +66,17 @@ def is_implicit(solver: Solver | None) -> bool:
 def is_finished(solver: Solver | None) -> bool:
     """Whether the run of ``solver`` has come to its end; a failed one never does."""
     return solver is None or bool(solver.output.finishedSuccessfully)
+
+
+def require_end(where: str, mbs: exu.MainSystem, solver: Solver | None) -> None:
+    """Raise `InputError` where a system is not as a run of ``solver`` that has come to its end has left it."""
+    time = mbs.systemData.GetTime(exu.ConfigurationType.Current)
+    if solver is not None and is_finished(solver) and time != solver.it.currentTime:
+        raise InputError(
+            f"{where}: the system is at t = {time:.9g} s, and its last run has ended at {solver.it.currentTime:.9g} s: "
+            "its state was changed since (ComputeLinearizedSystem, Assemble, another solve); store it right behind the "
+            "run."
+        )
 
 
 def can_reject_step(solver: Solver | None) -> bool:

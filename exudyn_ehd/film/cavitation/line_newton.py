@@ -34,6 +34,8 @@ MOST_STEPS = 100
 # What a step may leave of s and of pressures over the peak. It is about the step itself times the change of s since its
 # factor, or times its ratio to the step before. Of the first step with a factor s alone counts: all else is linear.
 LEFT_OF_LINE, LEFT, LEFT_AT_ONCE = 1e-12, 1e-14, 1e-13
+# The same of pressures from this step on: in some films rounding is more than LEFT.
+LATE, LEFT_LATE = 3, 1e-13
 # Share of the largest flow that balances may lack before another step follows, in thick films a rounding of the peak.
 UNBALANCED = 5e-13
 # Steps over the peak that leave more than its rounding: those from other films, far larger ones.
@@ -169,7 +171,7 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
         ok, kept = factor_line(links, line, factor, count, width, first, KEPT_ROWS, 0.0, 1.0)
         if not ok:
             return False, step, count, width, 0.0
-        in_line = in_film = 0.0
+        in_line, in_film, least = 0.0, 0.0, LEFT if step < LATE else LEFT_LATE
         for reuse in range(MOST_REUSES + 1):
             stale = line_rows(lack, line, number, order, count, active, x) if reuse > 0 else kept
             solve_ldl_one(band, inv_diag, count, width, x)
@@ -178,14 +180,14 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
             stale = max(stale, changed)
             lacks(links, p, lack)
             if reuse == 0:
-                done = in_line * stale <= LEFT_AT_ONCE and in_film * kept <= LEFT and in_film <= LARGE
+                done = in_line * stale <= LEFT_AT_ONCE and in_film * kept <= least and in_film <= LARGE
             else:
                 rate = in_line / last_line if last_line > 0.0 else 0.0
                 if reuse == 1:
                     rate = max(stale, rate)
                 else:
                     rate = min(stale, CAREFUL * max(rate, in_film / last_film if last_film > 0.0 else 0.0))
-                done = in_film * rate <= LEFT and in_line * rate <= LEFT_OF_LINE
+                done = in_film * rate <= least and in_line * rate <= LEFT_OF_LINE
             if step <= PATIENT and in_line > FOLLOWED:
                 changes += relax_line(links, line, active, lack, p)
             if done and changes == 0:

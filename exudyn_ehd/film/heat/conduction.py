@@ -55,11 +55,12 @@ class Walls:
 
         return at_points(np.array([temperature, *self.across]))
 
-    def numbers(self) -> dict[str, float]:
-        """Mean temperatures at the film, K, of the walls that conduct, and the clearance, m."""
+    def numbers(self, area: np.ndarray) -> dict[str, float]:
+        """Mean temperatures at the film, whose vertices have areas (n, m), K, of walls that conduct; clearance, m."""
         out = {"clearance": self.clearance}
         if self.across is not None:
-            out["bush_temperature"], out["journal_temperature"] = np.mean(self.across[1:], axis=(1, 2)).tolist()
+            means = np.tensordot(self.across[1:], area / area.sum(), 2)
+            out["bush_temperature"], out["journal_temperature"] = means.tolist()
         if self.bush is not None:
             out["bush_temperature"] = float(np.mean(self.bush[:, 0]))
         if self.journal is not None:

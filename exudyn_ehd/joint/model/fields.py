@@ -33,7 +33,7 @@ class FilmFields(JointFilm, FilmPictures):
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
     bore_displacement : (n, m) array or None
-        Of a flexible bore, m, positive outward; None for a rigid one.
+        Of a flexible bore or a liner, m, positive outward; None for a rigid one.
     contact_pressure : (n, m) array or None
         Of asperities or wall, Pa; None without contact.
     wear_depth : (n, m) array or None
@@ -67,6 +67,8 @@ def film_record(film: SolvedFilm) -> Film:
     """What both `FilmFields` and a steady result hold of a solved film, copied."""
     film.require_current()
     solver, grid, temperature, bearing = film.solver, film.grid, film.temperature, film.parts.bearing
+    liner, bore = film.parts.liner, film.bore
+    yields = bore.displacement if bore is not None else None if liner is None else liner.deflection
     return Film(
         theta=grid.x.copy(),
         z=grid.z * grid.reference_length,
@@ -76,7 +78,7 @@ def film_record(film: SolvedFilm) -> Film:
         fill=solver.fill.copy() if solver.closure.conserves_mass else None,
         temperature=temperature.copy() if isinstance(temperature, np.ndarray) else temperature,
         walls=film.walls,
-        bore_displacement=None if film.bore is None else film.bore.displacement * bearing.radial_clearance,
+        bore_displacement=None if yields is None else yields * bearing.radial_clearance,
         force=film.loads.wrench[:3].copy(),
         moment=film.loads.wrench[3:].copy(),
         bearing=bearing,

@@ -67,12 +67,12 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         ``leakage_upper``, ``contact_load`` (N, carried by contact), ``contact_torque`` (Nm, its friction on the
         journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
         ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
-        also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` (K, mean) and
-        ``peak_temperature`` (K), with walls that conduct or two temperatures across the film ``bush_temperature`` and
-        ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what they have grown by), with
-        a liner or a flexible bore ``bore_displacement`` (m, the largest).
+        also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` (K, mean over the
+        area) and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
+        ``bush_temperature`` and ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what
+        they have grown by), with a liner or a flexible bore ``bore_displacement`` (m, the largest).
     """
-    p, w = film.parts, film.journal
+    p, w, area = film.parts, film.journal, film.grid.area
     R = p.grid.reference_length
     torque_scale = film.scales.shear * R**2
     angle, z = minimum_place(film)
@@ -103,11 +103,11 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     if p.supply is not None:
         out["supply_flow"] = float(supply_flows(film).sum())
     if film.temperature is not None:
-        out["film_temperature"] = float(np.mean(film.temperature))
+        out["film_temperature"] = float(np.average(np.broadcast_to(film.temperature, area.shape), weights=area))
         T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
         out["peak_temperature"] = float(np.max(T))
     if film.walls is not None:
-        out |= film.walls.numbers()
+        out |= film.walls.numbers(area)
     if p.liner is not None:
         out["bore_displacement"] = float(np.abs(p.liner.deflection).max()) * p.bearing.radial_clearance
     return out

@@ -71,7 +71,7 @@ class SphericalBearing:
     contact: RegularisedWall | None = None
 
     # what a joint's watches ask of every bearing
-    bush = thermal = asperity = roughness = wear = None
+    bush = yielding = thermal = asperity = roughness = wear = None
     profiles = supply = ()
     levers = (1.0, 1.0, 1.0, 0.0)
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import SwiftStieber, place_line
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
+from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
@@ -17,7 +18,18 @@ from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.joint.model.rheology import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
 from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_plausible, require_vector
+from exudyn_ehd.status import (
+    FilmError,
+    InputError,
+    Status,
+    require_bool,
+    require_number,
+    require_plausible,
+    require_type,
+    require_vector,
+)
+
+CLOSURES = (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,21 +141,20 @@ def solve_film(
     >>> round(film.load)  # N
     4421
     """
-    gap = np.asarray(gap, dtype=float)
+    _check_kinds(grid, lubricant, cavitation, stepped_gap)
     closure = place_line(SwiftStieber() if cavitation is None else cavitation, True)
+    gap = _require_field("gap", gap, grid)
+    gap_rate = None if gap_rate is None else _require_field("gap_rate", gap_rate, grid)
+    history = None if history is None else _require_field("history", history, grid)
+    boundary = _require_field("boundary", boundary, grid)
     _check_film(grid, gap, gap_rate, closure, boundary, history, step)
-    if lubricant.shear_law is not None:
-        raise InputError(
-            f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs "
-            "the sliding speed of a JournalBearing (steady)."
-        )
     speed = require_vector("solve_film: surface_speed", surface_speed, 2, "m/s")
     c, R = float(np.exp(np.mean(np.log(gap)))), grid.reference_length
     scale = 12.0 * lubricant.viscosity * R**2 / c**2
     H = gap / c
-    rate, mass = None if gap_rate is None else np.asarray(gap_rate) / c, None
+    rate, mass = None if gap_rate is None else gap_rate / c, None
     if history is not None:
-        mass = np.asarray(history) / c
+        mass = history / c
         rate = (H - mass) / step
     law = transform_law(lubricant)
     solver = _any_gap_solver(grid, closure, law, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
@@ -151,7 +162,7 @@ def solve_film(
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
     if rate is not None:
         solver.H_t[:] = rate
-    known = [np.asarray(p, dtype=float) for p in (boundary, closure.cavity_pressure)]
+    known = [boundary, np.asarray(closure.cavity_pressure)]
     boundary, cavity = known if law is None else (law.transform(p) for p in known)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
     solver.coarse = None
@@ -191,25 +202,55 @@ def _any_gap_solver(
     return solver
 
 
+def _check_kinds(grid: object, lubricant: Lubricant, cavitation: object, stepped_gap: bool) -> None:
+    require_type("solve_film: grid", grid, FilmGrid, hint="make it by bearing_grid or slider_grid.")
+    require_type("solve_film: cavitation", cavitation, *CLOSURES, type(None))
+    require_bool("solve_film: stepped_gap", stepped_gap)
+    require_type("solve_film: lubricant", lubricant, Lubricant)
+    if lubricant.shear_law is not None:
+        raise InputError(
+            f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs "
+            "the sliding speed of a JournalBearing (steady)."
+        )
+
+
+def _require_field(name: str, values: float | np.ndarray, grid: FilmGrid) -> np.ndarray:
+    """Finite values (n, m); of the boundary also a single one."""
+    try:
+        field_ = np.asarray(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"solve_film: {name} must be an array of numbers {grid.shape}, got {values!r}.") from None
+    if field_.shape != grid.shape and (name != "boundary" or field_.ndim):
+        raise InputError(f"solve_film: {name} must have shape {grid.shape}, got {field_.shape}.")
+    if not np.all(np.isfinite(field_)):
+        raise InputError(
+            f"solve_film: {name} must be finite, got {np.count_nonzero(~np.isfinite(field_))} that are not."
+        )
+    require_plausible(f"solve_film: {name}", f"up to {np.max(np.abs(field_)):g}", field_)
+    return field_
+
+
 def _check_film(
     grid: FilmGrid,
     gap: np.ndarray,
     gap_rate: np.ndarray | None,
     closure: Closure,
-    boundary: float | np.ndarray,
+    boundary: np.ndarray,
     history: np.ndarray | None,
     step: float,
 ) -> None:
-    if gap.shape != grid.shape or not np.all(np.isfinite(gap)) or gap.min() <= 0.0:
-        raise InputError(f"solve_film: gap must be finite, > 0 m and of shape {grid.shape}, got shape {gap.shape}.")
-    for name, field_ in (("gap_rate", gap_rate), ("history", history)):
-        if field_ is not None and np.shape(field_) != grid.shape:
-            raise InputError(f"solve_film: {name} must have shape {grid.shape}, got {np.shape(field_)}.")
-    for name, given in (("gap", gap), ("gap_rate", gap_rate), ("history", history), ("boundary", boundary)):
-        if given is not None:
-            require_plausible(f"solve_film: {name}", f"up to {np.max(np.abs(given)):g}", given)
+    if gap.min() <= 0.0:
+        raise InputError(f"solve_film: gap must be > 0 m, got {gap.min():g}.")
+    lowest = float(np.broadcast_to(boundary, grid.shape)[grid.fixed].min(initial=np.inf))
+    if closure.cavity_pressure > lowest:
+        raise InputError(
+            f"solve_film: boundary must not be below {type(closure).__name__}.cavity_pressure "
+            f"({closure.cavity_pressure:g} Pa), got {lowest:g} Pa; all are gauge pressures, lower the cavity pressure."
+        )
     if history is None:
         return
+    if history.min() < 0.0:
+        raise InputError(f"solve_film: history must be >= 0 m, got {history.min():g}; it is FilmResult.content.")
     require_number("solve_film: step", step, "s", above=0.0, hint="it is the time since the history.")
     if not closure.conserves_mass:
         raise InputError(

@@ -84,7 +84,7 @@ class SteadyResult(Film, FilmPictures):
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
     bore_displacement : (n, m) array or None
-        Of a flexible bore, m, positive outward; None for a rigid one.
+        Of a flexible bore or a liner, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
         Of a flexible bore, m.
     faces : ThrustResult or None

@@ -44,7 +44,8 @@ class StribeckResult:
     hersey : (n,) array
         mu omega / (load / (2 R L)), dimensionless, mu the lubricant's own ``viscosity``.
     film_temperature, bore_displacement : (n,) arrays
-        Mean of the film, K, nan for an isothermal bearing; of a liner or flexible bore, m, the largest, 0 for others.
+        Mean over the film's area, K, nan for an isothermal bearing; of a liner or flexible bore, m, the largest, 0 for
+        others.
     position : (n, 2) array
         x, y of the journal axis, m.
 

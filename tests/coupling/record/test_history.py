@@ -6,6 +6,7 @@ import pytest
 import scenes
 import toy
 
+import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record.history import Quantity
 from exudyn_ehd.status import FilmError, InputError, Status
 
@@ -138,6 +139,24 @@ def test_history_before_and_after_assemble():
     assert len(joint.history.time) == 0
     mbs.Assemble()
     assert joint.history.time.tolist() == [0.0]
+
+
+def test_a_history_is_that_of_the_run_whatever_is_done_to_the_system_behind_it():
+    mbs, joint, _ = scene(toy.ToyFilm())
+    mbs.Assemble()
+    assert len(joint.history.time) == 1
+    ehd.SolveDynamic(mbs, scenes.settings(0.001, 10))
+    mbs.ComputeLinearizedSystem()
+    told = joint.history
+    assert told.time[-1] == 0.001 and len(told.time) == 11
+    q = mbs.systemData.GetODE2Coordinates()
+    mbs.systemData.SetODE2Coordinates((0.0 * np.array(q)).tolist())
+    mbs.Assemble()
+    np.testing.assert_array_equal(joint.history.motion, told.motion)
+    mbs.SolveDynamic(scenes.settings(0.0005, 5))
+    assert joint.history.time[-1] == 0.0005 and len(joint.history.time) == 6
+    mbs.Reset()
+    assert len(joint.history.time) == 6
 
 
 def test_reading_between_steps_changes_nothing():

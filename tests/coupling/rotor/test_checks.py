@@ -96,6 +96,9 @@ def test_results_refuse_what_they_have_not():
         result.unbalance_response({body: 1e-4}).amplitude("middle")
     with pytest.raises(ehd.InputError, match="speed must be one of"):
         result.place(mbs, 2.0 * SPEED)
+    for wrong in (np.nan, np.inf, None):
+        with pytest.raises(ehd.InputError, match=r"place: speed must be"):
+            result.place(mbs, wrong)
     with pytest.raises(ehd.InputError, match="of 7 coordinates, got one of 21"):
         result.place(three_bodies(fixed)[0], SPEED)
 

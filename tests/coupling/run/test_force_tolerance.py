@@ -1,4 +1,4 @@
-"""Newton's tolerance against the rounding of positions: far from the origin, under meganewtons."""
+"""Newton's tolerance: rounding of positions far from the origin, under meganewtons; first guesses within a wall."""
 
 import math
 
@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 import scenes
-from exudyn.utilities import RigidBodyInertia
+from exudyn.utilities import InertiaCylinder, RigidBodyInertia
 
 import exudyn_ehd as ehd
 from tests.sampling import sample
@@ -141,3 +141,35 @@ def test_a_housing_that_falls_with_its_nodal_bush_halves_no_step(solve, place):
     for body in bodies:
         speed = mbs.GetObjectOutputBody(body, exu.OutputVariableType.Velocity, [0, 0, 0])[1]
         assert speed == pytest.approx(-9.81 * steps * step, rel=1e-6)
+
+
+@pytest.mark.parametrize(("load", "onset"), [(200.0, 5e-7), (400.0, 5e-7)])
+def test_a_first_residual_deep_in_a_contact_lets_no_state_pass(load, onset):
+    """A load that starts at once moves the first guess of a coarse step through the wall, where forces are millions of
+    times those of the step."""
+    forces = []
+    for tolerance in (1e-6, 1e-11):
+        bearing = ehd.JournalBearing(
+            journal_radius=0.01,
+            length=0.01,
+            radial_clearance=7e-6,
+            lubricant=ehd.Lubricant(viscosity=0.02),
+            film=ehd.FiniteLength(n_theta=48, n_z=6),
+            contact=ehd.RegularisedWall(onset=onset),
+        )
+        mbs = scenes.new_system()
+        shaft = mbs.CreateRigidBody(
+            inertia=InertiaCylinder(7800, 0.06, 0.01, 2),
+            initialAngularVelocity=[0, 0, 300.0],
+            nodeType=exu.NodeType.RotationRxyz,
+        )
+        mbs.CreateForce(itemNumber=shaft, loadVector=[0, -load, 0])
+        joint = ehd.CreateLubricatedJoint(
+            mbs, "journal", [mbs.CreateGround(), shaft], [0, 0, 0], [0, 0, 1], bearing, axial=ehd.Held()
+        )
+        mbs.Assemble()
+        settings = scenes.settings(3 * 2.0 * math.pi / 300.0 / 45, 3)
+        ehd.ConfigureSolver(settings, relativeTolerance=tolerance)
+        ehd.SolveDynamic(mbs, settings)
+        forces.append(joint.history.force[-1])
+    assert np.abs(forces[0] - forces[1]).max() < 1e-3 * np.abs(forces[1]).max()

@@ -230,6 +230,19 @@ def test_files_are_whole_and_foreign_ones_are_refused(tmp_path):
             ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / f"{name}.npz")
     with pytest.raises(FileNotFoundError):
         ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / "absent.npz")
+    with pytest.raises(ehd.InputError, match=r"restore_state: state must be JointState.*restart=path"):
+        system(PLAIN)[1].restore_state(good)
+
+
+def test_a_state_that_was_changed_since_the_run_is_not_stored(tmp_path):
+    """A linearisation leaves the system at its initial values, the films at the end of the run."""
+    mbs, joint = system(PLAIN)
+    ehd.SolveDynamic(mbs, settings(0, 3))
+    mbs.ComputeLinearizedSystem()
+    for store in (lambda: ehd.SaveState(mbs, tmp_path / "state.npz"), joint.state):
+        with pytest.raises(ehd.InputError, match=r"the system is at t = 0 s, and its last run has ended at .*changed"):
+            store()
+    assert not list(tmp_path.iterdir())
 
 
 def test_states_of_other_systems_are_refused():

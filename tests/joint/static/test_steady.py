@@ -51,6 +51,13 @@ class TestSteady:
         force = [-(line * np.cos(film.theta)).sum() * step, -(line * np.sin(film.theta)).sum() * step]
         np.testing.assert_allclose(film.force[:2], force, rtol=2e-3)
 
+    def test_a_liner_is_displaced_by_what_the_gap_has_more(self, make_bearing):
+        b = make_bearing(bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9), cavitation=ehd.SwiftStieber())
+        film = ehd.steady(b, speed=SPEED, eccentricity_ratio=0.8)
+        rigid = b.radial_clearance * (1.0 - 0.8 * np.cos(film.theta))[:, None]
+        np.testing.assert_allclose(film.bore_displacement, film.gap - rigid, atol=1e-12)
+        assert film.bore_displacement.max() > 1e-7
+
     def test_attitude_and_load_in_every_direction(self, make_bearing):
         bearing = make_bearing(1.0, film=ehd.FiniteLength())
         reference = ehd.steady(bearing, speed=SPEED, eccentricity_ratio=0.7)
@@ -147,3 +154,18 @@ class TestSolveFilm:
         for speed in (1.0, (1.0,), (math.nan, 0.0)):
             with pytest.raises(ehd.InputError, match="surface_speed"):
                 solve(self._gap(), surface_speed=speed)
+        for closure in (ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e4)):
+            with pytest.raises(ehd.InputError, match=r"boundary must not be below .*cavity_pressure .*got -20000 Pa"):
+                solve(self._gap(), boundary=-2e4, cavitation=closure)
+        solve(self._gap(), boundary=-2e4, cavitation=ehd.FullSommerfeld())
+        for name, wrong in {"boundary": "high", "cavitation": ehd.Gumbel, "stepped_gap": "no"}.items():
+            with pytest.raises(ehd.InputError, match=f"solve_film: {name} must be"):
+                solve(self._gap(), **{name: wrong})
+        with pytest.raises(ehd.InputError, match="boundary must have shape"):
+            solve(self._gap(), boundary=np.zeros(3))
+        with pytest.raises(ehd.InputError, match="history must be >= 0 m"):
+            solve(self._gap(), history=-self._gap(), step=1e-4, cavitation=ehd.ElrodAdams())
+        with pytest.raises(ehd.InputError, match="grid must be FilmGrid"):
+            ehd.solve_film(None, self._gap(), lubricant=self.OIL)
+        with pytest.raises(ehd.InputError, match="lubricant must be Lubricant"):
+            ehd.solve_film(self.GRID, self._gap(), lubricant=0.02)
