@@ -12,12 +12,19 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.core.base import BaseContext
+from numba.core.errors import TypingError
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
 LANES = 4
 _int32 = ir.IntType(32)
 _vector = ir.VectorType(ir.DoubleType(), LANES)
+
+
+def _require_contiguous(*arrays: types.Array) -> None:
+    """Refuse arrays, when a kernel is compiled, whose neighbours do not lie side by side."""
+    if any(array.layout != "C" for array in arrays):
+        raise TypingError(f"vectors are read from and written to contiguous arrays, got {arrays}")
 
 
 def _place(context: BaseContext, builder: ir.IRBuilder, kind: types.Array, array: ir.Value, at: ir.Value) -> ir.Value:
@@ -48,7 +55,8 @@ def _subtract(count: int) -> Callable:
     return generate
 
 
-def _signature(target: types.Type, source: types.Type, count: int) -> Signature:
+def _signature(target: types.Array, source: types.Array, count: int) -> Signature:
+    _require_contiguous(target, source)
     return types.void(target, types.uint64, source, *count * (types.uint64,), *count * (types.float64,))
 
 
@@ -85,6 +93,7 @@ def _dots(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arg
 def dot_four_lanes(typingctx, source, p0, p1, p2, p3, x, at, size):
     """Products of x[at : at + size] with source[p : p + size] for four places p, flat arrays and unsigned places; the
     size counts in whole fours."""
+    _require_contiguous(source, x)
     four = types.UniTuple(types.float64, 4)
     return four(source, *4 * (types.uint64,), x, types.uint64, types.uint64), _dots
 
@@ -102,4 +111,5 @@ def _join(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arg
 @intrinsic
 def put_four_lanes(typingctx, target, at, s0, s1, s2, s3):
     """target[at : at + 4] = s0, s1, s2, s3 in one piece, as a vector that is read next waits for several."""
+    _require_contiguous(target)
     return types.void(target, types.uint64, *4 * (types.float64,)), _join

@@ -67,7 +67,10 @@ def _solve_rows(forward, backward, scale_forth, scale_back, inverse, count, widt
     for k in range(0, fours, 4):
         _solve_four(forward, backward, scale_forth, scale_back, inverse, count, width, x[k : k + 4])
     for k in range(fours, x.shape[0]):
-        _solve_one(forward, backward, scale_forth, scale_back, inverse, count, width, x[k])
+        # vectors want neighbours side by side, whatever the order of the rows' array
+        row = np.ascontiguousarray(x[k])
+        _solve_one(forward, backward, scale_forth, scale_back, inverse, count, width, row)
+        x[k] = row
 
 
 @njit(cache=True, fastmath=_KEEP_ORDER)

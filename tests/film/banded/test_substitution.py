@@ -19,3 +19,19 @@ def test_twins(factors, count, width, sides):
         x = b.copy()
         solve(*factor, count, width, x)
         np.testing.assert_allclose(x, np.linalg.solve(A, b.T).T, rtol=1e-11, atol=1e-13)
+
+
+@pytest.mark.parametrize("sides", [1, 4, 7])
+def test_rows_of_any_order(factors, sides):
+    """What numpy's indexing hands over need not lie row after row in memory."""
+    f = factors(60, 5)
+    b = np.random.default_rng(sides).normal(size=(sides, 60))
+    for place in (np.asfortranarray, lambda rows: np.repeat(rows, 2, axis=1)[:, ::2]):
+        for solve, factor, A in (
+            (solve_lu, (f.lower, f.upper, f.inverse), f.A),
+            (solve_lu_transposed, (f.lower, f.upper, f.inverse), f.A.T),
+            (solve_ldl, (f.band, f.band_inverse), f.symmetric),
+        ):
+            x = place(b)
+            solve(*factor, 60, 5, x)
+            np.testing.assert_allclose(x, np.linalg.solve(A, b.T).T, rtol=1e-11, atol=1e-13)
