@@ -93,21 +93,22 @@ def end_forces(H, pressures):
 
 
 @njit(cache=True)
-def journal_wrench(pose, integrals, couette, extra_theta, extra_z, ends, force, shear, R, motion, out):
+def journal_wrench(pose, integrals, couette, extra_theta, extra_z, ends, force, shear, R, omega, w, out):
     """Wrench on the journal -> out (>= 6,), SI; returns the scaled integral of the pressure flow's shear along theta.
 
     ``extra_theta`` and ``extra_z``: what gap terms and uneven drag add to those integrals. On the bore, gap terms act
     twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag pulls the
-    journal by as much as it holds the bore back. ``ends``: of `end_forces`; ``force``, ``shear``, R: scales.
+    journal by as much as it holds the bore back. ``ends``: of `end_forces`; ``force``, ``shear``, R: scales; omega, w:
+    spin and axial speed.
     """
     x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
     sc, ss, szc, szs = integrals[0], integrals[1], integrals[2], integrals[3]
     s_theta = x * ss - y * sc + bx * szs - by * szc + extra_theta
     s_z = -(bx * sc + by * ss) + extra_z
     out[0], out[1] = -force * sc, -force * ss
-    out[2] = -shear * (motion[9] * couette + 6.0 * R * (s_z - 2.0 * extra_z - ends))
+    out[2] = -shear * (w * couette + 6.0 * R * (s_z - 2.0 * extra_z - ends))
     out[3], out[4] = force * R * szs, -force * R * szc
-    out[5] = -shear * R**2 * (motion[8] * couette + 6.0 * (s_theta - 2.0 * extra_theta))
+    out[5] = -shear * R**2 * (omega * couette + 6.0 * (s_theta - 2.0 * extra_theta))
     return s_theta
 
 

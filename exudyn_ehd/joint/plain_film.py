@@ -132,5 +132,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     ends = end_forces(H, known)
-    s_theta = journal_wrench(pose, integrals, couette[0], 0.0, 0.0, ends, force, shear, radius, motion, out)
+    s_theta = journal_wrench(
+        pose, integrals, couette[0], 0.0, 0.0, ends, force, shear, radius, motion[8], motion[9], out
+    )
     return ok, steps, count, width, peak, own, smallest, couette, s_theta

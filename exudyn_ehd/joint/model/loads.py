@@ -112,7 +112,8 @@ def film_loads(
         scales.force,
         scales.shear,
         g.reference_length,
-        journal.motion,
+        journal.omega,
+        journal.axial_speed,
         wrench,
     )
     contact = _NO_CONTACT
