@@ -51,7 +51,7 @@ def solve_plain(
         parts.motion_scale,
         known,
         (scales.force, scales.shear, g.reference_length, parts.half_length, s.flow_x, s.closure.cavity_shear),
-        (s.squeeze, work.known),
+        (s.squeeze, work.known, work.count, work.width),
         g.directions,
         g.mesh,
         g.weight,
@@ -59,7 +59,6 @@ def solve_plain(
         (g.fixed, work.active),
         None if line is None else line.fields,
         work.factor,
-        (work.count, work.width),
         work.unknowns,
         out,
     )
@@ -96,14 +95,15 @@ def solve_plain(
 
 
 @njit(cache=True, nogil=True)
-def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, factor, last, x, out):
+def _plain_film(motion, scale, known, sizes, last, at, mesh, weight, fields, sets, line, factor, x, out):
     """Returns (found, steps, count, width, peak, own links, smallest gap, integrals of the Couette shear, s_theta).
 
-    ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
+    ``last``: whether there is a squeeze, whether pressures and factor are those of the film before, and that factor's
+    size; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
     force, shear, radius, half_length, flow_x, cavity_shear = sizes
-    squeeze, is_known = kinds
-    (count, width), pc = last, known[2]
+    squeeze, is_known, count, width = last
+    pc = known[2]
     vx, vz, own, none = 0.5 * motion[8], 0.5 * motion[9] / radius, False, (0.0, 0.0)
     kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[4]
     H, HF, H_t, P = fields[5], fields[6], fields[7], fields[8]
@@ -125,7 +125,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
         )
     else:
         forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
-        last = last if is_known else (np.int64(0), np.int64(1))
+        last = (count, width) if is_known else (np.int64(0), np.int64(1))
         ok, steps, count, width, peak, own = find_line(
             (kx, kz, b), fixed, pc, forth, is_known, line, active, factor, last, x, P
         )

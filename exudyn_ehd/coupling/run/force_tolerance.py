@@ -7,16 +7,16 @@ itself and more. The step would be halved for nothing. From Exudyn's own start t
 the forces, so that its tolerance is a share of these; here too, with a tenth of it. The forces within a nodal bush, in
 a film or not, have the rounding of its displacements times the stiffness of its elements.
 
-Where no start is known, as in the first step, the first positions may lie deep in a contact, with a residual millions
-of times the forces: a share of it would let any state pass. The relative tolerance counts from no more than a hundred
-times the films' forces.
+Where no start is known, as in the first step, the first positions may lie deep in a contact, with forces of films and a
+residual millions of times those at the end: a share of it would let any state pass. As the films' forces fall below
+their first ones in a step, the relative tolerance shrinks alike. Residuals of other parts do not count.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -27,10 +27,12 @@ from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.status import Status
 
+# Exudyn's stubs lack attributes of its solvers
+_Solver: TypeAlias = Any
 # Share of the relative tolerance times the films' forces.
 SHARE = 0.1
-# First residual over the films' forces from which on it says nothing of them.
-OUT_OF_PROPORTION = 100.0
+# Least part of the relative tolerance that is left.
+LEAST_PART = 1e-6
 
 
 class ForceTolerance:
@@ -53,7 +55,7 @@ class ForceTolerance:
         self.given: float | None = None
         self.relative, self.first, self.level = 0.0, 0.0, 0.0
 
-    def set(self, mbs: exu.MainSystem, solver: Any) -> None:
+    def set(self, mbs: exu.MainSystem, solver: _Solver) -> None:
         """At the start of a step, where the films were evaluated last at the end of the step before."""
         newton = solver.newton
         if self.given is None:
@@ -70,15 +72,17 @@ class ForceTolerance:
                 level = max(level, math.hypot(*(bush.equations.rounding(reach[at]) for bush, at in self.bushes)))
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
 
-    def limit(self, solver: Any, iteration: int) -> None:
+    def limit(self, solver: _Solver, iteration: int) -> None:
         """Before an iteration of Newton's method, where the films were evaluated last in the one before."""
         newton = solver.newton
         if self.given is None or newton.residualMode != 0:
             return
+        forces = self._forces()
         if iteration == 1:
-            self.first = solver.conv.residual
-        allowed = OUT_OF_PROPORTION * max(self._forces(), self.level)
-        newton.relativeTolerance = self.relative * min(1.0, allowed / self.first) if self.first > 0.0 else self.relative
+            self.first = forces
+        present = max(forces, self.level)
+        part = present / self.first if self.first > present else 1.0
+        newton.relativeTolerance = self.relative * max(part, LEAST_PART)
 
     def _forces(self) -> float:
         return math.hypot(*(force for film in self.films for force in _force(film.last)))

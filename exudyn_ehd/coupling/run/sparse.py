@@ -264,7 +264,7 @@ class _Newton:
         data.SetAECoordinates([0.0] * self.matrix.constraints)
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
-        error = first = solver.conv.residual = self.residual(solver, mbs, settings)
+        error = first = self.residual(solver, mbs, settings)
         if turn > 0:
             # a contact has opened or closed
             self.factor = None

@@ -91,8 +91,9 @@ class StartGuess:
         # a stored solver outlives its run
         if solver is not self.old_solver and isinstance(solver, exu.MainSolverImplicitSecondOrder):
             if iteration > 0:
-                self.limit.shorten(mbs, self.additive)
+                # to shorten a step films leave the state that they were evaluated at
                 self.tolerance.limit(solver, iteration)
+                self.limit.shorten(mbs, self.additive)
             else:
                 if discontinuous == 0:
                     self._set_start(mbs, solver)

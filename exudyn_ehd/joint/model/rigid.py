@@ -153,8 +153,7 @@ class BearingModel:
         self.viscosity_ratio = ratio
         self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]))
         # what the solver is told: the transformed pressures of a pressure law
-        prescribed = known if law is None else law.transform(self._known) / pressure
-        self._prescribed = prescribed
+        self._prescribed = known if law is None else law.transform(self._known) / pressure
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
         if p.nonlinear is not None:
@@ -174,26 +173,19 @@ class BearingModel:
         if not self.remembers:
             return None
         thermal = self.effects.thermal
-        temperature = None if thermal is None else thermal.initial_temperature(self.grid.shape)
         self.parts.evaluations.count += 1
         self._set_gap(self._journal(motion), None)
-        wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
-        deflection = self._steady_deflection(motion) if self.remembers_deflection else None
-        s, remembers = self.solver, self.remembers_mass
+        found = self.remembers_deflection and self.evaluate(motion).film is not None
+        s, remembers, liner, wear = self.solver, self.remembers_mass, self.parts.liner, self.effects.wear
         return History(
             void=s.nothing if remembers else None,
             mass=s.H.copy() if remembers else None,
             outflow=np.array([s.ones, s.nothing, s.nothing]) if remembers else None,
-            wear=wear,
-            deflection=deflection,
-            temperature=temperature,
+            wear=None if wear is None else wear.depth(None).copy(),
+            deflection=liner.deflection if found and liner is not None else None,
+            temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
             density=s.ones if self.remembers_density else None,
         )
-
-    def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
-        """Scaled deflection of the steady film at this motion; None if there is no such film."""
-        liner = self.parts.liner
-        return None if self.evaluate(motion).film is None or liner is None else liner.deflection
 
     def next_history(self, film: SolvedFilm) -> History | None:
         """History at the end of a solved film's step."""

@@ -143,33 +143,33 @@ def test_a_housing_that_falls_with_its_nodal_bush_halves_no_step(solve, place):
         assert speed == pytest.approx(-9.81 * steps * step, rel=1e-6)
 
 
-@pytest.mark.parametrize(("load", "onset"), [(200.0, 5e-7), (400.0, 5e-7)])
-def test_a_first_residual_deep_in_a_contact_lets_no_state_pass(load, onset):
+@pytest.mark.parametrize("load", [200.0, 400.0, 800.0])
+def test_a_first_residual_deep_in_a_contact_lets_no_state_pass(load):
     """A load that starts at once moves the first guess of a coarse step through the wall, where forces are millions of
-    times those of the step."""
-    forces = []
-    for tolerance in (1e-6, 1e-11):
-        bearing = ehd.JournalBearing(
-            journal_radius=0.01,
-            length=0.01,
-            radial_clearance=7e-6,
-            lubricant=ehd.Lubricant(viscosity=0.02),
-            film=ehd.FiniteLength(n_theta=48, n_z=6),
-            contact=ehd.RegularisedWall(onset=onset),
-        )
-        mbs = scenes.new_system()
-        shaft = mbs.CreateRigidBody(
-            inertia=InertiaCylinder(7800, 0.06, 0.01, 2),
-            initialAngularVelocity=[0, 0, 300.0],
-            nodeType=exu.NodeType.RotationRxyz,
-        )
-        mbs.CreateForce(itemNumber=shaft, loadVector=[0, -load, 0])
-        joint = ehd.CreateLubricatedJoint(
-            mbs, "journal", [mbs.CreateGround(), shaft], [0, 0, 0], [0, 0, 1], bearing, axial=ehd.Held()
-        )
-        mbs.Assemble()
-        settings = scenes.settings(3 * 2.0 * math.pi / 300.0 / 45, 3)
-        ehd.ConfigureSolver(settings, relativeTolerance=tolerance)
+    times those of the step: mass times acceleration is the sum of forces all the same."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.01,
+        length=0.01,
+        radial_clearance=7e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+        contact=ehd.RegularisedWall(onset=5e-7),
+    )
+    mbs = scenes.new_system()
+    inertia = InertiaCylinder(7800, 0.06, 0.01, 2)
+    shaft = mbs.CreateRigidBody(
+        inertia=inertia, initialAngularVelocity=[0, 0, 300.0], nodeType=exu.NodeType.RotationRxyz
+    )
+    mbs.CreateForce(itemNumber=shaft, loadVector=[0, -load, 0])
+    joint = ehd.CreateLubricatedJoint(
+        mbs, "journal", [mbs.CreateGround(), shaft], [0, 0, 0], [0, 0, 1], bearing, axial=ehd.Held()
+    )
+    mbs.Assemble()
+    for steps in (1, 3):
+        settings = ehd.ConfigureSolver(scenes.settings(steps * 2.0 * math.pi / 300.0 / 45, steps))
         ehd.SolveDynamic(mbs, settings)
-        forces.append(joint.history.force[-1])
-    assert np.abs(forces[0] - forces[1]).max() < 1e-3 * np.abs(forces[1]).max()
+        acceleration = mbs.GetObjectOutputBody(shaft, exu.OutputVariableType.Acceleration, [0, 0, 0])[:2]
+        force = joint.history.force[-1][:2]
+        missed = inertia.mass * acceleration - force + [0.0, load]
+        assert np.abs(missed).max() < 1e-3 * np.abs(force).max()
+        joint.forget()
