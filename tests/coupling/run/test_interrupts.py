@@ -39,7 +39,7 @@ def run(mbs, solver, last, **options):
 @pytest.mark.parametrize("cavitation", sample([ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)], 1))
 @pytest.mark.parametrize("behind", [False, True], ids=["before", "behind"])
 def test_state_after_an_interrupt_is_stored(cavitation, solver, behind, monkeypatch, tmp_path):
-    """At every evaluation of three steps, before and behind the film's own solver."""
+    """At every evaluation of three steps, before and behind the film."""
     mbs, joint = system(cavitation)
     run(mbs, solver, 30)
     whole = joint.history
@@ -47,16 +47,16 @@ def test_state_after_an_interrupt_is_stored(cavitation, solver, behind, monkeypa
         mbs, joint = system(cavitation)
         model, calls = joint.element.model, []
 
-        def interrupted(*arguments, solve=model._solve, calls=calls, at=at):
+        def interrupted(*arguments, evaluate=model.evaluate, calls=calls, at=at):
             calls.append(0)
             if len(calls) == at and not behind:
                 raise KeyboardInterrupt
-            found = solve(*arguments)
+            found = evaluate(*arguments)
             if len(calls) == at:
                 raise KeyboardInterrupt
             return found
 
-        monkeypatch.setattr(model, "_solve", interrupted)
+        monkeypatch.setattr(model, "evaluate", interrupted)
         with pytest.raises(KeyboardInterrupt, match="last accepted state"):
             run(mbs, solver, 30)
         state = ehd.SaveState(mbs, tmp_path / "state.npz")
