@@ -146,7 +146,10 @@ def test_a_housing_that_falls_with_its_nodal_bush_halves_no_step(solve, place):
 @pytest.mark.parametrize("load", [200.0, 400.0, 800.0])
 def test_a_first_residual_deep_in_a_contact_lets_no_state_pass(load):
     """A load that starts at once moves the first guess of a coarse step through the wall, where forces are millions of
-    times those of the step: mass times acceleration is the sum of forces all the same."""
+    times those of the step: mass times acceleration is the sum of forces all the same.
+
+    Newton's tolerance of 1e-6 counts from the forces of the iterate before the last, up to some ten times these.
+    """
     bearing = ehd.JournalBearing(
         journal_radius=0.01,
         length=0.01,
@@ -171,5 +174,5 @@ def test_a_first_residual_deep_in_a_contact_lets_no_state_pass(load):
         acceleration = mbs.GetObjectOutputBody(shaft, exu.OutputVariableType.Acceleration, [0, 0, 0])[:2]
         force = joint.history.force[-1][:2]
         missed = inertia.mass * acceleration - force + [0.0, load]
-        assert np.abs(missed).max() < 1e-3 * np.abs(force).max()
+        assert np.abs(missed).max() < 1e-4 * np.abs(force).max()
         joint.forget()
