@@ -127,9 +127,9 @@ def draw(runs: dict[str, ehd.JointHistory], rest: float, folder: pathlib.Path) -
     film.set(
         xlabel="time [ms]", ylabel="minimum film thickness [µm]", title="thinnest film on the faces", ylim=(0, None)
     )
-    for ax in (place, film):
+    for ax, where in ((place, "center right"), (film, "best")):
         ax.grid(alpha=0.3)
-        ax.legend()
+        ax.legend(loc=where)
     faces = ehd.steady(make_bearing("taper lands"), speed=SPEED, eccentricity_ratio=0.0, axial_position=rest).faces
     around = np.append(faces.theta, faces.theta[0] + 2.0 * math.pi)
     # pushed along +z the shaft closes the lower face
