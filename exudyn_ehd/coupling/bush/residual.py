@@ -48,7 +48,9 @@ class BushResiduals:
 
     def __init__(self, mbs: exu.MainSystem, bushes: list[tuple[Index, np.ndarray, BushFunctions]]) -> None:
         self.bushes = [
-            (*bush, mbs.GetObjectParameter(bush[0], "massMatrix")) for bush in bushes if _as_made(mbs, *bush)
+            (item, _together(places), functions, mbs.GetObjectParameter(item, "massMatrix"))
+            for item, places, functions in bushes
+            if _as_made(mbs, item, places, functions)
         ]
         self.taken, self.vector = False, np.zeros(0)
         self.lasting = all(_lasting(mbs.GetObject(ObjectIndex(i))) for i in range(mbs.systemData.NumberOfObjects()))

@@ -8,7 +8,7 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix, issparse
+from scipy.sparse import csc_matrix, csr_matrix, issparse
 
 from exudyn_ehd.coupling.contract import Index, ObjectIndex
 from exudyn_ehd.coupling.items.own_equations import ReducedBody
@@ -62,18 +62,18 @@ def planar_mass(mbs: exu.MainSystem, item: Index) -> Callable:
     return mass
 
 
-def as_sparse(value) -> coo_matrix | None:
-    """A matrix that a user function or an object holds, as triplets."""
+def as_sparse(value) -> csr_matrix | None:
+    """A matrix that a user function or an object holds."""
     if isinstance(value, exu.MatrixContainer):
         value = value.GetPythonObject()
     if isinstance(value, dict):
         shape = (value["numberOfRows"], value["numberOfColumns"])
         triplets = np.asarray(value["triplets"]).reshape(-1, 3)
-        return coo_matrix((triplets[:, 2], (triplets[:, 0].astype(int), triplets[:, 1].astype(int))), shape=shape)
+        return csr_matrix((triplets[:, 2], (triplets[:, 0].astype(int), triplets[:, 1].astype(int))), shape=shape)
     if issparse(value):
-        return value.tocoo()
+        return value.tocsr()
     dense = np.atleast_2d(np.asarray(value, dtype=float))
-    return None if dense.size == 0 else coo_matrix(dense)
+    return None if dense.size == 0 else csr_matrix(dense)
 
 
 def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, bush: tuple[str, float, str], name: str) -> None:

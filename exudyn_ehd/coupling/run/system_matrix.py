@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import exudyn as exu
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix
+from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 
 from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
@@ -64,7 +64,7 @@ class SystemMatrix:
     coordinates, constraints : int
         Second-order coordinates and algebraic equations.
     parts : tuple
-        One function (mbs, Factors) -> (rows, columns, values) per object.
+        One function (mbs, Factors) -> list of (rows, columns, values) per object.
     meshes : tuple
         The same of nodal bushes.
     bushes : list
@@ -172,17 +172,17 @@ class SystemMatrix:
         h, rate = solver.it.currentStepSize, solver.newmarkGamma / solver.newmarkBeta / solver.it.currentStepSize
         square = solver.newmarkBeta * h * h
         factors = Factors(1 / solver.factJacAlgorithmic, square, solver.newmarkGamma * h, rate if index2 else 1.0, rate)
-        own = mbs.GetSystemJacobianUserFunction()
-        empty: tuple = (np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32), np.zeros(0))
-        triplets = [empty, *(part(mbs, factors) for part in (self.parts + self.meshes if meshes else self.parts))]
+        own, size = mbs.GetSystemJacobianUserFunction(), self.coordinates + self.constraints
+        none = np.zeros(0, dtype=np.int32)
+        triplets = [(none, none, np.zeros(0))]
+        for part in self.parts + self.meshes if meshes else self.parts:
+            triplets += part(mbs, factors)
         if isinstance(own, dict):
             scales = (-square, -factors.damping, -square)
             added = as_sparse(own["function"](mbs, mbs.systemData.GetTime(), *scales))
             if added is not None:
-                triplets.append((added.row, added.col, added.data))
-        rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
-        size = self.coordinates + self.constraints
-        system = (self.triplets if meshes else Triplets()).matrix(rows, columns, values, size)
+                triplets.append(_Placed(np.arange(size))(1.0, added))
+        system = (self.triplets if meshes else Triplets()).matrix(triplets, size)
         if self.constraints:
             # rows of inactive constraints are lambda = 0
             idle = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
@@ -205,7 +205,7 @@ def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
         value = mbs.GetObjectParameter(item, name)
         return value["function"] if isinstance(value, dict) else None
 
-    def constant(name: str) -> coo_matrix | None:
+    def constant(name: str) -> csr_matrix | None:
         matrix = as_sparse(mbs.GetObjectParameter(item, name))
         return None if matrix is None or matrix.nnz == 0 else matrix
 
@@ -217,27 +217,38 @@ def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
         )
     mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
 
+    placed = [_Placed(places) for _ in range(5)]
+
     def part(mbs, factors: Factors):
         fM, fK, fD = factors[:3]
         data = mbs.systemData
         q = np.asarray(data.GetODE2Coordinates())[places]
         q_t = np.asarray(data.GetODE2Coordinates_t())[places]
         t = data.GetTime()
-        terms = [(f, m) for f, m in ((fM, mass), (fK, stiffness), (fD, damping)) if m is not None]
+        terms = [(fM, mass), (fK, stiffness), (fD, damping)]
         if jacobian is not None:
             terms.append((1.0, as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
         if mass_function is not None:
             terms.append((fM, as_sparse(mass_function(mbs, t, int(item), q, q_t))))
-        return tuple(
-            np.concatenate(x)
-            for x in (
-                [places[m.row] for _, m in terms],
-                [places[m.col] for _, m in terms],
-                [f * m.data for f, m in terms],
-            )
-        )
+        return [place(f, m) for place, (f, m) in zip(placed, terms) if m is not None]
 
     return part
+
+
+class _Placed:
+    """Triplets of a matrix at an object's places in the system, found once while its pattern stays."""
+
+    def __init__(self, places: np.ndarray) -> None:
+        self.places, self.pattern = places, [np.empty(0)]
+        self.rows = self.columns = np.empty(0, dtype=np.int32)
+
+    def __call__(self, factor: float, matrix: csr_matrix) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        pattern = [matrix.indptr, matrix.indices]
+        # a user's function may change its arrays
+        if not all(np.array_equal(a, b) for a, b in zip(pattern, self.pattern)):
+            self.pattern, entries = [x.copy() for x in pattern], matrix.tocoo()
+            self.rows, self.columns = self.places[entries.row], self.places[entries.col]
+        return self.rows, self.columns, factor * matrix.data
 
 
 def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: np.ndarray) -> Callable:
@@ -281,15 +292,12 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
                 values += factors[i] * matrix
         if differs:
             values += _differences(mbs, item, places, factors.stiffness, factors.damping)
+        own = [(rows, columns, values.ravel())]
         if not constrained:
-            return rows, columns, values.ravel()
+            return own
         C = coo_matrix(np.asarray(mbs.ComputeItem(item, kind.ConstraintJacobian)))
         a, q = equations[C.row], places[C.col]
-        return (
-            np.concatenate([rows, a, q]),
-            np.concatenate([columns, q, a]),
-            np.concatenate([values.ravel(), (factors.velocity if by_rates else factors.position) * C.data, C.data]),
-        )
+        return [*own, (a, q, (factors.velocity if by_rates else factors.position) * C.data), (q, a, C.data)]
 
     return part
 
@@ -326,7 +334,6 @@ def _euler_parameters(mbs: exu.MainSystem, node: Index, n: int) -> Callable:
 
     def part(mbs, factors: Factors):
         slope = 2 * (reference + np.asarray(mbs.systemData.GetODE2Coordinates())[columns])
-        values = np.concatenate([factors.position * slope, slope])
-        return np.concatenate([rows, columns]), np.concatenate([columns, rows]), values
+        return [(rows, columns, factors.position * slope), (columns, rows, slope)]
 
     return part

@@ -96,8 +96,10 @@ class SupernodalFactor:
         analysis = known if known is not None and known.fits(A) else Elimination.of(A)
         if analysis is None:
             return None
-        scale = np.abs(A.diagonal())[A.indices]
-        if not (np.abs(A.data - A.data[analysis.mirror]) <= ASYMMETRY * scale).all():
+        difference = A.data - A.data[analysis.mirror]
+        # most mirrored entries are the same bit for bit; nan is not
+        odd = np.flatnonzero(difference)
+        if not (np.abs(difference[odd]) <= ASYMMETRY * np.abs(A.diagonal())[A.indices[odd]]).all():
             return None
         panels, pivots = analysis.factorise(A.data)
         if not np.isfinite(pivots).all() or not pivots.all():
