@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, triu
 
 from exudyn_ehd.solid.elements import blocks, kernels
 from exudyn_ehd.solid.elements.element import Element, Quadrature
@@ -244,9 +244,15 @@ class TotalLagrange:
 
     def inertia(self, a: np.ndarray) -> np.ndarray:
         """Return the consistent mass times accelerations (n, 3) [m/s^2], shape (n, 3) [N]."""
-        M, out = self.scalar_mass, np.empty(a.shape)
-        kernels.product(M.indptr, M.indices, M.data, a, out)
+        M, out = self._upper_mass, np.empty(a.shape)
+        kernels.symmetric_product(M.indptr, M.indices, M.data, a, out)
         return out
+
+    @cached_property
+    def _upper_mass(self) -> csr_matrix:
+        M = triu(self.scalar_mass, format="csr")
+        M.sort_indices()
+        return M
 
     @cached_property
     def mass(self) -> csr_matrix:
