@@ -101,9 +101,9 @@ def total(mbs, modes=(), matrix=None):
     n, flow = len(q_t), np.zeros(len(q_t))
     matrix = SystemMatrix.of(mbs) if matrix is None else matrix
     for part in matrix.parts + matrix.meshes:
-        rows, columns, values = (np.asarray(a) for a in part(mbs, Factors(1.0, 0.0, 0.0, 1.0, 1.0)))
-        own = (rows < n) & (columns < n)
-        np.add.at(flow, rows[own], values[own] * q_t[columns[own]])
+        for rows, columns, values in part(mbs, Factors(1.0, 0.0, 0.0, 1.0, 1.0)):
+            own = (rows < n) & (columns < n)
+            np.add.at(flow, rows[own], values[own] * q_t[columns[own]])
     ways = np.zeros((2, n))
     for i in set(range(mbs.systemData.NumberOfNodes())) - {int(node) for node in modes}:
         places = mbs.systemData.GetNodeLTGODE2(i)

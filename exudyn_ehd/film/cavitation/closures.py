@@ -89,7 +89,9 @@ class Gumbel(SymmetricClosure):
     """Half-Sommerfeld (Gümbel) condition: solve the linear film, then cut off what lies below the cavity pressure.
 
     Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It
-    is the paper's condition.
+    is the paper's condition. Flows through ends and supply areas with more than the cavity's pressure are those of the
+    linear film: beside the cavity it sucks in oil that the cut then loses, at a rate that hardly depends on that
+    pressure. ``leakage`` and ``supply_flow`` are then those of this condition, not of a bearing; take `SwiftStieber`.
 
     Parameters
     ----------

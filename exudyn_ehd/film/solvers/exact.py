@@ -84,7 +84,7 @@ class NewtonFilmSolver(FilmSolver, abc.ABC):
         if self.law is None:
             return super().inflow()
         balance, fill = np.empty(self.grid.shape), self.system.fill if self.closure.conserves_mass else None
-        film_balance(self.system.pressure, fill, self.rho, self.film, balance)
+        film_balance(self.flow_pressures()[0], fill, self.rho, self.film, balance)
         return np.where(self.grid.fixed, balance, 0.0)
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:

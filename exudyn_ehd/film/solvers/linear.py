@@ -378,6 +378,22 @@ class FilmSolver:
         by_rate = self.area * self.follows
         return by_rate, (content - by_rate) * s.inverse_step
 
+    def flow_pressures(self) -> tuple[np.ndarray, np.ndarray]:
+        """Pressures (n, m) whose differences drive the flows at prescribed vertices, and where the film is full.
+
+        Next to a prescribed pressure above the cavity's a film that is cut off has the linear film's gradient, up to a
+        line that may lie in front of the next vertex: that vertex counts with its linear pressure, and as full.
+        """
+        s, known = self.system, self.grid.fixed
+        if not self.closure.clips:
+            return s.pressure, self.work.active
+        near, pressed = np.zeros(known.shape, dtype=bool), known & (s.pressure > s.cavity_pressure)
+        for axis, links in enumerate((s.kx > 0.0, s.kz > 0.0)):
+            # nothing flows over the last links in z
+            near |= links & np.roll(pressed, -1, axis) | np.roll(links & pressed, 1, axis)
+        near &= ~known
+        return np.where(near, s.linear_pressure, s.pressure), self.work.active | near
+
     def inflow(self) -> np.ndarray:
         """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
         s = self.system
@@ -385,5 +401,5 @@ class FilmSolver:
         if self.closure.conserves_mass:
             film_balance(s.pressure, s.fill, None, film_terms(s.coefficients, s.inverse_step, s.mass_old), balance)
         else:
-            vertex_balance(s.pressure, s.kx, s.kz, s.b, balance)
+            vertex_balance(self.flow_pressures()[0], s.kx, s.kz, s.b, balance)
         return np.where(self.grid.fixed, balance, 0.0)

@@ -271,11 +271,17 @@ class FaceFilm:
             sens.cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
         return self._by_motion(sens)
 
-    def _adjoint(self, fields: np.ndarray) -> np.ndarray:
-        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m)."""
+    def _adjoint(self, fields: np.ndarray, linear: bool = False) -> np.ndarray:
+        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m).
+
+        ``linear``: over the pressure of the film before it is cut off.
+        """
         s, w, y = self.solver, self.solver.work, self.solver.system
         unknown = w.order[: w.count]
-        rows = fields.reshape(len(fields), -1)[:, unknown] * w.active.reshape(-1)[unknown]
+        rows = fields.reshape(len(fields), -1)[:, unknown]
+        if linear:
+            return s.adjoint(rows)
+        rows *= w.active.reshape(-1)[unknown]
         if self.closure.clips and self.closure.line_in_cells:
             rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
         return s.adjoint(rows)
@@ -311,11 +317,12 @@ class FaceFilm:
         edge = fields[:, :, 0].sum(axis=1)
         fields[6, :, 1] = -links
         edge[6] = links.sum()
-        lam = self._adjoint(fields)
+        P, pressed = s.flow_pressures()[0], self.closure.clips and self.known[0] > self.known[2]
+        lam = np.concatenate((self._adjoint(fields[:6]), self._adjoint(fields[6:], linear=pressed)))
         by_pressure = (edge + lam[:, :, 1] @ links) / k.pressure
         sens = s.sensitivities(lam[6:])
         gap, slope = 0.5 * (s.H[:, 0] + s.H[:, 1]), None if s.flux is None else s.flux.gz_h[:, 0] / s.flux.gz[:, 0]
-        half = 0.5 * links * (s.pressure[:, 0] - s.pressure[:, 1]) * (3.0 / gap if slope is None else slope)
+        half = 0.5 * links * (P[:, 0] - P[:, 1]) * (3.0 / gap if slope is None else slope)
         sens.cell[0, :, :2] += half[:, None]
         sens.rate[0, :, 0] += s.squeeze * s.area[:, 0]
         self._to_true_gap(sens)

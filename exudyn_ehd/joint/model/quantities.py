@@ -130,10 +130,10 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
         inflow = s.inflow()
         return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
     fx, fz, rate = s.couette_flows()
-    full = (
-        s.work.active if film.parts.supply is None else np.logical_or.reduce([s.work.active, *film.parts.supply.masks])
-    )
-    return loads.end_flows(s.pressure, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, full)
+    P, full = s.flow_pressures()
+    if film.parts.supply is not None:
+        full = np.logical_or.reduce([full, *film.parts.supply.masks])
+    return loads.end_flows(P, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, full)
 
 
 def minimum_place(film: SolvedFilm) -> tuple[float, float]:
