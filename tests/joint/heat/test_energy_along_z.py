@@ -58,6 +58,31 @@ def test_load_converges_along_z(options, bounds):
         assert abs(coarse / loads[3] - 1.0) < bound
 
 
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::exudyn_ehd.HotFilmWarning")
+def test_hottest_place_of_films_fed_through_their_ends():
+    """Random scenes: half within 3 % on 10 intervals, all within a fifth, of the rise on 40."""
+    rng, errors = np.random.default_rng(1), []
+    for k in range(24):
+        closure = (ehd.SwiftStieber(), ehd.ElrodAdams(), ehd.Gumbel())[k % 3]
+        pressure, speed, eps = 10 ** rng.uniform(4.5, 6), rng.uniform(200.0, 1000.0), rng.uniform(0.3, 0.92)
+        ends = (pressure, 0.0 if rng.random() < 0.6 else pressure)
+        options = {"cavitation": closure, "end_pressures": ends, "cooling": 10 ** rng.uniform(1, 3.5)}
+        options |= {"length": 0.04 * rng.uniform(0.4, 1.5)}
+        try:
+            films = [
+                ehd.steady(bearing(n_z, n_theta=96, **options), speed=speed, eccentricity_ratio=eps, direction=0.2)
+                for n_z in (10, 40)
+            ]
+        except ehd.FilmError:
+            # so hot that no oil is a liquid there
+            continue
+        rises = [film.temperature.max() - SUPPLY for film in films]
+        errors.append(abs(rises[0] / rises[1] - 1.0))
+    assert len(errors) > 20
+    assert np.median(errors) < 0.03 and max(errors) < 0.2
+
+
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), UNSUPPLIED]
 
 
