@@ -261,7 +261,7 @@ def set_links(H, HF, H_t, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz
 
 
 def vertex_balance(P: np.ndarray, kx: np.ndarray, kz: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
-    """Residual ``A P - b`` of every vertex (n, m); at fixed vertices this is minus the inflow that they supply."""
+    """Residual ``A P - b`` of every vertex (n, m); at fixed vertices this is the inflow that they supply."""
     along, across = kx * (P - np.roll(P, -1, axis=0)), kz[:, :-1] * (P[:, :-1] - P[:, 1:])
     np.subtract(along - np.roll(along, 1, axis=0), b, out=out)
     out[:, :-1] += across

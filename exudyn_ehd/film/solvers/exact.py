@@ -79,10 +79,10 @@ class NewtonFilmSolver(FilmSolver, abc.ABC):
         )
         return flow_x, flow_z, rho * self.H_t
 
-    def inflow(self) -> np.ndarray:
+    def inflow(self, ended: bool = False) -> np.ndarray:
         """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
         if self.law is None:
-            return super().inflow()
+            return super().inflow(ended)
         balance, fill = np.empty(self.grid.shape), self.system.fill if self.closure.conserves_mass else None
         film_balance(self.flow_pressures()[0], fill, self.rho, self.film, balance)
         return np.where(self.grid.fixed, balance, 0.0)

@@ -14,7 +14,7 @@ from exudyn_ehd.film.cavitation.line_newton import refine_factor
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.loads import end_films_of_areas, scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import (
@@ -394,12 +394,21 @@ class FilmSolver:
         near &= ~known
         return np.where(near, s.linear_pressure, s.pressure), self.work.active | near
 
-    def inflow(self) -> np.ndarray:
-        """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
+    def inflow(self, ended: bool = False) -> np.ndarray:
+        """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
+
+        ``ended``: films next to a cavity end within a link, see `exudyn_ehd.film.loads.end_films_of_areas`.
+        """
         s = self.system
         balance = np.empty(self.grid.shape)
         if self.closure.conserves_mass:
             film_balance(s.pressure, s.fill, None, film_terms(s.coefficients, s.inverse_step, s.mass_old), balance)
         else:
             vertex_balance(self.flow_pressures()[0], s.kx, s.kz, s.b, balance)
+        if ended and self.complementary and not self.closure.conserves_mass:
+            g = self.grid
+            cuts = np.ones((2, *g.shape)) if g.cuts is None else g.cuts
+            end_films_of_areas(
+                (s.kx, s.kz), s.b, self.work.active, g.fixed, cuts, (g.width_x, g.width_z), np.diff(g.z), balance
+            )
         return np.where(self.grid.fixed, balance, 0.0)

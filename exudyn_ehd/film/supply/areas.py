@@ -6,6 +6,8 @@ housing and, with ``rotating=True``, in the journal; those need the spin angle o
 With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its
 pressure acts on the journal; its shear counts as that of the land. What flows out of it is reported; with `ElrodAdams`
 supply, leakage and the film's change of content balance to rounding, the other closures lose oil at the film's rupture.
+With `SwiftStieber` on the default grid an area in the housing feeds mostly within 2 %, next to a cavity within 2.5 % of
+the larger of its flow and the bearing's leakage.
 """
 
 from __future__ import annotations

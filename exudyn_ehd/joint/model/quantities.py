@@ -118,7 +118,9 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
     p = film.parts
     if p.supply is None:
         return np.zeros(0)
-    return p.supply.flows(p.solver.inflow()) * p.bearing.radial_clearance * p.grid.reference_length**2
+    # that of a turning area would change at once where an edge passes a column
+    inflow = p.solver.inflow(ended=not p.supply.rotating)
+    return p.supply.flows(inflow) * p.bearing.radial_clearance * p.grid.reference_length**2
 
 
 def leakages(film: SolvedFilm) -> tuple[float, float]:
