@@ -26,7 +26,7 @@ from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
-from exudyn_ehd.film.supply.rows import column_of_hole, supply_rows
+from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
 # Columns of a film that leaves them to the bearing.
@@ -320,14 +320,17 @@ def film_grid(
     start_angle: float,
     open_ring: bool,
     supply: tuple[SupplyArea, ...] = (),
+    conserves_mass: bool = False,
 ) -> FilmGrid:
     """Grid of a film model, with rows on the edges of supply areas and a column on the first hole.
 
-    Other parameters as for `bearing_grid`.
+    Of a film that ``conserves_mass`` the control volumes of rows meet on the edges. Other parameters as for
+    `bearing_grid`.
     """
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
     columns = columns_of(film, 0.5 * length / radius)
+    rows = placed(supply, length), radius, length, film.n_z, film.stretch
     return bearing_grid(
         radius,
         length,
@@ -336,7 +339,7 @@ def film_grid(
         stretch=film.stretch,
         start_angle=start_angle + column_of_hole(supply, columns),
         open_ring=open_ring,
-        rows=supply_rows(placed(supply, length), radius, length, film.n_z, film.stretch),
+        rows=meeting_rows(*rows, columns) if conserves_mass else supply_rows(*rows),
     )
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.supply.areas import placed
+from exudyn_ehd.film.supply.areas import axial_span, placed
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.supply.holes import circle, strength, strengths
-from exudyn_ehd.film.supply.rows import supply_rows
+from exudyn_ehd.film.supply.rows import meeting_rows, supply_rows
 
 RADIUS, LENGTH = 0.025, 0.05
 AREAS = [
@@ -136,8 +137,42 @@ def _random_areas(rng, half, symmetric):
     return areas
 
 
+def test_control_volumes_meet_on_the_edges_of_any_areas():
+    """Random areas of a film that conserves mass: its rows' control volumes fill every area, and no more, where rows of
+    other areas are not in the way; with four intervals at either end and an even number in all."""
+    rng, holes = np.random.default_rng(12), 0
+    for _ in range(200):
+        z, length = rng.uniform(-0.012, 0.012), LENGTH * rng.uniform(0.01, 0.3)
+        areas = [
+            ehd.Pocket(angle=1.0, width_angle=0.5, z=z, length=length),
+            ehd.AxialGroove(angle=3.0, width_angle=0.4, length=0.03),
+            ehd.Hole(angle=5.0, z=z, diameter=10 ** rng.uniform(-3.3, -1.9)),
+        ][rng.integers(3)]
+        others = (AREAS[0],) if rng.random() < 0.3 else ()
+        columns, n_z = int(rng.choice([48, 112, 192])), int(rng.integers(6, 24))
+        rows, weight = meeting_rows(placed((areas, *others), LENGTH), RADIUS, LENGTH, n_z, 0.75, columns)
+        faces = RADIUS * np.concatenate(([rows[0]], 0.5 * (rows[1:] + rows[:-1]), [rows[-1]]))
+        np.testing.assert_allclose(RADIUS * weight, np.diff(faces), rtol=1e-12)
+        assert np.all(np.diff(rows) > 0.0) and rows.size % 2 == 1 and rows.size <= max(n_z, 8) + 24
+        low, high = axial_span(areas)
+        within = np.flatnonzero((rows * RADIUS > low) & (rows * RADIUS < high))
+        if min(within[0], rows.size - 1 - within[-1]) < 4:
+            assert others
+        if isinstance(areas, ehd.Hole):
+            holes += 1
+            assert np.abs(rows * RADIUS - areas.z).min() < 1e-15
+            if others:
+                continue
+            half = math.sqrt(0.25 * areas.diameter**2 - (RADIUS * rows[within[0]] - areas.z) ** 2)
+            assert within.size == 1 or half > (0.5 - 1e-9) * 2.0 * math.pi * RADIUS / columns
+        for edge in (low, high):
+            assert np.abs(faces - edge).min() < 1e-9 * LENGTH
+    assert holes > 40
+
+
+@pytest.mark.parametrize("layout", [supply_rows, partial(meeting_rows, columns=112)], ids=["edges", "meeting"])
 @pytest.mark.parametrize("symmetric", [True, False])
-def test_mirrored_areas_have_mirrored_rows(symmetric):
+def test_mirrored_areas_have_mirrored_rows(symmetric, layout):
     """A bearing that is symmetric about its mid-plane has rows that are; any other the mirrored rows of its image."""
     rng, tried = np.random.default_rng(11), 0
     while tried < 300:
@@ -149,7 +184,7 @@ def test_mirrored_areas_have_mirrored_rows(symmetric):
         except ehd.InputError:
             continue  # areas that overlap
         tried += 1
-        made = [supply_rows(placed(tuple(a), LENGTH), RADIUS, LENGTH, n_z, 0.75) for a in (areas, image)]
+        made = [layout(placed(tuple(a), LENGTH), RADIUS, LENGTH, n_z, 0.75) for a in (areas, image)]
         rows, weight = made[0]
         other, its_weight = made[0] if symmetric else made[1]
         np.testing.assert_allclose(rows, -other[::-1], rtol=0.0, atol=1e-13)

@@ -8,6 +8,10 @@ pressure acts on the journal; its shear counts as that of the land. What flows o
 supply, leakage and the film's change of content balance to rounding, the other closures lose oil at the film's rupture.
 With `SwiftStieber` on the default grid an area in the housing feeds mostly within 2 %, next to a cavity within 2.5 % of
 the larger of its flow and the bearing's leakage.
+
+Within the cavity of `ElrodAdams` the band of oil behind an area is as wide as it, unless rows of other areas are in the
+way. Loads of films that live on that oil alone are mostly within 2 % on the default grid, at worst within 12 %, flows
+within twice that; ``supply resolution`` of the audit measures it.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ class SupplyMap:
     def _place(self) -> None:
         """Prescribed vertices, cut links and weights at the present spin."""
         g = self.grid
-        share = np.ones(g.shape)
+        share = np.ones((2, *g.shape))
         holes: list[tuple[Circle, int, float]] = []
         for area, mask in zip(self.supply, self.masks, strict=True):
             mask[:] = False
@@ -152,8 +152,8 @@ class SupplyMap:
 def cover(
     area: AxialGroove | CircumferentialGroove | Pocket, grid: FilmGrid, spin: float, mask: np.ndarray, share: np.ndarray
 ) -> None:
-    """Mark the vertices inside an area in mask (n, m), edges included, and take down in ``share`` (n, m) what part of
-    the links in theta to their neighbours is film."""
+    """Mark the vertices inside an area in mask (n, m), edges included, and take down in ``share`` (2, n, m) what part
+    of the links in theta and z to their neighbours is film."""
     low, high = axial_span(area)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     rows = np.ones(grid.z.size, dtype=np.bool_)
@@ -169,12 +169,24 @@ def cover(
     mask[inside[:, None], rows] = True
     if inside.size:
         for link, film in (((first - 1) % n, center - half - first + 1), (last % n, last + 1 - center - half)):
-            share[link, rows] = np.minimum(share[link, rows], film)
+            share[0, link, rows] = np.minimum(share[0, link, rows], film)
+    covered = np.flatnonzero(rows)
+    if not (covered.size and math.isfinite(low)):
+        return
+    # of a column next to an edge as much as its control volume lies within: nothing steps where it is passed
+    columns = np.arange(first - 1, last + 2)
+    within = np.clip(np.minimum(columns + 0.5, center + half) - np.maximum(columns - 0.5, center - half), 0.0, 1.0)
+    z, top = grid.z * grid.reference_length, covered[-1]
+    for at, edge, free in ((covered[0] - 1, low, covered[0] - 1), (top, high, top + 1)):
+        film = abs(z[free] - edge) / (z[at + 1] - z[at]) if 0 <= at < z.size - 1 else 1.0
+        if film < 1.0 - EDGE:
+            part = 1.0 / (1.0 + within * (1.0 / film - 1.0))
+            np.minimum.at(share[1, :, at], columns % n, part)
 
 
 @njit(cache=True)
 def cut_links(covered, share, area, cuts, weight):
-    """Conductance of links in theta from covered to free vertices, of which ``share`` (n, m) is film, and weights.
+    """Conductance of links from covered to free vertices, of which ``share`` (2, n, m) is film, and weights.
 
     Integrals, and flows in z, take the supply's pressure up to the edge: the free column stands for s (1 - s) of a
     distance s less (the trapezoidal rule has (1 - s) / 2, the same in the mean; here nothing is left where the edge
@@ -188,7 +200,7 @@ def cut_links(covered, share, area, cuts, weight):
             cuts[0, i, j] = 1.0
             if covered[i, j] == covered[nxt, j]:
                 continue
-            s = share[i, j]
+            s = share[0, i, j]
             cuts[0, i, j] = 1.0 / max(s, SHORTEST)
             last, free, inner = (i, nxt, (i - 1) % n) if covered[i, j] else (nxt, i, (nxt + 1) % n)
             back = 1.0 if covered[inner, j] else 0.0
@@ -201,3 +213,4 @@ def cut_links(covered, share, area, cuts, weight):
         for j in range(m - 1):
             low, high = width[i, j], width[i, j + 1]
             cuts[1, i, j] = low if abs(low - 1.0) > abs(high - 1.0) else high
+            cuts[1, i, j] /= max(share[1, i, j], SHORTEST)

@@ -1,8 +1,11 @@
-"""Rows of the film's grid on the axial edges of supply areas, and a column on a hole.
+"""Rows of the film's grid on the axial edges of supply areas, or on either side of them, and a column on a hole.
 
 Circumferential grooves part the film into lands, which share the grid's intervals by their lengths. In a land with
 edges of other areas, every part between two edges gets as many of its intervals as the stretched grid has there; four
 at least where no area lies, which is the film between areas or at an end.
+
+In a cavity that conserves its oil the band behind an area is as wide as the control volumes of its rows: there they
+meet on its edges (`meeting_rows`), and on those of a hole.
 """
 
 from __future__ import annotations
@@ -50,6 +53,62 @@ def supply_rows(
     # an even number can be halved for a coarser grid
     counts[middle] += sum(counts) % 2
     return rows_between([z / radius for z in edges], counts, stretch)
+
+
+def meeting_rows(
+    supply: Sequence[SupplyArea], radius: float, length: float, n_z: int, stretch: float, columns: int
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """As `supply_rows`, with two rows about every edge of a groove along the axis or a pocket, and an odd number of
+    rows within a hole, whose control volumes are as wide as it; as before where other rows are in the way."""
+    found = supply_rows(supply, radius, length, n_z, stretch)
+    if found is None or all(isinstance(area, CircumferentialGroove) for area in supply):
+        return found
+    z, same = radius * found[0], SAME * length
+    near = np.minimum(np.diff(z, prepend=-math.inf), np.diff(z, append=math.inf))
+    lasting = [-0.5 * length, 0.5 * length, *(edge for span in groove_spans(supply) for edge in span)]
+    edges = {x for a in supply if not isinstance(a, (CircumferentialGroove, Hole)) for x in axial_span(a)}
+    for edge in sorted(edges):
+        k = int(np.argmin(np.abs(z - edge)))
+        if abs(z[k] - edge) <= same and not _taken(lasting, edge, edge, same):
+            lasting += [edge - near[k] / 3.0, edge + near[k] / 3.0]
+    rows = [x for x in z if not any(abs(x - edge) <= same for edge in edges)] + lasting
+    holes = [area for area in supply if isinstance(area, Hole)]
+    for hole in holes:
+        inside, width = _rows_of_hole(hole, near[int(np.argmin(np.abs(z - hole.z)))], 2.0 * math.pi * radius / columns)
+        around = inside[0] - width, inside[-1] + width
+        others = [*lasting, *(other.z for other in holes if other.z != hole.z)]
+        if not _taken(others, around[0] - 0.4 * width, around[1] + 0.4 * width, 0.0):
+            rows = [x for x in rows if not around[0] - 0.4 * width < x < around[1] + 0.4 * width]
+            rows += [*inside, *around]
+            lasting += [*inside, *around]
+    rows = sorted({x for x in rows if abs(x) <= 0.5 * length})
+    z = np.array([x for k, x in enumerate(rows) if k == 0 or x - rows[k - 1] > same])
+    fed = [k for k, x in enumerate(z) if any(low <= x <= high for low, high in map(axial_span, supply))]
+    while fed[0] < LEAST or z.size - 1 - fed[-1] < LEAST or z.size % 2 == 0:
+        low, high = (0, fed[0]) if fed[0] < LEAST else (fed[-1] if z.size - 1 - fed[-1] < LEAST else 0, z.size - 1)
+        middles, widths = 0.5 * (z[1:] + z[:-1])[low:high], np.diff(z)[low:high]
+        # of several the one nearest to the mid-plane, on the side to which all rows lean
+        order = -middles * np.sign(np.round(z.sum() / length, 9)), np.abs(middles), -np.round(widths / length, 9)
+        k = low + int(np.lexsort(order)[0])
+        z = np.insert(z, k + 1, 0.5 * (z[k] + z[k + 1]))
+        fed = [j + (j > k) for j in fed]
+    ends = np.concatenate(([z[0]], 0.5 * (z[1:] + z[:-1]), [z[-1]]))
+    return z / radius, np.diff(ends) / radius
+
+
+def _taken(lasting: Sequence[float], low: float, high: float, same: float) -> bool:
+    return any(low - same <= x <= high + same for x in lasting)
+
+
+def _rows_of_hole(hole: Hole, spacing: float, column: float) -> tuple[np.ndarray, float]:
+    """Rows within a hole, and the width of their control volumes: as many as the grid has there, but so that the
+    outermost ones reach a column."""
+    r = 0.5 * hole.diameter
+    count = 2 * round(r / spacing) + 1
+    while count > 1 and (r * (1.0 - 1.0 / count)) ** 2 + (0.5 * column) ** 2 > r * r:
+        count -= 2
+    width = hole.diameter / count
+    return hole.z + width * (np.arange(count) - count // 2), width
 
 
 def column_of_hole(supply: Sequence[SupplyArea], n_theta: int) -> float:

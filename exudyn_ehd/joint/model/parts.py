@@ -19,13 +19,24 @@ def _supply_map(bearing: JournalBearing, grid: FilmGrid) -> SupplyMap | None:
     return SupplyMap(bearing.supply, grid, around) if bearing.supply else None
 
 
+def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool = False) -> FilmGrid:
+    """Grid of a bearing's film that starts at ``start_angle``, rad."""
+    return film_grid(
+        bearing.film,
+        bearing.journal_radius,
+        bearing.length,
+        start_angle=start_angle,
+        open_ring=open_ring,
+        supply=bearing.supply,
+        conserves_mass=bearing.closure.conserves_mass,
+    )
+
+
 def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -> FilmParts:
     """Parts of the model of a bearing with its effects, on the grid that starts at ``start_angle``, rad."""
     R, c = bearing.journal_radius, bearing.radial_clearance
     open_ring = isinstance(bearing.inlet, MaximumGap)
-    grid = film_grid(
-        bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring, supply=bearing.supply
-    )
+    grid = grid_of(bearing, start_angle, open_ring)
     supply = _supply_map(bearing, grid)
     grid = grid if supply is None else supply.grid
     liner: NonlinearFilmSolver | None = None

@@ -8,8 +8,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.models import film_grid
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature, ViscosityField
+from exudyn_ehd.joint.model.parts import grid_of
 from exudyn_ehd.joint.seams import Effects, PressureLaw, shear_product
 from exudyn_ehd.status import InputError
 
@@ -69,11 +69,8 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     # imported here: other films need no walls
     from exudyn_ehd.joint.heat.walls import Growth, WalledTemperature
 
-    grid = film_grid(
-        bearing.film, bearing.journal_radius, bearing.length, start_angle=0.0, open_ring=False, supply=bearing.supply
-    )
     kind = WalledTemperature if thermal.across == 1 else CubicTemperature
-    walled = kind(thermal, bearing, field, grid.shape)
+    walled = kind(thermal, bearing, field, grid_of(bearing).shape)
     return replace(effects, thermal=walled, gap_terms=(Growth(walled),) if walled.grows else ())
 
 

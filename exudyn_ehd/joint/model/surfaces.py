@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.models import FiniteLength, film_grid
+from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
+from exudyn_ehd.joint.model.parts import grid_of
 from exudyn_ehd.joint.seams import Effects, GapTerm, Wear
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import InputError
@@ -32,8 +33,7 @@ def surface_effects(bearing: JournalBearing, start_angle: float) -> Effects:
     gap_terms: list[GapTerm] = []
     wear = None
     if bearing.profiles or bearing.wear is not None:
-        R, supply = bearing.journal_radius, bearing.supply
-        grid = film_grid(bearing.film, R, bearing.length, start_angle=start_angle, open_ring=False, supply=supply)
+        grid = grid_of(bearing, start_angle)
         if bearing.profiles:
             gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
         if bearing.wear is not None:
