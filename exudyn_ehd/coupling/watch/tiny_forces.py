@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
 
+import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import JointHistory
-from exudyn_ehd.coupling.watch.solver_state import Solver, is_explicit
+from exudyn_ehd.coupling.watch.solver_state import Solver
 
 # Tolerance over the mean force of a run from which on it is told, one to take, and the force that is rounding, as a
 # share of the film's unit.
@@ -18,9 +18,11 @@ LOOSE, CLOSE, ROUNDING = 1e-3, 1e-6, 1e-10
 
 def warn(name: str, solver: Solver | None, bearing: object, history: JointHistory) -> None:
     """Warn where a run with Newton's method has left a share of the forces of the joint ``name``."""
-    if solver is None or is_explicit(solver) or not isinstance(bearing, JournalBearing) or history.time.size < 2:
+    if not isinstance(solver, exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic):
         return
-    newton: Any = solver.newton  # type: ignore[union-attr]
+    if not isinstance(bearing, JournalBearing) or history.time.size < 2:
+        return
+    newton = solver.newton
     force = float(np.mean(np.linalg.norm(history.force, axis=1)))
     left = newton.absoluteTolerance / solver.conv.errorCoordinateFactor
     unit = bearing.reference_force(float(np.abs(history.motion[:, 8]).max()))
