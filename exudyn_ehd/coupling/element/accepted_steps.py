@@ -25,7 +25,7 @@ from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films, turning_meshes
+from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films, tiny_forces, turning_meshes
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
@@ -362,6 +362,7 @@ class AcceptedSteps:
             return
         self._told = True
         history = self.history(mbs)
+        tiny_forces.warn(self.film.failures.name, self.solver, self.film.model.bearing, history)
         if summary.is_on() and history.time.size > 1:
             implicit = solver_state.is_implicit(self.solver)
             summary.tell(self.film.failures.name, self.film.model.bearing, history, in_time=implicit)

@@ -34,8 +34,9 @@ from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.status import FilmError
 
-# Unbalance over the loads of the films that counts as none, and steps of Newton's method that may pass.
-TOLERANCE, STEPS = 1e-8, 40
+# Unbalance over the loads of the films that counts as none, steps of Newton's method that may pass, and rounding of
+# places over their distance from the origin.
+TOLERANCE, STEPS, ROUNDING = 1e-8, 40, 1e-15
 RANK = 1e-9
 FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
 
@@ -55,8 +56,8 @@ class Balance(NamedTuple):
         The way to where constraints hold.
     multipliers : (m + r,) array
         Change of the multipliers, and the torques of the drives.
-    residual : float
-        Unbalance over the films' loads.
+    residual, rounding : float
+        Unbalance over the films' loads, and what of it is the rounding of places times their stiffness.
     """
 
     r: np.ndarray
@@ -66,6 +67,7 @@ class Balance(NamedTuple):
     mend: np.ndarray
     multipliers: np.ndarray
     residual: float
+    rounding: float
 
 
 class EquilibriumSearch:
@@ -204,7 +206,9 @@ class EquilibriumSearch:
         mend = -inverse[:, : error.size] @ error
         scale = max(math.sqrt(size), 1e-300)
         residual = float(np.abs(self.weights * (free @ (free.T @ r))).max()) / scale
-        return Balance(r, K, r_u, free, mend, -inverse.T @ r, residual)
+        reach = max(float(np.abs(node.position(system.q)).max()) for node in system.nodes.values())
+        rounding = ROUNDING * reach * float(np.abs(np.outer(self.weights, self.weights) * K).max()) / scale
+        return Balance(r, K, r_u, free, mend, -inverse.T @ r, residual, rounding)
 
     def _step(self, balance: Balance) -> np.ndarray:
         """Newton's step (size,)."""
@@ -224,7 +228,8 @@ class EquilibriumSearch:
             if films is None:
                 return None
             balance = self._balance([f.all_loads(e.wrench, t) for f, e, t in zip(self.films, *films, strict=True)])
-            if balance.residual < TOLERANCE and np.abs(balance.mend).max() < TOLERANCE * self.length:
+            settled = balance.residual < max(TOLERANCE, balance.rounding)
+            if settled and np.abs(balance.mend).max() < TOLERANCE * self.length:
                 return films
             count = system.multipliers.size
             system.multipliers = system.multipliers + balance.multipliers[:count]

@@ -8,6 +8,8 @@ from exudyn_ehd.status import InputError, require_bool, require_number
 
 # Spectral radius: Exudyn's default, and the one for films.
 EXUDYNS_RADIUS, RADIUS = 0.9, 0.6
+# Newton's absolute tolerance, N.
+ABSOLUTE = 1e-8
 
 
 def require_settings(where: str, settings: object) -> None:
@@ -38,7 +40,7 @@ def ConfigureSolver(
     simulationSettings: exu.SimulationSettings,
     relativeTolerance: float = 1e-6,
     useModifiedNewton: bool = False,
-    absoluteTolerance: float = 1e-8,
+    absoluteTolerance: float | None = None,
     spectralRadius: float | None = None,
 ) -> exu.SimulationSettings:
     """Set what a model with lubricated joints needs in dynamic and static solves; everything else stays.
@@ -66,8 +68,9 @@ def ConfigureSolver(
         Changed in place.
     relativeTolerance : float
         Newton's relative tolerance.
-    absoluteTolerance : float
-        Newton's absolute tolerance; a larger one that is set already stays.
+    absoluteTolerance : float, optional
+        Newton's absolute tolerance, N. None: 1e-8, and a larger one that is set already stays. Films that carry less
+        than 1e-5 N want 1e-6 of their load.
     useModifiedNewton : bool
         Keep the Jacobian over several steps.
     spectralRadius : float, optional
@@ -95,7 +98,8 @@ def ConfigureSolver(
     require_settings("ConfigureSolver", simulationSettings)
     modified = require_bool("ConfigureSolver.useModifiedNewton", useModifiedNewton)
     tolerance = require_number("ConfigureSolver.relativeTolerance", relativeTolerance, above=0.0)
-    smallest = require_number("ConfigureSolver.absoluteTolerance", absoluteTolerance, above=0.0)
+    if absoluteTolerance is not None:
+        require_number("ConfigureSolver.absoluteTolerance", absoluteTolerance, "N", above=0.0)
     alpha = simulationSettings.timeIntegration.generalizedAlpha
     if spectralRadius is not None:
         radius = require_number("ConfigureSolver.spectralRadius", spectralRadius, at_least=0.0, at_most=1.0)
@@ -104,7 +108,7 @@ def ConfigureSolver(
         alpha.spectralRadius = RADIUS
     for solver in (simulationSettings.timeIntegration, simulationSettings.staticSolver):
         solver.newton.relativeTolerance = tolerance
-        solver.newton.absoluteTolerance = max(smallest, solver.newton.absoluteTolerance)
+        solver.newton.absoluteTolerance = absoluteTolerance or max(ABSOLUTE, solver.newton.absoluteTolerance)
         solver.newton.adaptInitialResidual = False
         solver.newton.useModifiedNewton = modified
         solver.adaptiveStep = True

@@ -26,8 +26,9 @@ from exudyn_ehd.film.reynolds.links import (
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.status import Status
 
-# Stands for a vanishing time step where only the rates at one instant are asked for, s.
-INSTANT = 1e-9
+# Stands for a vanishing time step where only the rates at one instant are asked for, share of the time in which the
+# film changes.
+INSTANT = 1e-8
 
 
 class FilmSolver:
@@ -193,11 +194,15 @@ class FilmSolver:
         if mass_old is None:
             s.inverse_step = 0.0
         elif self.instant:
-            s.inverse_step = 1.0 / INSTANT
-            s.mass_old[:] = mass_old * (1.0 - INSTANT * self.H_t / self.H)
+            s.inverse_step = self._inverse_instant()
+            s.mass_old[:] = mass_old * (1.0 - self.H_t / (s.inverse_step * self.H))
         else:
             s.inverse_step = 1.0 / step
             s.mass_old[:] = mass_old
+
+    def _inverse_instant(self) -> float:
+        """1 / a step that stands for none, 1/s, for the speeds and rates now stored."""
+        return (abs(self.vx) + abs(self.vz) + float(np.abs(self.H_t).max()) or 1.0) / INSTANT
 
     def keep(self, void: np.ndarray, step: float) -> np.ndarray:
         """What the content (n, m) at the start of a step is taken as, for the gaps and rates now stored: ``mass_old``.

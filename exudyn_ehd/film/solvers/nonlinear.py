@@ -69,8 +69,6 @@ from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import Status
 
-# Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
-LINER_INSTANT = 1e-6
 # Share of an oil's largest pressure at which a film that was not found is on its way beyond.
 NEARLY_SOLID = 0.9
 
@@ -271,7 +269,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
     def _set_times(self, mass_old: np.ndarray | None, step: float) -> None:
         """Which rates take part, and over which time."""
         e = self.elements
-        inverse = 1.0 / step if step > 0.0 else 1.0 / LINER_INSTANT
+        inverse = 1.0 / step if step > 0.0 else self._inverse_instant()
         moving = self.delta_old is not None and self.squeeze
         self.deflection_inverse = inverse if moving else 0.0
         if self.delta_old is not None:

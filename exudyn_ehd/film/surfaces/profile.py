@@ -17,10 +17,21 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.interpolate import PchipInterpolator, RectBivariateSpline
 
-from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_plausible
+from exudyn_ehd.status import (
+    InputError,
+    PlausibilityWarning,
+    require_integer,
+    require_number,
+    require_numbers,
+    require_plausible,
+    warn_user,
+)
 
 # Of given points (m or rad), far beyond any machine's: where slopes between them overflow.
 LARGEST_SIZE, SMALLEST_STEP = 1e6, 1e-12
+# Places between two vertices where a profile is compared with the straight line that a film takes, as shares of their
+# distance, and the difference to warn from, as a share of the clearance.
+BETWEEN, MISSED = (0.21, 0.47, 0.83), 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -234,13 +245,32 @@ class ProfileTerm:
     def __init__(
         self, profiles: tuple[Profile, ...], theta: np.ndarray, z: np.ndarray, length: float, clearance: float
     ) -> None:
-        self.values = np.sum([p.depth(theta, z, length) for p in profiles], axis=0) / clearance
+        def depth(at: np.ndarray, along: np.ndarray) -> np.ndarray:
+            return np.sum([p.depth(at, along, length) for p in profiles], axis=0) / clearance
+
+        self.values = depth(theta, z)
         if not self.values.min() > -1.0:
             raise InputError(
                 f"JournalBearing.profile closes the gap of a concentric journal: its depth goes down to "
                 f"{self.values.min() * clearance:.3g} m at a radial clearance of {clearance:g} m; a depth is in "
                 f"metres and positive where it opens the gap."
             )
+        for name, known, inside in (
+            ("n_z", self.values.T, lambda share: depth(theta, z[:-1] + share * np.diff(z)).T),
+            (
+                "n_theta",
+                np.vstack((self.values, self.values[:1])),
+                lambda share: depth(theta + share * (theta[1] - theta[0]), z),
+            ),
+        ):
+            missed = max(np.abs(inside(s) - known[:-1] - s * np.diff(known, axis=0)).max() for s in BETWEEN)
+            if missed > MISSED:
+                warn_user(
+                    f"JournalBearing.profile: between the vertices of the film's grid it departs from a straight line "
+                    f"by {missed:.2g} of the clearance, which the film does not see; take a larger {name}, or leave "
+                    "out what is that short.",
+                    PlausibilityWarning,
+                )
 
     def field(self, history: object) -> np.ndarray:
         """Scaled addition to the gap (n, m)."""

@@ -114,10 +114,12 @@ class Comparison:
         if remembers:
             motion = its.motion[:MOTION_SIZE]
             return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
-        # the temperature is held where both have the same: what else changes it is of second order
+        # the temperature is held where both have the same: what else changes it is of second order; one that is a
+        # field settles anew on another grid
         own = self.model.bearing
-        same = other.bearing.thermal is not None and other.bearing.thermal == own.thermal
-        held = mine.history if same else None
+        held = mine.history if other.bearing.thermal is not None and other.bearing.thermal == own.thermal else None
+        if held is not None and isinstance(held.temperature, np.ndarray) and other.grid.shape != self.model.grid.shape:
+            held = None
         if other.flexible and other.bearing.bush is own.bush and other.bearing.journal is own.journal:
             other.evaluate(mine.motion, held)  # the search for its bore's shape starts from this one's
         search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)

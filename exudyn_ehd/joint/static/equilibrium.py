@@ -32,7 +32,7 @@ SETTLED_STEP = 1e-4
 # Relative errors of the critical mass from here on are told when a result is printed.
 SURE = 0.05
 # Error of the critical mass per squared cancellation on 96 columns: line on the grid, with Gümbel, inside its cells.
-ON_GRID, CLIPPED, IN_CELLS = 0.02, 0.03, 0.003
+ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
 # What is left inside the cells where nothing cancels.
 LEFT_IN_CELLS = 0.007
 LOADS = {"smallest": 1e-30, "largest": 1e15}
@@ -64,8 +64,8 @@ class EquilibriumResult:
         Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
         the grid does not tell whether the bearing is stable at any mass, and with `ElrodAdams` between surfaces that
         yield, whose delays it leaves out. Of all results the critical mass feels the
-        grid most: on the default film 1 to 5 % at an eccentricity ratio of 0.7, 3 to 20 % from 0.76 on, with its
-        rupture line on the vertices some 15 % and several times.
+        grid most: on the default film within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture
+        line on the vertices within some 20 % and several times.
     residual : float
         Largest component of film force + load in x and y, divided by the load there.
     iterations : int
@@ -378,11 +378,12 @@ def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping:
     """Estimate of the relative error of the critical mass, inf from 1 on.
 
     The square of the whirl frequency of `whirl_threshold` is a difference of products that nearly cancel where the
-    bearing is nearly stable at any mass. With a = (k - Kxx)(k - Kyy), b = Kxy Kyx and the cancellation
-    A = (|a| + |b|) / |a - b|, the error was found to be less than::
+    bearing is nearly stable at any mass. With a = (k - Kxx)(k - Kyy) and b = Kxy Kyx in the axes in which
+    Kxy = -Kyx, whatever those of the joint, and the cancellation A = (|a| + |b|) / |a - b|, the error was found to be
+    less than::
 
-        0.02 (96 / n) A^2                 rupture line on a grid of n columns, with `Gumbel` 0.03
-        (0.003 A^2 + 0.007) (96 / n)^2    rupture line inside the cells, with `Gumbel` without 0.007
+        0.013 (96 / n) A^2                 rupture line on a grid of n columns, with `Gumbel` 0.016
+        (0.0013 A^2 + 0.007) (96 / n)^2    rupture line inside the cells, with `Gumbel` without 0.007
 
     in 99 % of films over L/D 0.25 to 2, eccentricity ratios from 0.3 on and 16 directions of the load.
     """
@@ -394,7 +395,8 @@ def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping:
     if cxx + cyy <= 0.0:
         return math.inf
     k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / (cxx + cyy)
-    a, b = (k - kxx) * (k - kyy), kxy * kyx
+    b = -0.25 * (kxy - kyx) ** 2
+    a = (k - kxx) * (k - kyy) - kxy * kyx + b
     if a == b:
         return math.inf
     grid = 96.0 / columns

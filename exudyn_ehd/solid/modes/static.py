@@ -56,7 +56,7 @@ from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 # Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
-FORMAT = 2
+FORMAT = 3
 LARGEST_WAVE, LARGEST_AXIAL = 24, 10
 # Share of the energy below which a combination of pressures adds nothing but rounding.
 DEPENDENT = 1e-9
@@ -282,7 +282,7 @@ def enough_modes(
     scale: np.ndarray | None = None,
 ) -> tuple[np.ndarray, float]:
     """Indices of the candidates of the smallest orders (N, L) that meet the tolerance, and their error."""
-    count = len(orders)
+    count, size = len(orders), np.sqrt(np.diag(compliance))
     exact = radial[count:]
     scale = np.linalg.norm(exact, axis=1) if scale is None else scale
     best: tuple[np.ndarray, float] | None = None
@@ -292,11 +292,10 @@ def enough_modes(
             chosen = np.flatnonzero((orders[:, 0] <= wave) & (orders[:, 1] <= axial))
             if best is not None and len(chosen) >= len(best[0]):
                 break
-            try:
-                part = np.linalg.solve(compliance[np.ix_(chosen, chosen)], compliance[chosen, count:])
-            except np.linalg.LinAlgError:
-                # more waves than the mesh has nodes for
-                break
+            # of more waves than the mesh has nodes for some depend on others
+            matrix = compliance[np.ix_(chosen, chosen)] / np.outer(size[chosen], size[chosen])
+            part = np.linalg.lstsq(matrix, compliance[chosen, count:] / size[chosen, None], rcond=DEPENDENT)[0]
+            part /= size[chosen, None]
             error = float((np.linalg.norm(part.T @ radial[chosen] - exact, axis=1) / scale).max())
             if error <= tolerance:
                 best = chosen, error

@@ -8,7 +8,7 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 import pytest
-from exudyn.utilities import InertiaCylinder
+from exudyn.utilities import InertiaCylinder, RigidBodyInertia
 from scenes import new_system, rotation, settings
 
 import exudyn_ehd as ehd
@@ -238,3 +238,39 @@ def test_explicit_solvers_take_modes_with_mass():
     mbs, joint = free_pair(dataclasses.replace(BEARING.bush, dynamics=True), False)
     ehd.SolveDynamic(mbs, settings(2e-8, 2), solverType=exu.DynamicSolverType.RK44)
     assert len(joint.history.time) == 3
+
+
+def test_small_fast_bearings_are_like_large_slow_ones():
+    """The modes' numerical mass was that of a period, 6e-6 s: half the force of a rotor of 77 000 rad/s."""
+
+    def forces(length, time):
+        mbs, mass = new_system(), length * time
+        radius, clearance = 0.02 * length, 2e-5 * length
+        mesh = ehd.HollowCylinder(
+            inner_radius=radius + clearance, thickness=0.3 * radius, length=radius, axial=1, radial=1, circumferential=8
+        )
+        steel = ehd.SaintVenantKirchhoff(
+            youngs_modulus=2.1e11 / time, poisson_ratio=0.3, density=7800 * time / length**2
+        )
+        bearing = ehd.JournalBearing(
+            journal_radius=radius,
+            length=radius,
+            radial_clearance=clearance,
+            lubricant=ehd.Lubricant(viscosity=0.02),
+            film=ehd.FiniteLength(n_theta=32, n_z=4),
+            bush=ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.2),
+        )
+        journal = mbs.CreateRigidBody(
+            inertia=RigidBodyInertia(mass=0.5 * mass, inertiaTensor=2e-3 * mass * length**2 * np.eye(3)),
+            initialAngularVelocity=[0, 0, 300.0 / time],
+            nodeType=exu.NodeType.RotationRxyz,
+        )
+        unit = length**2 / time
+        mbs.CreateForce(itemNumber=journal, loadVector=[0, -500.0 * unit, 0])
+        joint = ehd.CreateLubricatedJoint(mbs, "b", [mbs.CreateGround(), journal], [0, 0, 0], [0, 0, 1], bearing)
+        mbs.Assemble()
+        ehd.SolveDynamic(mbs, settings(5e-3 * time, 30))
+        return joint.history.force / unit
+
+    large = forces(1.0, 1.0)
+    np.testing.assert_allclose(forces(2.0**-6, 2.0**-8), large, rtol=0.0, atol=1e-5 * np.abs(large).max())

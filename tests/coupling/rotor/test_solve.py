@@ -232,3 +232,19 @@ def test_thrust_faces_take_part_with_their_exact_tangent():
     # Exudyn sees the faces again
     number = joint.element.faces.objectNumber
     assert mbs.GetObjectParameter(number, "forceUserFunction")["function"] == joint.element.faces.force
+
+
+def test_a_light_rotor_far_from_the_origin_is_found():
+    """The rounding of its place, 7e-15 m, times the films' stiffness is 1e-6 of their loads."""
+    places = []
+    for far in (0.0, 50.0):
+        mbs = exu.SystemContainer().AddSystem()
+        ground, origin = mbs.CreateGround(), np.array([far, -far, 0.0])
+        inertia = inertia_of(2.0, 0.02, 0.002, np.eye(3))
+        body = mbs.CreateRigidBody(referencePosition=origin, inertia=inertia, gravity=[0, -WEIGHT, 0])
+        for name, z, axial in (("left", -0.1, ehd.Held()), ("right", 0.1, ehd.Free())):
+            at = origin + [0.0, 0.0, z]
+            ehd.CreateLubricatedJoint(mbs, name, [ground, body], at, [0, 0, 1], bearing(), axial=axial)
+        mbs.Assemble()
+        places.append(ehd.SolveEquilibrium(mbs, SPEED).motion[0, :, :2])
+    np.testing.assert_allclose(places[1], places[0], rtol=0.0, atol=1e-6 * CLEARANCE)

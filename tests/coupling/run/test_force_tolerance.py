@@ -176,3 +176,29 @@ def test_a_first_residual_deep_in_a_contact_lets_no_state_pass(load):
         missed = inertia.mass * acceleration - force + [0.0, load]
         assert np.abs(missed).max() < 1e-4 * np.abs(force).max()
         joint.forget()
+
+
+@pytest.mark.parametrize("solve", [ehd.SolveDynamic, exu.MainSystem.SolveDynamic])
+def test_forces_below_newtons_absolute_tolerance_are_told(solve):
+    """Pivots under loads of 1e-7 N that turn had forces that were 7 % off, without a word."""
+    small = {"journal_radius": 4e-5, "length": 4e-5, "radial_clearance": 4e-8}
+    bearing = ehd.JournalBearing(
+        **small, lubricant=ehd.Lubricant(viscosity=0.02), film=ehd.FiniteLength(n_theta=32, n_z=4)
+    )
+
+    def run(**options):
+        mbs = exu.SystemContainer().AddSystem()
+        inertia = RigidBodyInertia(mass=1e-2, inertiaTensor=1e-11 * np.eye(3))
+        journal = mbs.CreateRigidBody(inertia=inertia, initialAngularVelocity=[0, 0, 0.5])
+        mbs.CreateForce(itemNumber=journal, loadVector=[0, -1e-6, 0])
+        joint = ehd.CreateLubricatedJoint(mbs, "pivot", [mbs.CreateGround(), journal], [0, 0, 0], [0, 0, 1], bearing)
+        mbs.Assemble()
+        settings = exu.SimulationSettings()
+        settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 10, 1.0
+        settings.solution.file.write = False
+        solve(mbs, ehd.ConfigureSolver(settings, **options))
+        return joint.history.force
+
+    with pytest.warns(UserWarning, match=r"'pivot': its film carries 9.8e-07 N .* absoluteTolerance=1e-12\)"):
+        run()
+    run(absoluteTolerance=1e-12)

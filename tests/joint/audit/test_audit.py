@@ -264,6 +264,18 @@ def test_effects_that_do_not_matter_are_unneeded(effect):
     assert f"{finding.time_share:.0%}" in str(found)
 
 
+@pytest.mark.parametrize("across", [1, 2])
+def test_fields_of_temperature_are_compared_with_finer_grids(across):
+    """They settle there anew; the audit ended with an error of numpy."""
+    thermal = ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=2e3, conductivity=0.13, across=across)
+    made = bearing(thermal=thermal, lubricant=ehd.oil("ISO VG 46"), film=ehd.FiniteLength(n_theta=48, n_z=6))
+    found = audit(made, eps=0.8)
+    for name, sizes in (("grid around", (96, 6)), ("grid along", (48, 12))):
+        finer = dataclasses.replace(made, film=ehd.FiniteLength(n_theta=sizes[0], n_z=sizes[1]))
+        loads = [np.hypot(*ehd.steady(b, speed=SPEED, eccentricity_ratio=0.8).force[:2]) for b in (made, finer)]
+        assert found[name].change.load == pytest.approx(loads[1] / loads[0] - 1.0, abs=1e-6)
+
+
 @pytest.mark.slow
 def test_heat_into_walls():
     """Off: what walls of steel would change. On: the shares of the heat that they take."""

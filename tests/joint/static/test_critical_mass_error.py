@@ -58,7 +58,7 @@ def test_the_estimate_is_a_bound_and_not_a_loose_one(closure, place):
     ("ratio", "load", "angle"), [(1.847, 105577.0, 3.399), (0.93, 22806.0, 0.201), (0.44, 3393.0, 5.058)]
 )
 def test_the_estimate_is_a_bound_where_nothing_cancels(ratio, load, angle):
-    """Drawn at random: 0.4 to 0.7 % off, of which cancellation is less than half."""
+    """Drawn at random, in axes in which nothing cancels: 0.4 to 0.7 % off, by up to 1.5 % in other directions."""
     masses, errors = [], []
     for film in (ehd.FiniteLength(), ehd.FiniteLength(n_theta=256, n_z=24)):
         bearing = ehd.JournalBearing(
@@ -71,7 +71,7 @@ def test_the_estimate_is_a_bound_where_nothing_cancels(ratio, load, angle):
         rest = ehd.equilibrium(bearing, speed=SPEED, load=(load * math.cos(angle), load * math.sin(angle)))
         masses.append(rest.critical_mass)
         errors.append(rest.critical_mass_error)
-    assert abs(masses[0] / masses[1] - 1.0) < errors[0] < 0.012
+    assert abs(masses[0] / masses[1] - 1.0) < errors[0] < 0.035
 
 
 def test_what_a_result_says(make_bearing):
@@ -88,6 +88,19 @@ def test_what_a_result_says(make_bearing):
     assert "(uncertain)" in repr(open_)
     default = ehd.equilibrium(make_bearing(film=ehd.FiniteLength()), speed=SPEED, load=force[0.72])
     assert default.critical_mass_error < 0.5 * rough.critical_mass_error
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0])
+def test_the_estimate_knows_no_axes(ratio):
+    """A bearing that is turned as a whole has the same error; it was up to 18 times another one."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025, length=0.05 * ratio, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02)
+    )
+    rest = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -20000.0 * ratio))
+    for angle in (0.3, 1.0, 2.2):
+        Q = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+        turned = critical_mass_error(bearing, Q @ rest.stiffness @ Q.T, Q @ rest.damping @ Q.T)
+        assert turned == pytest.approx(rest.critical_mass_error, rel=1e-9)
 
 
 def test_films_without_a_rupture_line_have_none(make_bearing):

@@ -1,0 +1,35 @@
+"""Films that carry so little that Newton's absolute tolerance lets them be anything."""
+
+from __future__ import annotations
+
+import warnings
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.watch.solver_state import Solver
+
+# Tolerance over the mean force of a run from which on it is told, one to take, and the force that is rounding, as a
+# share of the film's unit.
+LOOSE, CLOSE, ROUNDING = 1e-3, 1e-6, 1e-10
+
+
+def warn(name: str, solver: Solver | None, bearing: object, history: JointHistory) -> None:
+    """Warn where a run with Newton's method has left a share of the forces of the joint ``name``."""
+    if not isinstance(solver, exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic):
+        return
+    if not isinstance(bearing, JournalBearing) or history.time.size < 2:
+        return
+    newton = solver.newton
+    force = float(np.mean(np.linalg.norm(history.force, axis=1)))
+    left = newton.absoluteTolerance / solver.conv.errorCoordinateFactor
+    unit = bearing.reference_force(float(np.abs(history.motion[:, 8]).max()))
+    if newton.residualMode == 0 and ROUNDING * unit < force < left / LOOSE:
+        warnings.warn(
+            f"LubricatedJoint '{name}': its film carries {force:.2g} N in the mean, of which Newton's absolute "
+            f"tolerance lets {left:.2g} N be anything: ConfigureSolver(simulationSettings, absoluteTolerance="
+            f"{CLOSE * force:.0e}).",
+            stacklevel=2,
+        )
