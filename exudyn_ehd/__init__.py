@@ -10,7 +10,6 @@ joint      one bearing as a pure function of its motion; `steady`, `equilibrium`
 pictures   maps, orbits, traces, the bearing in space: matplotlib, in one style
 coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `CreateFlexibleBush`, solvers, histories
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
-reference  closed forms to compare with
 tables     columns of numbers as text and as CSV; units by name
 kernels    compilation of first films by two processes
 progress   how far long work is, where somebody looks

@@ -6,10 +6,10 @@ from scipy.integrate import solve_ivp
 from scipy.sparse.linalg import splu
 
 import exudyn_ehd as ehd
-from exudyn_ehd.reference.elastic_rings import bore_displacement, cylinder_yielding
 from exudyn_ehd.solid.journal.description import ElasticJournal, HeldBands, HeldEnds
 from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
 from exudyn_ehd.solid.journal.modes import FINE, GROWTH_INWARDS, _Reduction
+from tests.reference.elastic_rings import bore_displacement, cylinder_yielding
 
 E, NU = 2.1e11, 0.3
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=E, poisson_ratio=NU, density=7800.0)
