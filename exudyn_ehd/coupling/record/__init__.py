@@ -9,7 +9,6 @@ record       the rows of a joint's accepted steps, and histories back from files
 thinning     some of the steps, with the worst ones
 on_disk      a history in a file, for long runs
 films        films over accepted steps
-results      what a joint's handle offers
 summary      a run in one line
 revolutions  extremes by revolution
 sensors      Exudyn sensors

@@ -9,8 +9,6 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import JointModel, Side, Trial
-from exudyn_ehd.coupling.record.films import FilmRecorder
-from exudyn_ehd.joint.model.fields import FilmFields
 
 
 class Steps(Protocol):
@@ -18,13 +16,10 @@ class Steps(Protocol):
 
     Attributes
     ----------
-    recorder : FilmRecorder or None
-        Keeps films.
     observers : list of functions
         Called with every accepted trial that has a film.
     """
 
-    recorder: FilmRecorder | None
     observers: list[Callable[[Trial], None]]
 
     @property
@@ -58,8 +53,3 @@ class Element(Protocol):
 
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
-
-    def fields(
-        self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
-    ) -> FilmFields:
-        """Fields of the film at the last trial, that of the state in ``configuration``."""
