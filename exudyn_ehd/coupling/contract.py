@@ -17,6 +17,8 @@ from exudyn_ehd.status import InputError, Status
 # Exudyn's index types exist at run time, but not in its type stubs.
 _indices: Any = exu
 NodeIndex, ObjectIndex, MarkerIndex = _indices.NodeIndex, _indices.ObjectIndex, _indices.MarkerIndex
+CURRENT, START_OF_STEP = exu.ConfigurationType.Current, exu.ConfigurationType.StartOfStep
+INITIAL, REFERENCE = exu.ConfigurationType.Initial, exu.ConfigurationType.Reference
 Data: TypeAlias = dict[str, Any]
 """An item's data as Exudyn's GetNode, GetObject and GetMarker return them."""
 Index: TypeAlias = SupportsInt
@@ -45,15 +47,12 @@ class Evaluation(Protocol):
     def wrench(self) -> np.ndarray: ...
     def tangent(self) -> np.ndarray:
         """Derivative (6, 10) of the wrench with respect to the motion; only until the model's next evaluation."""
-        ...
 
     def quantities(self) -> Mapping[str, float]:
         """Scalars by name: minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load."""
-        ...
 
     def history(self) -> History | None:
         """What the film remembers if this state is accepted."""
-        ...
 
 
 class Trial:
@@ -101,16 +100,13 @@ class JointModel(Protocol):
     @property
     def remembers(self) -> bool:
         """Whether the force depends on accepted steps before; if not, memory is neither asked for nor handed over."""
-        ...
 
     @property
     def needs_spin(self) -> bool:
         """Whether the journal's angle matters (supply areas in the journal)."""
-        ...
 
     def initial_history(self, motion: np.ndarray) -> History | None:
         """Memory at the start of a run, at this motion."""
-        ...
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -120,7 +116,6 @@ class JointModel(Protocol):
         ``history`` is the memory at the last accepted step (None: the steady film), ``step`` the time since then [s],
         ``spin`` the journal's angle against the housing about the axis [rad].
         """
-        ...
 
 
 class Side(Protocol):
@@ -161,7 +156,6 @@ class Faces(Protocol):
 
     def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
         """The journal's film at a trial, to which the sides' arrays belong, with the journal's angle, rad."""
-        ...
 
     def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
         """Scalars at a trial, to which the sides' arrays belong."""

@@ -12,7 +12,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
+from exudyn_ehd.coupling.contract import INITIAL, Index, JointModel, Side, require_system
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.spherical import SphericalFilmElement
 from exudyn_ehd.coupling.items.item import Item
@@ -251,7 +251,7 @@ def _check_start(
     if any(isinstance(side, MarkerSide) for side in sides):
         return
     for item, side in zip(items, sides, strict=True):
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
+        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
     place = motion_of(sides[0].frame, sides[1].frame)[:3]
     if not model.smallest_gap(place) > 0.0:
         raise InputError(

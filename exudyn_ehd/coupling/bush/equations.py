@@ -17,6 +17,7 @@ from scipy.sparse import bmat, csr_matrix, identity
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.items.carrier import Carrier
 from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
 from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces, factor
@@ -56,7 +57,7 @@ class BushEquations:
     contained: RigidPart | None = None
 
     def motion(
-        self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
+        self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = CURRENT
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at a state of Exudyn."""
         u, v = self._nodal(q), self._nodal(q_t)
@@ -155,7 +156,7 @@ class BushEquations:
 
     def require_upright(self, mbs: exu.MainSystem, places: np.ndarray | slice, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
-        start, data = exu.ConfigurationType.StartOfStep, mbs.systemData
+        start, data = START_OF_STEP, mbs.systemData
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
         turned = self.solid.inversion(self.motion(q, q_t, start)[0])
         if turned:

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.coupling.bush.equations import BushEquations
+from exudyn_ehd.coupling.contract import START_OF_STEP
 
 
 class BushFunctions:
@@ -31,7 +32,7 @@ class BushFunctions:
 
     def watch(self, mbs: exu.MainSystem, item: int, places: np.ndarray | slice | None = None) -> None:
         """Raise if an element is inside out at the start of a step; ``places`` of the object's coordinates if known."""
-        start = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+        start = mbs.systemData.GetTime(START_OF_STEP)
         if start != self._watched:
             self._watched = start
             known = np.array(mbs.systemData.GetObjectLTGODE2(item)) if places is None else places

@@ -19,7 +19,7 @@ from typing import Protocol
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
@@ -36,8 +36,6 @@ from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
 from exudyn_ehd.status import OverloadWarning, Status
 
-_CURRENT = exu.ConfigurationType.Current
-_START_OF_STEP = exu.ConfigurationType.StartOfStep
 # A run goes on with the last step of the run before if it starts at its end, share of that step.
 SAME_TIME = 1e-3
 
@@ -178,9 +176,9 @@ class AcceptedSteps:
             solver_state.warn_unknown(self.film.failures.name)
         if self._uses_memory and self.memory is None:
             self.start = start
-            motion = self.film.motion(mbs, _START_OF_STEP)
+            motion = self.film.motion(mbs, START_OF_STEP)
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
-        trial = self.film.look(mbs, start, _START_OF_STEP)
+        trial = self.film.look(mbs, start, START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
         row = self.film.row(start, trial)
         if self.control is not None:
@@ -191,7 +189,7 @@ class AcceptedSteps:
             if not resumed or start > self.record.last_time:
                 self.record.append(row)
                 if self.recorder is not None:
-                    self.recorder.offer(start, lambda: self.film.fields(mbs, start, trial, _START_OF_STEP))
+                    self.recorder.offer(start, lambda: self.film.fields(mbs, start, trial, START_OF_STEP))
             for observe in self.observers:
                 observe(trial)
             if start > self.start:
@@ -204,7 +202,7 @@ class AcceptedSteps:
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
         self.film.require_items(mbs)
-        film, place, before = self.film, self.film.read(mbs, _START_OF_STEP)[0], self._first
+        film, place, before = self.film, self.film.read(mbs, START_OF_STEP)[0], self._first
         # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
         # nothing has moved either run starts where the other ended
         goes_on = start > self.record.last_time and (place != before or self.asked[1] == before)
@@ -263,7 +261,7 @@ class AcceptedSteps:
             if place != self.asked[1] and not solver_state.is_explicit(self.solver):
                 film.failures.warn_of_memory(start, end)
             if self._uses_memory and end > last:
-                trial = film.look(mbs, end, _START_OF_STEP)
+                trial = film.look(mbs, end, START_OF_STEP)
                 if trial.evaluation is not None and trial.status == Status.CONVERGED:
                     memory = trial.evaluation.history()
                 film.forget()
@@ -327,7 +325,7 @@ class AcceptedSteps:
     @property
     def _accepted(self) -> exu.ConfigurationType:
         # during a run, and after one that an exception has ended, the current state need not be an accepted one
-        return _CURRENT if self.is_idle else _START_OF_STEP
+        return CURRENT if self.is_idle else START_OF_STEP
 
     def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, exu.ConfigurationType]:
         """Time of the last accepted state, the film there, and the configuration that holds it."""

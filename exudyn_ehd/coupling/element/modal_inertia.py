@@ -25,13 +25,11 @@ import weakref
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.contract import CURRENT, Side
 from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import bind, detached
 from exudyn_ehd.solid.modes.static import BoreModes
-
-_CURRENT = exu.ConfigurationType.Current
 
 
 def describe(modes: BoreModes) -> tuple[str, float, str]:
@@ -141,6 +139,6 @@ class ModalInertia:
         if not self._bound:
             bind(self.mbs, self.side)
             self._bound = True
-        self.side.update(self.mbs, q, np.zeros_like(q), _CURRENT)
+        self.side.update(self.mbs, q, np.zeros_like(q), CURRENT)
         A = self.side.frame[:, :3]
         return np.concatenate((A.T @ self.side.jac[0], A.T @ self.side.jac[1]))

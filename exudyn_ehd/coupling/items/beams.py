@@ -8,7 +8,7 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Data, Index, NodeIndex
+from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
 from exudyn_ehd.coupling.kinematics import cables
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
@@ -169,7 +169,7 @@ def beam_side(
 
 def body_frame(mbs: exu.MainSystem, body: Index, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Position (3,) and rotation (3, 3) of a body in the reference state at local coordinates (3,)."""
-    kinds, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+    kinds, reference = exu.OutputVariableType, REFERENCE
     place = mbs.GetObjectOutputBody(body, kinds.Position, local.tolist(), reference)
     turn = mbs.GetObjectOutputBody(body, kinds.RotationMatrix, local.tolist(), reference)
     return np.array(place), np.array(turn).reshape(3, 3)

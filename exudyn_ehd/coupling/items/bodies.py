@@ -7,7 +7,7 @@ import dataclasses
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
+from exudyn_ehd.coupling.contract import REFERENCE, Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
 from exudyn_ehd.coupling.items.item import Item
@@ -147,7 +147,7 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
 
 def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of an ANCF beam."""
-    output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+    output, reference = exu.OutputVariableType, REFERENCE
     place = np.array(mbs.GetNodeOutput(node, output.Position, reference))
     frame = np.array(mbs.GetNodeOutput(node, output.RotationMatrix, reference)).reshape(3, 3)
     return Item(

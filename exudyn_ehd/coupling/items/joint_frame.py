@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.contract import INITIAL, Side
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.kinematics import relative
@@ -115,7 +115,7 @@ def check_start(
     for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
         if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
             raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
+        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
     motion = np.empty(10)
     cosine = relative.relative_motion(housing[1].frame, journal[1].frame, motion)
     bore, length = BoreGap(bearing), bearing.length

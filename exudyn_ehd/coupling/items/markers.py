@@ -8,7 +8,7 @@ from collections.abc import Callable
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Data, Index, NodeIndex, Side
+from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex, Side
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
 from exudyn_ehd.coupling.items.bodies import (
@@ -43,7 +43,7 @@ def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
             f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. "
             "MarkerBodyRigid or MarkerNodeRigid."
         )
-    reference, output = exu.ConfigurationType.Reference, exu.OutputVariableType
+    reference, output = REFERENCE, exu.OutputVariableType
     rotation = np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, reference), dtype=float).reshape(3, 3)
     make, nodes = _marker_side(mbs, marker, data)
     return Item(

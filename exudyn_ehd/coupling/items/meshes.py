@@ -5,7 +5,7 @@ from __future__ import annotations
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Data, Index
+from exudyn_ehd.coupling.contract import REFERENCE, Data, Index
 from exudyn_ehd.coupling.items.beams import element_nodes, node_coordinates
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics.fitted_sides import FittedSide, fitted_rotation
@@ -46,7 +46,7 @@ def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: 
     size = 3 * len(nodes)
     places = np.flatnonzero(np.repeat(moving, 3)), np.arange(size)
     reference, initial, velocities = node_coordinates(mbs, nodes)
-    output, configuration = exu.OutputVariableType, exu.ConfigurationType.Reference
+    output, configuration = exu.OutputVariableType, REFERENCE
     return Item(
         position=np.array(mbs.GetMarkerOutput(marker, output.Position, configuration), dtype=float),
         rotation=np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, configuration)).reshape(3, 3),

@@ -15,11 +15,10 @@ from typing import TypeVar
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, Side
+from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import skew, skews
 
-_CURRENT = exu.ConfigurationType.Current
 _NONE, _UNITS = np.zeros(3), np.eye(3)
 SideType = TypeVar("SideType", bound=Side)
 
@@ -119,7 +118,7 @@ class MarkerSide:
         self.frame[:, 3] = mbs.GetMarkerOutput(self.marker, output.Position, configuration)
         self.frame[:, 4] = mbs.GetMarkerOutput(self.marker, output.Velocity, configuration)
         self.frame[:, 5] = mbs.GetMarkerOutput(self.marker, output.AngularVelocity, configuration)
-        if configuration == _CURRENT:
+        if configuration == CURRENT:
             self.jac[0] = mbs.ComputeItem(self.marker, exu.ComputeItemType.PositionJacobian)
             self.jac[1] = mbs.ComputeItem(self.marker, exu.ComputeItemType.RotationJacobian)
 
@@ -192,7 +191,7 @@ class FloatingSide(MarkerSide):
 
     def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         n = self.floating.size
-        self.floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
+        self.floating.update(mbs, q[:n], np.zeros(n), CURRENT)
         return floating_change(self.floating, q[:n], self.frame[:, 3] - self.floating.frame[:, 3], self.jac)
 
 

@@ -22,7 +22,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.bush.functions import BushFunctions
-from exudyn_ehd.coupling.contract import ObjectIndex, Trial
+from exudyn_ehd.coupling.contract import START_OF_STEP, ObjectIndex, Trial
 from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.status import Status
@@ -67,7 +67,7 @@ class ForceTolerance:
             self.level = self._forces()
             level = SHARE * newton.relativeTolerance * self.level
             if self.bushes:
-                state = mbs.systemData.GetSystemStateDict(exu.ConfigurationType.StartOfStep, True)
+                state = mbs.systemData.GetSystemStateDict(START_OF_STEP, True)
                 reach = abs(state["ODE2Coords"]) + solver.it.currentStepSize * abs(state["ODE2Coords_t"])
                 level = max(level, math.hypot(*(bush.equations.rounding(reach[at]) for bush, at in self.bushes)))
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)

@@ -28,14 +28,13 @@ from collections.abc import Collection
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Trial
+from exudyn_ehd.coupling.contract import CURRENT, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import Status
 
-_CURRENT = exu.ConfigurationType.Current
 # Share of a film's gap that a step of Newton's method may close.
 SHARE = 0.5
 
@@ -148,5 +147,5 @@ def _allowed_towards(other: np.ndarray, before: np.ndarray, after: np.ndarray, l
 
 def _state(mbs: exu.MainSystem) -> list[np.ndarray]:
     """Coordinates, velocities, accelerations and multipliers, as Exudyn holds them."""
-    state = mbs.systemData.GetSystemStateDict(_CURRENT, True)
+    state = mbs.systemData.GetSystemStateDict(CURRENT, True)
     return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt", "AECoords")]

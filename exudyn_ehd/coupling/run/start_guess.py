@@ -33,13 +33,11 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, NodeIndex
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.step_refusal import PostNewton
 
-_CURRENT = exu.ConfigurationType.Current
-_START_OF_STEP = exu.ConfigurationType.StartOfStep
 UserFunction: TypeAlias = Callable[[exu.MainSystem, float, int, int], object]
 """Exudyn's user function before a residual: system, time, Newton iteration, discontinuous iteration."""
 # Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
@@ -110,12 +108,12 @@ class StartGuess:
 
     def _set_start(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> None:
         data = mbs.systemData
-        start = data.GetTime(_START_OF_STEP)
+        start = data.GetTime(START_OF_STEP)
         if not self.past:
             # not before the run: Exudyn's solver assembles a system that is not
             self.additive, self.groups = additive_coordinates(mbs), coordinate_groups(mbs, self.bushes)
         if start != self.start:
-            now = np.array(data.GetODE2Coordinates_tt(_START_OF_STEP), dtype=float)
+            now = np.array(data.GetODE2Coordinates_tt(START_OF_STEP), dtype=float)
             self.past = [*self.past[-2:], (start, now)]
             expected = lasting(self.past, self.groups)
             self.guess = None if expected is None else expected * self.additive
@@ -167,7 +165,7 @@ class ConstraintJumps:
         opening = np.asarray(known.GetSystemResidual())[data.ODE2Size() + data.ODE1Size() :]
         if not opening.size:
             return [error, size]
-        start = data.GetTime(_START_OF_STEP)
+        start = data.GetTime(START_OF_STEP)
         if start != self.start:
             self.start, self.accepted = start, self.latest
         self.latest = opening
@@ -181,7 +179,7 @@ class ConstraintJumps:
 
 def motion(mbs: exu.MainSystem) -> list[np.ndarray]:
     """Coordinates of second order, velocities and accelerations now, not copied."""
-    state = mbs.systemData.GetSystemStateDict(_CURRENT, True)
+    state = mbs.systemData.GetSystemStateDict(CURRENT, True)
     return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt")]
 
 
