@@ -11,7 +11,6 @@ abaqus_input        parts, instances and node sets of an Abaqus input file
 elements            20-node hexahedra and 10-node tetrahedra: shape functions, faces, quadratures, compiled loops
 total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures
-static_equilibrium  equilibrium of a solid on its own; its stiffness with the outer surface held
 stress              Cauchy and von Mises stress at nodes and at any point
 linear              factors of a mesh's matrices
 modes               a bush reduced to modes: static ones of its bore, what these lack in motion

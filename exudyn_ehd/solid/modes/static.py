@@ -50,8 +50,7 @@ from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.loads import Pressure, pressure_loads
 from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
 from exudyn_ehd.solid.modes import dynamic
-from exudyn_ehd.solid.modes.dynamic import body_force_modes, vibration_modes
-from exudyn_ehd.solid.static_equilibrium import held_stiffness
+from exudyn_ehd.solid.modes.dynamic import body_force_modes, held_stiffness, vibration_modes
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import Shapes, cached_arrays
 
