@@ -100,11 +100,6 @@ class BushResiduals:
         )
 
 
-def _together(places: np.ndarray) -> np.ndarray | slice:
-    """Places that follow each other as a slice, which copies nothing."""
-    return slice(places[0], places[-1] + 1) if (np.diff(places) == 1).all() else places
-
-
 def _as_made(mbs: exu.MainSystem, item: Index, places: np.ndarray, bush: BushFunctions) -> bool:
     """Whether a bush has no carrier, and force and mass that it was made with."""
     force: object = mbs.GetObjectParameter(item, "forceUserFunction")
