@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.joint.balance.advice import advice
-from exudyn_ehd.joint.balance.hot_oil import require_oil_bears, seized
+from exudyn_ehd.joint.balance.limits import advice, require_oil_bears, seized
 from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation

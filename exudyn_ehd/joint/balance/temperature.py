@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.joint.balance.hot_oil import NO_OIL
+from exudyn_ehd.joint.balance.limits import NO_OIL
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.seams import ThermalEffect
 from exudyn_ehd.joint.solved_film import History
