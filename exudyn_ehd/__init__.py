@@ -42,8 +42,7 @@ from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import bearing_grid, slider_grid
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.density import DowsonHigginson
-from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.lubricant.named_oils import oil
+from exudyn_ehd.film.lubricant.lubricant import Lubricant, oil
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature

@@ -15,9 +15,8 @@ as in `exudyn_ehd.solid.modes.static`.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -154,7 +153,7 @@ class ReducedBore:
 
     def held(self) -> ReducedBore:
         """The same bore with all of its displacement left to the gap: for a frame that doesn't follow."""
-        out = dataclasses.replace(self)
+        out = replace(self)
         object.__setattr__(out, "rigid", np.zeros_like(self.rigid))
         return out
 

@@ -162,7 +162,6 @@ SHARED = {
     "grid",
     "loads",
     "lubricant.lubricant",
-    "lubricant.named_oils",
     "reynolds.links",
     "solvers.closure",
     "solvers.exact",

@@ -19,7 +19,7 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.bush.functions import BushFunctions
+from exudyn_ehd.coupling.bush.equations import BushFunctions
 from exudyn_ehd.coupling.contract import CURRENT, Index, ObjectIndex
 from exudyn_ehd.coupling.items.object_mass import as_sparse
 

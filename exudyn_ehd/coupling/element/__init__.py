@@ -4,7 +4,6 @@ Module map
 ----------
 attach          from a joint's description to its element
 rigid           `FilmElement`: user functions for a rigid bore
-spherical       `SphericalFilmElement`: of a ball in its socket
 settled_start   bores in balance with the films at the start
 accepted_steps  what was accepted: record, memory, watches, runs that go on
 presence        items of the joint, still in the system

@@ -25,12 +25,12 @@ from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films, turning_meshes
+from exudyn_ehd.coupling.watch import poor_films, solver_state, turning_meshes
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
-from exudyn_ehd.joint.balance.hot_oil import HOT
+from exudyn_ehd.joint.balance.limits import HOT
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
@@ -227,7 +227,7 @@ class AcceptedSteps:
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
         self.tangent = None
-        self._thin, self._told, self._overloaded = thin_films.limit(bearing), False, False
+        self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
         self._cool = HOT
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory = place, memory
@@ -288,9 +288,9 @@ class AcceptedSteps:
         if row is not None and (absurd := failures.absurd(start, row, trial)) is not None:
             raise absurd
         self._cool = failures.check_heat(start, trial, self.memory, self._cool)
-        if self._may_starve and self.memory is not None and (lost := starvation.lost_share(self.memory)) > 0.0:
+        if self._may_starve and self.memory is not None and (lost := poor_films.lost_share(self.memory)) > 0.0:
             self._may_starve = False
-            starvation.warn(failures.name, start, lost)
+            poor_films.warn_of_starvation(failures.name, start, lost)
         if self._turning is not None:
             self._turning.take(failures.name, start)
         if row is None:
@@ -312,7 +312,7 @@ class AcceptedSteps:
         failures = self.film.failures
         if (gap := row[MINIMUM_GAP]) < self._thin:
             self._thin = -np.inf
-            thin_films.warn(failures.name, start, gap)
+            poor_films.warn_of_thin_film(failures.name, start, gap)
         if not self._overloaded and failures.overload(row) > 1.0:
             self._overloaded = True
             warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)

@@ -11,9 +11,20 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, THRUST, eccentricity_ratios
-from exudyn_ehd.joint.balance.advice import advice
-from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above, seized
-from exudyn_ehd.joint.balance.overload import DEEPEST, HIGHEST_MEAN, HIGHEST_PEAK, PRESSED_THROUGH, mean_pressure
+from exudyn_ehd.joint.balance.limits import (
+    DEEPEST,
+    HIGHEST_MEAN,
+    HIGHEST_PEAK,
+    HOTTEST,
+    NO_OIL,
+    PRESSED_THROUGH,
+    advice,
+    hot_film,
+    hottest,
+    is_above,
+    mean_pressure,
+    seized,
+)
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 

@@ -7,8 +7,8 @@ import exudyn.itemInterface as eii
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.items.resolve import body_of_node
 from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
 from exudyn_ehd.status import InputError
 

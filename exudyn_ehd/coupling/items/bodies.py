@@ -9,7 +9,6 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import REFERENCE, Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items import beams
-from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
@@ -29,8 +28,8 @@ _MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
 def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of a rigid body, a beam, a cable or a mass point."""
     data = mbs.GetNode(node)
-    if data["nodeType"] in SLOPE_NODES:
-        return cable_item(mbs, where, (node,), SLOPE_NODES[data["nodeType"]], None)
+    if data["nodeType"] in beams.SLOPE_NODES:
+        return cable_item(mbs, where, (node,), beams.SLOPE_NODES[data["nodeType"]], None)
     if data["nodeType"] == "PointSlope23":
         return _slope_pair_item(mbs, where, node)
     kind = (NODE_KINDS | POINT_KINDS).get(data["nodeType"])
@@ -92,9 +91,9 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
     if kind in ("RigidBody", "RigidBody2D", *MASS_POINTS):
         return node_item(mbs, where, NodeIndex(int(data["nodeNumber"])))
     nodes = beams.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
-    if kind in CABLES:
-        return cable_item(mbs, where, nodes, CABLES[kind], float(data["length"]))
-    if kind in EXACT_BEAMS:
+    if kind in beams.CABLES:
+        return cable_item(mbs, where, nodes, beams.CABLES[kind], float(data["length"]))
+    if kind in beams.EXACT_BEAMS:
         return beam_item(mbs, where, nodes, float(data["length"]))
     if kind in ("ObjectANCFBeam", "RotationalMass1D", "Mass1D"):
         position, rotation = beams.body_frame(mbs, body, np.zeros(3))
@@ -211,3 +210,12 @@ def beam_item(
         initial_coordinates=initial,
         initial_velocities=velocities,
     )
+
+
+def body_of_node(mbs: exu.MainSystem, node: Index) -> Index | None:
+    """The rigid body or mass point that moves ``node``, or None if there is none yet."""
+    for i in range(mbs.systemData.NumberOfObjects()):
+        body = mbs.GetObject(i)
+        if body["objectType"] in ("RigidBody", "RigidBody2D", *MASS_POINTS) and int(body["nodeNumber"]) == int(node):
+            return ObjectIndex(i)
+    return None

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import INITIAL, Side
 from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.solid.mesh import frame_of

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, issparse
 
 from exudyn_ehd.coupling.contract import Index, ObjectIndex
+from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.items.own_equations import ReducedBody
-from exudyn_ehd.coupling.items.resolve import body_of_node
 from exudyn_ehd.status import InputError
 
 # Negative eigenvalue of a scaled mass matrix that is none of rounding.

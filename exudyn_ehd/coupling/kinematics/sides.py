@@ -17,7 +17,6 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import skew, skews
 
 _NONE, _UNITS = np.zeros(3), np.eye(3)
 SideType = TypeVar("SideType", bound=Side)
@@ -211,10 +210,10 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
     """
     n, size = floating.size, jac.shape[2]
     # (n, 3, 3): cross products with the columns of Jr, vectors standing behind them
-    turns = skews(jac[1, :, :n])
+    turns = relative.skews(jac[1, :, :n])
     change = np.zeros((6, size, size))
     # row i of the cross product with the arm is arm x e_i, negative
-    for i, crossed in enumerate(-skew(arm)):
+    for i, crossed in enumerate(-relative.skew(arm)):
         floating.geometric(None, q, _NONE, _UNITS[i], change[3 + i, :n, :n])
         floating.geometric(None, q, _NONE, crossed, change[i, :n, :n])
     # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm

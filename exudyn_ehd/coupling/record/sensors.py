@@ -17,8 +17,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 
-from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.record.element import Element
+from exudyn_ehd.coupling.contract import Element, Index
 from exudyn_ehd.coupling.record.history import FORCE, Quantity, column
 from exudyn_ehd.status import InputError
 

@@ -21,7 +21,7 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.bush.functions import BushFunctions
+from exudyn_ehd.coupling.bush.equations import BushFunctions
 from exudyn_ehd.coupling.contract import START_OF_STEP, ObjectIndex, Trial
 from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.element.rigid import FilmElement

@@ -17,8 +17,7 @@ from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, judged, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
-from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
-from exudyn_ehd.coupling.run.step_refusal import StepRefusal
+from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, StepRefusal, UserFunction
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing
 from exudyn_ehd.coupling.watch.run_progress import run_progress

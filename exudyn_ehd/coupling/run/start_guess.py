@@ -23,6 +23,13 @@ start and by far less from this one. Forces do not feel what is the same in ever
 the next as m g / (beta h^2): from one start to the other m v^2 / L at any step size, as much as the inertia. So
 Newton's method goes on where the opening jumps (`ConstraintJumps`). Exudyn takes that for a contact that has opened or
 closed, and begins again at zero accelerations; here each further pass of a step starts where the last one has ended.
+
+Steps that converge to a film that none bears, refused before Exudyn accepts them.
+
+Newton's method may well converge where there is no film: behind the end of a pressure law, where forces only lead its
+iterates back, or at a pressure that no steel bears, into which too large a step has thrown the journal. Its iterates
+may pass there; its result may not. After Newton's method Exudyn asks for an error and a step size: a step with such a
+result is repeated with half its size, down to the smallest one, where it ends the run.
 """
 
 from __future__ import annotations
@@ -34,9 +41,10 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, NodeIndex
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
-from exudyn_ehd.coupling.run.step_refusal import PostNewton
+from exudyn_ehd.coupling.watch import solver_state
 
 UserFunction: TypeAlias = Callable[[exu.MainSystem, float, int, int], object]
 """Exudyn's user function before a residual: system, time, Newton iteration, discontinuous iteration."""
@@ -48,6 +56,10 @@ LARGEST_BEND = 0.1
 LARGEST_JUMP = 3e-5
 # Error for Exudyn's discontinuous iterations that makes Newton's method take another pass.
 GO_ON = 1e100, -1.0
+PostNewton: TypeAlias = Callable[[exu.MainSystem, float], Sequence[float]]
+"""Exudyn's user function after Newton's method: system and time to [error, recommended step size or -1]."""
+# Beyond any tolerance of Exudyn's discontinuous iterations.
+REFUSED = 1e100
 
 
 class StartGuess:
@@ -239,3 +251,28 @@ def coordinate_groups(mbs: exu.MainSystem, bushes: Collection[int]) -> np.ndarra
             first = mbs.GetNodeODE2Index(node)
             groups[first : first + values["numberOfODE2Coordinates"]] = 1 + groups.max()
     return groups
+
+
+class StepRefusal:
+    """User function after Newton's method.
+
+    Parameters
+    ----------
+    films : sequence of FilmElement
+        Elements of all joints of a system.
+    before : callable or None
+        The user's own function, called first.
+    """
+
+    def __init__(self, films: Sequence[FilmElement], before: PostNewton | None) -> None:
+        self.films, self.before = films, before
+
+    def __call__(self, mbs: exu.MainSystem, t: float) -> list[float]:
+        error, size = (0.0, -1.0) if self.before is None else self.before(mbs, t)
+        if all(film.has_result() for film in self.films):
+            return [error, size]
+        solver = mbs.sys.get("dynamicSolver")
+        if solver is None or not solver_state.can_reject_step(solver):
+            return [error, size]
+        half = 0.5 * solver.it.currentStepSize
+        return [REFUSED, half if size < 0.0 else min(size, half)]

@@ -13,7 +13,7 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.heat.energy import transport_slopes
-from exudyn_ehd.joint.heat.oil_flows import OilFlows
+from exudyn_ehd.joint.heat.power import OilFlows
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.

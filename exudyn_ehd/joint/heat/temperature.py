@@ -18,8 +18,7 @@ from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.joint.heat.heat_balance import BandSolver, HeatBalance
-from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
-from exudyn_ehd.joint.heat.power import contact_power_loss
+from exudyn_ehd.joint.heat.power import OilFlows, contact_power_loss, heat_and_leakage
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Rounding of the flow through the ends, as a share of the largest flow over a link.
