@@ -167,7 +167,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         "heat.temperature._Temperature.viscosity_ratio",
         "heat.power.film_flows",
         "model.loads.couette_integral_ratio",
-        "balance.temperature._target",
+        "balance.film._target",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
     for model in (expected, make(cavitation=cavitation)):

@@ -13,8 +13,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
-from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
-from exudyn_ehd.coupling.run.gap_limit import GapLimit
+from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit, free_bushes
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, judged, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, StepRefusal, UserFunction

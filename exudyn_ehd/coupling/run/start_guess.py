@@ -42,8 +42,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
-from exudyn_ehd.coupling.run.gap_limit import GapLimit
+from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit
 from exudyn_ehd.coupling.watch import solver_state
 
 UserFunction: TypeAlias = Callable[[exu.MainSystem, float, int, int], object]
