@@ -100,8 +100,8 @@ class Failures:
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
         """The state of an accepted step is none of a bearing; None if it is one."""
-        if seizure := self._seized(time, trial):
-            return seizure
+        if message := seized(getattr(getattr(trial.evaluation, "film", None), "walls", None)):
+            return self._at(time, message)
         if self._pressure(row) > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
         on_faces = None if getattr(self.bearing, "thrust", None) is None else self._absurd_faces(time, row)
@@ -217,11 +217,6 @@ class Failures:
             f"{PRESSED_THROUGH}; {self._place(trial.motion)}check load, mass and units; give the contact more "
             "stiffness (RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
         )
-
-    def _seized(self, time: float, trial: Trial) -> FilmError | None:
-        """Growing walls have taken the whole clearance; None if they have not."""
-        message = seized(getattr(getattr(trial.evaluation, "film", None), "walls", None))
-        return self._at(time, message) if message else None
 
     def overload(self, row: np.ndarray) -> float:
         """Pressures of an accepted step over what a material bears."""

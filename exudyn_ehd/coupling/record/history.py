@@ -359,8 +359,3 @@ def make_row(
         row[_FIRST_SCALAR + i] = quantities.get(name, np.nan)
     row[FIRST_BLOCK:] = np.nan if tangent is None else tangent.take(_BLOCKS)
     return row
-
-
-def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
-    """The part (k,) of a row that holds ``quantity``."""
-    return np.atleast_1d(row[COLUMNS[quantity.value]])

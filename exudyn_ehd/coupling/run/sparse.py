@@ -371,7 +371,6 @@ class _Newton:
 
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
-        assert self.factor is not None
         d = self._solve(solver, mbs, self.residual.vector)
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
