@@ -91,6 +91,12 @@ class Trial:
         """Add what the film has answered."""
         self.evaluation, self.status = evaluation, evaluation.status
 
+    @property
+    def found(self) -> Evaluation:
+        """What came back of a film that was asked."""
+        assert self.evaluation is not None
+        return self.evaluation
+
 
 class JointModel(Protocol):
     """A film: a pure function of its memory and of the motion (10,) of the journal axis in the joint frame."""

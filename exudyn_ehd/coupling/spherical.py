@@ -74,8 +74,7 @@ class SphericalFilmElement(FilmElement):
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion's `spherical.ROWS`."""
-        assert trial.evaluation is not None
-        return np.ascontiguousarray(trial.evaluation.tangent()[:, spherical.ROWS])
+        return np.ascontiguousarray(trial.found.tangent()[:, spherical.ROWS])
 
     def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found = super()._derivatives(mbs, trial, tangent)

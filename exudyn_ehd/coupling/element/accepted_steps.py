@@ -19,7 +19,7 @@ from typing import Protocol
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Element, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
@@ -40,26 +40,18 @@ from exudyn_ehd.status import OverloadWarning, Status
 SAME_TIME = 1e-3
 
 
-class Film(Protocol):
+class Film(Element, Protocol):
     """What accepted steps ask of the element they belong to.
 
     Attributes
     ----------
-    model : JointModel
-    sides : pair of Side
-        Housing and journal.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
     """
 
-    model: JointModel
-    sides: tuple[Side, Side]
     failures: Failures
     is_massless: bool
-
-    def require_items(self, mbs: exu.MainSystem) -> None:
-        """Refuse a system of which items were deleted that the joint was made on."""
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element."""
@@ -276,8 +268,7 @@ class AcceptedSteps:
 
     def _advance_memory(self, trial: Trial) -> None:
         if self._uses_memory:
-            assert trial.evaluation is not None
-            self.memory = trial.evaluation.history()
+            self.memory = trial.found.history()
             self.film.forget()
 
     def _check(self, start: float, trial: Trial, step: float, row: np.ndarray | None) -> None:
@@ -297,8 +288,7 @@ class AcceptedSteps:
             return
         self._warn_of_film(start, trial, row)
         if self._ringing is not None:
-            assert trial.evaluation is not None
-            x, y = trial.evaluation.wrench[:2].tolist()
+            x, y = trial.found.wrench[:2].tolist()
             rang = self._ringing.rings
             if self._ringing.take(start, x, y) and not rang:
                 ringing.warn(failures.name, self._ringing, starts_well=self.in_own_run)
@@ -339,8 +329,7 @@ class AcceptedSteps:
         row, memory = self.film.row(time, trial), self.memory if self._uses_memory else self._aside
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
-            assert trial.evaluation is not None
-            memory = trial.evaluation.history()
+            memory = trial.found.history()
             self.film.forget()
         return time, memory, begin, self.record.rows(row)
 

@@ -86,8 +86,7 @@ class Failures:
 
     def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:
         """An explicit solver's ``step`` (s) beyond its stability limit; its rates miss its motion by ``miss`` (m)."""
-        assert trial.evaluation is not None
-        damping = -trial.evaluation.tangent()[: self.axes, 4 : 4 + self.axes]
+        damping = -trial.found.tangent()[: self.axes, 4 : 4 + self.axes]
         largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
         return self._at(
             time,

@@ -211,8 +211,7 @@ class FilmElement:
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion."""
-        assert trial.evaluation is not None
-        return np.ascontiguousarray(trial.evaluation.tangent())
+        return np.ascontiguousarray(trial.found.tangent())
 
     def _move(
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
@@ -248,9 +247,8 @@ class FilmElement:
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
-        assert trial.evaluation is not None
         force = np.empty(len(trial.q))
-        self._rigid_force(trial.evaluation.wrench, force)
+        self._rigid_force(trial.found.wrench, force)
         return force
 
     def _rigid_force(self, wrench: np.ndarray, force_out: np.ndarray) -> None:
@@ -273,12 +271,11 @@ class FilmElement:
         self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
-        assert trial.evaluation is not None
         if solver_state.is_implicit(self.steps.solver):
             self.steps.tangent = tangent
         n = self.sides[0].size + self.sides[1].size
         state = np.array(trial.q[:n]), np.array(trial.q_t[:n])
-        return derivatives_between(mbs, self.sides, state, trial.evaluation.wrench, tangent, self.kinematics)
+        return derivatives_between(mbs, self.sides, state, trial.found.wrench, tangent, self.kinematics)
 
     @property
     def last(self) -> Trial | None:

@@ -13,18 +13,10 @@ t^T) / |s|.
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.coupling.kinematics.rigid_nodes import cross, dot
+
 LARGEST_TURN = 0.9
 """|tau| from which the roll is undefined: the cable has turned by some 64 degrees towards its director."""
-
-
-@njit(cache=True)
-def cross(a, b):
-    """Vector product of two 3-vectors."""
-    c = np.empty(3)
-    c[0] = a[1] * b[2] - a[2] * b[1]
-    c[1] = a[2] * b[0] - a[0] * b[2]
-    c[2] = a[0] * b[1] - a[1] * b[0]
-    return c
 
 
 @njit(cache=True)
@@ -45,14 +37,9 @@ def _skew_add(a, out):
 
 
 @njit(cache=True)
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@njit(cache=True)
 def _roll_map(t, d0):
     """U (3, 3) = skew(t) - tau / (1 - tau^2) t c^T with omega = U dt/dt."""
-    tau = _dot(t, d0)
+    tau = dot(t, d0)
     u = np.zeros((3, 3))
     _skew_add(t, u)
     _outer_add(t, cross(t, d0), -tau / (1.0 - tau * tau), u)
@@ -70,9 +57,9 @@ def _direction_map(t, length):
 @njit(cache=True)
 def slope_rotation(s, d0):
     """Frame (3, 3) of a cable with slope s."""
-    t = s / np.sqrt(_dot(s, s))
-    d = d0 - _dot(d0, t) * t
-    d /= np.sqrt(_dot(d, d))
+    t = s / np.sqrt(dot(s, s))
+    d = d0 - dot(d0, t) * t
+    d /= np.sqrt(dot(d, d))
     a = np.empty((3, 3))
     c = cross(t, d)
     for i in range(3):
@@ -84,8 +71,8 @@ def slope_rotation(s, d0):
 def slope_frame(S, Sx, q, q_t, d0, rho, a_loc, frame_out, jac_out):
     """Fill frame (3, 6) and Jp, Jr at total coordinates ``q`` (n,) and rates; nan where the roll is undefined."""
     s, s_t = Sx @ q, Sx @ q_t
-    length = np.sqrt(_dot(s, s))
-    if not (length > 0.0 and abs(_dot(s, d0)) < LARGEST_TURN * length):
+    length = np.sqrt(dot(s, s))
+    if not (length > 0.0 and abs(dot(s, d0)) < LARGEST_TURN * length):
         frame_out[:] = np.nan
         return
     t = s / length
@@ -110,23 +97,23 @@ def _map_change(t, length, d0, ds):
     """Change (3, 3) of G for a change ds of the slope."""
     U, P = _roll_map(t, d0), _direction_map(t, length)
     dt = P @ ds
-    tau, c = _dot(t, d0), cross(t, d0)
+    tau, c = dot(t, d0), cross(t, d0)
     r = 1.0 - tau * tau
     dU, dP = np.zeros((3, 3)), np.zeros((3, 3))
     _skew_add(dt, dU)
-    _outer_add(t, c, -(1.0 + tau * tau) / (r * r) * _dot(dt, d0), dU)
+    _outer_add(t, c, -(1.0 + tau * tau) / (r * r) * dot(dt, d0), dU)
     _outer_add(dt, c, -tau / r, dU)
     _outer_add(t, cross(dt, d0), -tau / r, dU)
     _outer_add(dt, t, -1.0 / length, dP)
     _outer_add(t, dt, -1.0 / length, dP)
-    return dU @ P + U @ (dP - P * (_dot(t, ds) / length))
+    return dU @ P + U @ (dP - P * (dot(t, ds) / length))
 
 
 @njit(cache=True)
 def slope_variation(Sx, q, q_t, d0, rho, jac_out):
     """Fill Vq, Wq at the state for which ``jac_out`` holds Jr."""
     s, s_t = Sx @ q, Sx @ q_t
-    length = np.sqrt(_dot(s, s))
+    length = np.sqrt(dot(s, s))
     t = s / length
     w = slope_rotation(s, d0) @ rho
     omega = jac_out[1] @ q_t
@@ -142,12 +129,12 @@ def slope_variation(Sx, q, q_t, d0, rho, jac_out):
 def slope_geometric(Sx, q, d0, rho, jac, force, moment, out):
     """d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment; ``jac`` holds Jr."""
     s = Sx @ q
-    length = np.sqrt(_dot(s, s))
+    length = np.sqrt(dot(s, s))
     t = s / length
     w = slope_rotation(s, d0) @ rho
-    total = moment + cross(w, force)
+    total = moment + np.array(cross(w, force))
     for b in range(q.size):
         change = _map_change(t, length, d0, Sx[:, b].copy()).T @ total
         arm = cross(cross(jac[1, :, b].copy(), w), force)
         for a in range(q.size):
-            out[a, b] = _dot(Sx[:, a], change) + _dot(jac[1, :, a], arm)
+            out[a, b] = dot(Sx[:, a], change) + dot(jac[1, :, a], arm)
