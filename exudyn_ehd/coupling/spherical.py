@@ -32,7 +32,7 @@ from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_bool, require_type, require_vector
 
 # Distance of the centres beyond which no film is thin, share of the ball's radius.

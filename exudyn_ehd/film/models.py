@@ -12,14 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import Gumbel
+from exudyn_ehd.film.cavitation.closures import Closure, Gumbel
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients
 from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import FilmSolver

@@ -163,7 +163,6 @@ SHARED = {
     "loads",
     "lubricant.lubricant",
     "reynolds.links",
-    "solvers.closure",
     "solvers.exact",
     "solvers.linear",
     "reynolds.stepped_gap",

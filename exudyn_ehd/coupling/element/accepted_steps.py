@@ -25,8 +25,8 @@ from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.watch import poor_films, solver_state, turning_meshes
-from exudyn_ehd.coupling.watch.chatter import ChatterWatch
+from exudyn_ehd.coupling.watch import poor_films, solver_state
+from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
@@ -128,7 +128,7 @@ class AcceptedSteps:
         self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
-        self._turning: turning_meshes.TurnWatch | None = None
+        self._turning: TurnWatch | None = None
         self._uses_memory = self._may_starve = self.in_own_run = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
@@ -214,7 +214,7 @@ class AcceptedSteps:
         self._chatter = ChatterWatch(bearing) if explicit else None
         area = 2.0 * bearing.journal_radius * bearing.length
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
-        self._turning = turning_meshes.turn_watch(mbs, film.sides, self.solver)
+        self._turning = turn_watch(mbs, film.sides, self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)

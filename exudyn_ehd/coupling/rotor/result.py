@@ -417,7 +417,7 @@ class StabilityMap:
         self, text: str, *, unit: str = "-", factor: float = 1.0, ax: Axes | None = None, path: Target = None
     ) -> Figure:
         """Stable and unstable speeds over the parameter, called ``text`` and shown as ``factor`` times its values."""
+        from exudyn_ehd.pictures.records import Unit
         from exudyn_ehd.pictures.rotors import plot_map
-        from exudyn_ehd.pictures.units import Unit
 
         return plot_map(self.values, self.thresholds, self.limits, (text, Unit(unit, factor)), ax=ax, path=path)

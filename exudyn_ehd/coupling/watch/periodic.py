@@ -20,7 +20,7 @@ from scipy.interpolate import CubicHermiteSpline
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.watch.solver_state import hooked
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, RunError, require_number
 
 # Largest number of differences that may be left, also of those that do not shrink: rounding never does.

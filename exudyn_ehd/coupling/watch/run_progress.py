@@ -11,7 +11,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.watch.solver_state import hooked
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.progress import Progress, is_shown
 
 

@@ -2,7 +2,6 @@
 
 Module map
 ----------
-closure         what a cavitation model offers
 linear          linear for given sets: rigid surfaces, incompressible
 newton          rules of Newton's method for gaps or densities that depend on the pressure
 exact           adjoints of what it finds

@@ -9,6 +9,7 @@ import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, prolong_set
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.lagging_void import lag_void, outflow_of
 from exudyn_ehd.film.cavitation.line_newton import refine_factor
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine, weigh_flows
@@ -23,7 +24,6 @@ from exudyn_ehd.film.reynolds.links import (
     set_links,
     vertex_balance,
 )
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing time step where only the rates at one instant are asked for, s.

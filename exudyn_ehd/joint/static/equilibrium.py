@@ -20,7 +20,7 @@ from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
 
 if TYPE_CHECKING:

@@ -23,8 +23,7 @@ from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
-from exudyn_ehd.pictures.records import Film
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import Film, shown
 from exudyn_ehd.status import (
     InputError,
     Status,
