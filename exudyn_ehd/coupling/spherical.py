@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side,
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide

@@ -21,10 +21,9 @@ from exudyn_ehd.coupling.element.modal import (
     describe,
 )
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
-from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
-from exudyn_ehd.coupling.items.own_equations import own_equations
+from exudyn_ehd.coupling.items.object_mass import own_equations, require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.film.cavitation.closures import SwiftStieber

@@ -23,8 +23,8 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, Evaluation, JointModel, ObjectIndex, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
-from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
 from exudyn_ehd.coupling.kinematics.sides import bind, derivatives_between

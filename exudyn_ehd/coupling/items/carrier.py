@@ -19,7 +19,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
-from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, detached
 
 # Displacement, m or rad, over which initial velocities are found as differences of positions.

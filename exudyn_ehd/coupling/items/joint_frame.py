@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import INITIAL, Index, Side
-from exudyn_ehd.coupling.items.bodies import body_of_node
-from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap

@@ -14,12 +14,12 @@ from exudyn_ehd.coupling.items.bodies import (
     MASS_POINTS,
     NODE_KINDS,
     POINT_KINDS,
+    Item,
     beam_item,
     body_item,
     cable_item,
     node_item,
 )
-from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics.fitted_sides import FittedSide, fitted_rotation
 from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, NodeSide, TreeSide
 from exudyn_ehd.status import InputError

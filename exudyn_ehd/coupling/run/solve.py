@@ -18,8 +18,7 @@ from exudyn_ehd.coupling.run.restart import Joint, SystemState, judged, load_sta
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, StepRefusal, UserFunction
 from exudyn_ehd.coupling.run.step_size import steps_by_error
-from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing
-from exudyn_ehd.coupling.watch.run_progress import run_progress
+from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing, run_progress
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
@@ -332,7 +331,7 @@ def _unheld(mbs: exu.MainSystem) -> str:
 
 def progress_of(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> AbstractContextManager[None]:
     """Where somebody looks, the progress of the run within."""
-    return run_progress(mbs, settings, [(joint.name, joint.element.steps.record) for joint in joints_of(mbs)])
+    return run_progress(mbs, settings, [(joint.name, joint.element.steps) for joint in joints_of(mbs)])
 
 
 def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:

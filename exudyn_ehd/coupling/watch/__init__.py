@@ -6,6 +6,5 @@ solver_state  which solver runs, with which step
 step_control  implicit steps too coarse for a film, rejected
 long_steps    explicit steps beyond their stability limit; meshes on absolute coordinates that turn too far in a step
 poor_films    films that run dry, or are thinner than the surfaces are rough
-periodic      runs that end when their orbits have closed
-run_progress  how far a run is, where somebody looks
+periodic      runs that end when their orbits have closed; how far a run is, where somebody looks
 """
