@@ -306,11 +306,6 @@ def check_line(film: Film, closure: Closure, bush: object, oil: Lubricant) -> No
     )
 
 
-def goes_in_cells(film: Film, closure: Closure, bush: object, oil: Lubricant) -> bool:
-    """Whether the rupture line lies inside the cells where a closure leaves it open."""
-    return not no_line_with(film, closure, bush, oil)
-
-
 def film_grid(
     film: Film,
     radius: float,
