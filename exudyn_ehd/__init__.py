@@ -10,7 +10,6 @@ joint      one bearing as a pure function of its motion; `steady`, `equilibrium`
 pictures   maps, orbits, traces, the bearing in space: matplotlib, in one style
 coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `CreateFlexibleBush`, solvers, histories
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
-reference  closed forms to compare with
 tables     columns of numbers as text and as CSV; units by name
 kernels    compilation of first films by two processes
 progress   how far long work is, where somebody looks
@@ -43,8 +42,7 @@ from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import bearing_grid, slider_grid
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.density import DowsonHigginson
-from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.lubricant.named_oils import oil
+from exudyn_ehd.film.lubricant.lubricant import Lubricant, oil
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature

@@ -19,7 +19,7 @@ from exudyn_ehd.film.models import (
     check_film,
     check_line,
     columns_of,
-    goes_in_cells,
+    no_line_with,
     sized,
 )
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
@@ -312,7 +312,7 @@ class JournalBearing:
     @property
     def closure(self) -> Cavitation:
         """``cavitation`` with its rupture line inside the cells of the grid or on its vertices, where that is open."""
-        return place_line(self.cavitation, goes_in_cells(self.film, self.cavitation, self.yielding, self.lubricant))
+        return place_line(self.cavitation, not no_line_with(self.film, self.cavitation, self.yielding, self.lubricant))
 
     def reference_force(self, speed: float) -> float:
         """L D mu |omega| / psi^2, the unit of the Sommerfeld number.

@@ -6,7 +6,7 @@ import csv
 import html
 import itertools
 import pathlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -195,28 +195,5 @@ def write_csv(
         [*(repr(float(value)) for value in row), *(texts[k] for texts in remarks.values())]
         for k, row in enumerate(zip(*columns.values(), strict=True))
     )
-    write_rows(path, itertools.chain([head], values))
-
-
-def write_rows(
-    path: str | pathlib.Path, rows: Iterable[Sequence[object]], *, notes: Iterable[str] = (), line_end: str = "\r\n"
-) -> None:
-    """Write rows, the first of them heads, as CSV; ``notes`` stand above them as lines ``# ...``."""
     with replacing(path) as file:
-        file.writelines(f"# {note}\n" for note in notes)
-        csv.writer(file, lineterminator=line_end).writerows(rows)
-
-
-def read_rows(path: str | pathlib.Path, head: Sequence[str]) -> tuple[list[dict[str, str]], list[str]]:
-    """Rows by head, and the notes, of a file of `write_rows`.
-
-    Raises
-    ------
-    InputError
-        If the file has other columns than ``head``.
-    """
-    lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
-    reader = csv.DictReader(line for line in lines if not line.startswith("# "))
-    if list(reader.fieldnames or ()) != list(head):
-        raise InputError(f"{path} must have the columns {list(head)}, got {reader.fieldnames}.")
-    return list(reader), [line.removeprefix("# ") for line in lines if line.startswith("# ")]
+        csv.writer(file).writerows(itertools.chain([head], values))

@@ -18,9 +18,8 @@ from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
-from exudyn_ehd.coupling.items.axial import hold
-from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
+from exudyn_ehd.coupling.items.bodies import Item
+from exudyn_ehd.coupling.items.joint_frame import check_start, hold, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay

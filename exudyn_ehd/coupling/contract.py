@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol, SupportsInt, TypeAlias
 
 import exudyn as exu
@@ -17,6 +17,8 @@ from exudyn_ehd.status import InputError, Status
 # Exudyn's index types exist at run time, but not in its type stubs.
 _indices: Any = exu
 NodeIndex, ObjectIndex, MarkerIndex = _indices.NodeIndex, _indices.ObjectIndex, _indices.MarkerIndex
+CURRENT, START_OF_STEP = exu.ConfigurationType.Current, exu.ConfigurationType.StartOfStep
+INITIAL, REFERENCE = exu.ConfigurationType.Initial, exu.ConfigurationType.Reference
 Data: TypeAlias = dict[str, Any]
 """An item's data as Exudyn's GetNode, GetObject and GetMarker return them."""
 Index: TypeAlias = SupportsInt
@@ -45,15 +47,12 @@ class Evaluation(Protocol):
     def wrench(self) -> np.ndarray: ...
     def tangent(self) -> np.ndarray:
         """Derivative (6, 10) of the wrench with respect to the motion; only until the model's next evaluation."""
-        ...
 
     def quantities(self) -> Mapping[str, float]:
         """Scalars by name: minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load."""
-        ...
 
     def history(self) -> History | None:
         """What the film remembers if this state is accepted."""
-        ...
 
 
 class Trial:
@@ -92,6 +91,12 @@ class Trial:
         """Add what the film has answered."""
         self.evaluation, self.status = evaluation, evaluation.status
 
+    @property
+    def found(self) -> Evaluation:
+        """What came back of a film that was asked."""
+        assert self.evaluation is not None
+        return self.evaluation
+
 
 class JointModel(Protocol):
     """A film: a pure function of its memory and of the motion (10,) of the journal axis in the joint frame."""
@@ -101,16 +106,13 @@ class JointModel(Protocol):
     @property
     def remembers(self) -> bool:
         """Whether the force depends on accepted steps before; if not, memory is neither asked for nor handed over."""
-        ...
 
     @property
     def needs_spin(self) -> bool:
         """Whether the journal's angle matters (supply areas in the journal)."""
-        ...
 
     def initial_history(self, motion: np.ndarray) -> History | None:
         """Memory at the start of a run, at this motion."""
-        ...
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -120,7 +122,6 @@ class JointModel(Protocol):
         ``history`` is the memory at the last accepted step (None: the steady film), ``step`` the time since then [s],
         ``spin`` the journal's angle against the housing about the axis [rad].
         """
-        ...
 
 
 class Side(Protocol):
@@ -161,7 +162,6 @@ class Faces(Protocol):
 
     def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
         """The journal's film at a trial, to which the sides' arrays belong, with the journal's angle, rad."""
-        ...
 
     def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
         """Scalars at a trial, to which the sides' arrays belong."""
@@ -171,3 +171,47 @@ class Faces(Protocol):
 
     def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
         """Force and moment about O (6,) on the journal at the state to which the sides' arrays belong."""
+
+
+class Steps(Protocol):
+    """The accepted steps of an element.
+
+    Attributes
+    ----------
+    observers : list of functions
+        Called with every accepted trial that has a film.
+    """
+
+    observers: list[Callable[[Trial], None]]
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no solver is at work."""
+
+    def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, exu.ConfigurationType]:
+        """Time of the last accepted state, the film there, and the configuration that holds it."""
+
+
+class Element(Protocol):
+    """The film between two sides."""
+
+    @property
+    def model(self) -> JointModel:
+        """The film."""
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        """Carriers of the joint frame and of the journal's frame."""
+
+    @property
+    def steps(self) -> Steps:
+        """The accepted steps."""
+
+    def require_items(self, mbs: exu.MainSystem) -> None:
+        """Refuse a system of which items were deleted that the joint was made on."""
+
+    def faces_wrench(self) -> np.ndarray:
+        """What films on the end faces do to the journal (6,), joint frame, at the state that was looked at last."""
+
+    def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
+        """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

@@ -1,38 +1,179 @@
-"""`CreateLubricatedSphericalJoint`: the call that puts an oil-filled ball joint between two bodies."""
+"""`CreateLubricatedSphericalJoint`: an oil-filled ball joint between two bodies, its film, history and picture."""
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import cast
 
 import exudyn as exu
+import exudyn.graphics
 import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
+from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
+from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
-from exudyn_ehd.coupling.element.spherical import SphericalFilmElement
-from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
+from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.kinematics.spherical import motion_of
-from exudyn_ehd.coupling.record.history import Quantity
+from exudyn_ehd.coupling.record.display import FilmDisplay, pressure_colours, ring_triangles
+from exudyn_ehd.coupling.record.history import JointHistory, Quantity, make_row
 from exudyn_ehd.coupling.record.sensors import OUTPUTS, reader
-from exudyn_ehd.coupling.record.spherical import SphericalDisplay, SphericalHistory, spherical_history
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
-from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import InputError, require_bool, require_type, require_vector
+from exudyn_ehd.pictures.records import shown
+from exudyn_ehd.status import FilmError, InputError, Status, require_bool, require_type, require_vector
 
+# Distance of the centres beyond which no film is thin, share of the ball's radius.
+FARTHEST = 0.1
 _WHERE = "CreateLubricatedSphericalJoint"
 _QUANTITIES = ("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load")
+
+
+class SphericalFailures(Failures):
+    """Messages of a ball that has no film."""
+
+    bearing: SphericalBearing  # type: ignore[assignment]
+    axes = 3
+
+    def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
+        """As for journals; a ball far out of its socket has no film either."""
+        if float(np.linalg.norm(trial.motion[:3])) > FARTHEST * self.bearing.journal_radius:
+            return self._at(
+                time,
+                f"{self._place(trial.motion)}the ball has left its socket, of which the film covers "
+                f"{self.bearing.socket_angles} rad; let socket_angles reach beyond the equator, or hold it otherwise.",
+            )
+        return super().absurd(time, row, trial)
+
+    def _place(self, motion: np.ndarray) -> str:
+        x, y, z = (motion[:3] / self.bearing.radial_clearance).tolist()
+        gap = self.bore.smallest(motion)
+        return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
+
+
+class SphericalFilmElement(FilmElement):
+    """Film between the sides of a socket and of a ball; parameters as for `FilmElement`."""
+
+    kinematics = spherical
+
+    def __init__(self, model: JointModel, socket: Side, ball: Side, name: str) -> None:
+        super().__init__(model, socket, ball, name)
+        self.failures = SphericalFailures(name, model.bearing)
+
+    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """Derivative (6, 10) of the wrench to the motion's `spherical.ROWS`."""
+        return np.ascontiguousarray(trial.found.tangent()[:, spherical.ROWS])
+
+    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        found = super()._derivatives(mbs, trial, tangent)
+        # it is that of another motion than the estimates of step errors know
+        self.steps.tangent = None
+        return found
+
+    def row(self, time: float, trial: Trial) -> np.ndarray | None:
+        """Row of the record, None without a film; its motion is place, velocity, angular velocity and 0."""
+        if trial.evaluation is None or trial.status != Status.CONVERGED:
+            return None
+        motion = trial.motion[[0, 1, 2, 4, 5, 6, 8, 9, 10, 3]]
+        ratio = float(np.linalg.norm(motion[:3])) / self.model.bearing.radial_clearance
+        return make_row(time, motion, (ratio, ratio), trial.evaluation.wrench, trial.evaluation.quantities())
+
+    def fields(
+        self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
+    ) -> FilmFields:
+        """A ball has no film over angle and length."""
+        raise InputError(f"LubricatedSphericalJoint '{self.failures.name}' records no films over angle and length.")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class SphericalHistory:
+    """Accepted steps of a ball joint, first the initial state, last the state now; socket's frame, SI units.
+
+    Attributes
+    ----------
+    time : (n,) array
+        s.
+    place, velocity, angular_velocity : (n, 3) arrays
+        Of the ball's centre and of the ball as seen from the socket, m, m/s, rad/s; velocities as the film takes them
+        (`exudyn_ehd.joint.step_rates`).
+    force, torque : (n, 3) arrays
+        On the ball, N; torque about its centre, N m.
+    eccentricity_ratio : (n,) array
+        Distance of the centres over the radial clearance.
+    minimum_gap, peak_pressure : (n,) arrays
+        m, Pa.
+    power_loss, contact_load : (n,) arrays
+        W that turn into heat, N of the wall in ``force``.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedSphericalJoint`:
+
+    >>> joint.history, joint.history.place.shape
+    (<SphericalHistory without steps>, (0, 3))
+    """
+
+    time: np.ndarray
+    place: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    force: np.ndarray
+    torque: np.ndarray
+    eccentricity_ratio: np.ndarray
+    minimum_gap: np.ndarray
+    peak_pressure: np.ndarray
+    power_loss: np.ndarray
+    contact_load: np.ndarray
+
+    def __repr__(self) -> str:
+        if not self.time.size:
+            return "<SphericalHistory without steps>"
+        gap, peak = float(self.minimum_gap.min()), float(self.peak_pressure.max())
+        return (
+            f"<SphericalHistory of {self.time.size} steps from {self.time[0]:.6g} to {self.time[-1]:.6g} s: "
+            f"minimum film thickness {shown('length', gap)}, peak pressure {shown('pressure', peak)}>"
+        )
+
+
+def spherical_history(rows: JointHistory) -> SphericalHistory:
+    """A ball's history from the record that it shares with journals, whose moments are about the socket's centre."""
+    place, velocity, spin = rows.motion[:, :3], rows.motion[:, 3:6], rows.motion[:, 6:9]
+    return SphericalHistory(
+        place=place,
+        velocity=velocity,
+        angular_velocity=spin,
+        torque=rows.moment - np.cross(place, rows.force),
+        **{name: getattr(rows, name) for name in ("time", *_QUANTITIES)},
+    )
+
+
+class SphericalDisplay(FilmDisplay):
+    """The socket's patch in the colours of the pressure of the last accepted step."""
+
+    def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:
+        """User function of Exudyn: graphics data of the state that the renderer shows, global coordinates."""
+        model, steps = self.element.model, self.element.steps
+        assert isinstance(model, SphericalModel)
+        if steps.is_idle:
+            film = getattr(steps.look_at_accepted(mbs)[1].evaluation, "film", None)
+            self.pressure = None if film is None else film.pressure
+        frame, normals = self._frame(mbs), model.patch.normals
+        points = np.moveaxis(normals, 0, -1).reshape(-1, 3) @ (model.bearing.ball_radius * frame[:, :3].T) + frame[:, 3]
+        values = np.zeros(normals.shape[1:]) if self.pressure is None else self.pressure
+        triangles, colours = ring_triangles(*values.shape), pressure_colours(values).reshape(-1, 4)
+        return [exudyn.graphics.FromPointsAndTrigs(points, triangles, color=colours)]
 
 
 class LubricatedSphericalJoint(Joint):
@@ -251,8 +392,8 @@ def _check_start(
     if any(isinstance(side, MarkerSide) for side in sides):
         return
     for item, side in zip(items, sides, strict=True):
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
-    place = motion_of(sides[0].frame, sides[1].frame)[:3]
+        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
+    place = spherical.motion_of(sides[0].frame, sides[1].frame)[:3]
     if not model.smallest_gap(place) > 0.0:
         raise InputError(
             f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in the "

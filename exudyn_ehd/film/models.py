@@ -12,14 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import Gumbel
+from exudyn_ehd.film.cavitation.closures import Closure, Gumbel
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients
 from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import FilmSolver
@@ -305,11 +304,6 @@ def check_line(film: Film, closure: Closure, bush: object, oil: Lubricant) -> No
         f"{name}.line_in_cells=True does not go with {others[0]} yet; use {name}(), with its line on the grid, or "
         f"leave the other out{same}."
     )
-
-
-def goes_in_cells(film: Film, closure: Closure, bush: object, oil: Lubricant) -> bool:
-    """Whether the rupture line lies inside the cells where a closure leaves it open."""
-    return not no_line_with(film, closure, bush, oil)
 
 
 def film_grid(

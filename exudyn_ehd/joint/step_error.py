@@ -41,19 +41,25 @@ BUDGET, SMALLEST_BUDGET = 0.1, 0.01
 GOAL = 0.02
 
 
-def step_errors(
+def errors_behind(
+    before: np.ndarray,
     time: np.ndarray,
     motion: np.ndarray,
     tangent: np.ndarray,
     minimum_gap: np.ndarray,
     clearance: float,
     length: float,
-    deflection: np.ndarray | None = None,
-) -> np.ndarray:
-    """Error (n,) of the gap over the minimum film thickness, of every accepted state; nan where it is not known.
+    deflection: np.ndarray | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Error (n,) of the gap over the minimum film thickness, of every accepted state, and the pose's of the last.
+
+    The first `FIRST` states have nan, as those before the first tangent; a record in parts has the errors of the whole
+    if every part begins with the last `FIRST` states of the one before.
 
     Parameters
     ----------
+    before : (4,) array
+        Error of the pose behind the first `FIRST` states.
     time : (n,) array
         s.
     motion : (n, 10) array
@@ -66,23 +72,6 @@ def step_errors(
         m.
     deflection : (n, 2) array, optional
         Of a liner, where it is largest, m.
-    """
-    return errors_behind(np.zeros(4), time, motion, tangent, minimum_gap, clearance, length, deflection)[0]
-
-
-def errors_behind(
-    before: np.ndarray,
-    time: np.ndarray,
-    motion: np.ndarray,
-    tangent: np.ndarray,
-    minimum_gap: np.ndarray,
-    clearance: float,
-    length: float,
-    deflection: np.ndarray | None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """`step_errors` behind the first `FIRST` states, with the pose's error ``before`` (4,), and that of the last state.
-
-    A record in parts has the errors of the whole if every part begins with the last `FIRST` states of the one before.
     """
     out = np.full(time.size, np.nan)
     last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0, 0]), np.arange(time.size), -1))

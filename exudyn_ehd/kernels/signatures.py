@@ -18,8 +18,7 @@ from numba.core.types.containers import BaseTuple
 
 TABLE = pathlib.Path(__file__).parent / "first_films.txt"
 PACKAGE = __name__.split(".")[0]
-_SCALARS = {"f": types.float64, "i": types.int64, "u": types.uint64, "b": types.boolean, "-": types.none}
-_LETTERS = {kind: letter for letter, kind in _SCALARS.items()}
+SCALARS = {"f": types.float64, "i": types.int64, "u": types.uint64, "b": types.boolean, "-": types.none}
 _TOKEN = re.compile(r"[()]|[\w.]+:\w+|[fiub]\d?A?|-")
 
 
@@ -80,33 +79,7 @@ def read_types(text: str) -> tuple[types.Type, ...]:
         elif ":" in token:
             named = token
         elif len(token) == 1:
-            stack[-1].append(_SCALARS[token])
+            stack[-1].append(SCALARS[token])
         else:
-            stack[-1].append(types.Array(_SCALARS[token[0]], int(token[1]), "A" if token.endswith("A") else "C"))
+            stack[-1].append(types.Array(SCALARS[token[0]], int(token[1]), "A" if token.endswith("A") else "C"))
     return tuple(stack[0])
-
-
-def write_type(kind: types.Type) -> str:
-    """Text of the type of an argument, which `read_types` reads.
-
-    Raises
-    ------
-    ValueError
-        For a type that no kernel of the table has.
-    """
-    if kind in _LETTERS:
-        return _LETTERS[kind]
-    if isinstance(kind, BaseTuple):
-        items = " ".join(write_type(item) for item in kind)
-        cls = getattr(kind, "instance_class", tuple)
-        name = "" if cls is tuple else f"{cls.__module__.removeprefix(f'{PACKAGE}.')}:{cls.__qualname__}"
-        return f"{name}({items})"
-    if (
-        isinstance(kind, types.Array)
-        and kind.mutable
-        and kind.aligned
-        and kind.layout in "CA"
-        and kind.dtype in _LETTERS
-    ):
-        return f"{_LETTERS[kind.dtype]}{kind.ndim}{'A' if kind.layout == 'A' else ''}"
-    raise ValueError(f"signatures.write_type: no text for {kind}")

@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.histories import draw_clearance
 from exudyn_ehd.pictures.maps import PRESSURE, draw_map, draw_rupture, field_values, on_picture
-from exudyn_ehd.pictures.records import History, JointFilm
+from exudyn_ehd.pictures.records import History, JointFilm, label, unit_for
 from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, style_ticks, styled
-from exudyn_ehd.pictures.units import label, unit_for
 from exudyn_ehd.status import InputError, require_integer
 
 SIZE = (PAGE, 0.42 * PAGE)

@@ -14,9 +14,8 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.maps import PRESSURE, closed_ring, colour_limits
-from exudyn_ehd.pictures.records import Film, Target
+from exudyn_ehd.pictures.records import Film, Target, label, unit_for
 from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, headed, open_axes, style_ticks, styled
-from exudyn_ehd.pictures.units import label, unit_for
 from exudyn_ehd.status import InputError
 
 SIZE = (1.35 * COLUMN, 1.15 * COLUMN)

@@ -9,9 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from exudyn_ehd.pictures.records import Target
+from exudyn_ehd.pictures.records import KINDS, QUANTITIES, Target, Unit, label, unit_for
 from exudyn_ehd.pictures.style import COLUMN, finish, open_axes, style_ticks, styled
-from exudyn_ehd.pictures.units import KINDS, QUANTITIES, Unit, label, unit_for
 from exudyn_ehd.tables import unit_of
 
 SIZE = (1.2 * COLUMN, 0.8 * COLUMN)

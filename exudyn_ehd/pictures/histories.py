@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from exudyn_ehd.pictures.records import History, Target
+from exudyn_ehd.pictures.records import QUANTITIES, History, Target, Unit, label, unit_for
 from exudyn_ehd.pictures.style import (
     BLUE,
     COLUMN,
@@ -26,7 +26,6 @@ from exudyn_ehd.pictures.style import (
     style_ticks,
     styled,
 )
-from exudyn_ehd.pictures.units import QUANTITIES, Unit, label, unit_for
 from exudyn_ehd.status import InputError
 
 # Sizes of the pictures, and of the traces' margin, of one panel of them and of their title, inch.

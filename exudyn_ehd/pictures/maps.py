@@ -15,9 +15,8 @@ from matplotlib.patheffects import withStroke
 from matplotlib.projections.polar import PolarAxes
 
 from exudyn_ehd.film.supply.areas import placed
-from exudyn_ehd.pictures.records import Film, Target
+from exudyn_ehd.pictures.records import Film, Target, Unit, label, shown, unit_for
 from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, finish, headed, open_axes, style_ticks, styled
-from exudyn_ehd.pictures.units import Unit, label, shown, unit_for
 from exudyn_ehd.status import InputError
 
 TURN = 2.0 * math.pi

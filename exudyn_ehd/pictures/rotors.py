@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from exudyn_ehd.pictures.records import Target
+from exudyn_ehd.pictures.records import Target, Unit, label, unit_for
 from exudyn_ehd.pictures.style import (
     BLUE,
     COLUMN,
@@ -23,7 +23,6 @@ from exudyn_ehd.pictures.style import (
     style_ticks,
     styled,
 )
-from exudyn_ehd.pictures.units import Unit, label, unit_for
 
 SIZE, PLACES, RESPONSE = (0.62 * PAGE, 0.45 * PAGE), (COLUMN, 1.12 * COLUMN), (0.62 * PAGE, 0.6 * PAGE)
 RPM, HERTZ = Unit("1/min", 30.0 / np.pi), Unit("Hz", 0.5 / np.pi)

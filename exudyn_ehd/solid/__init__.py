@@ -6,12 +6,10 @@ bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
 mesh                hollow cylinders; surfaces and lines of meshes
 unrolled            faces on a cylinder: where points lie on them, where they meet and end
 mesh_import         users' meshes, from memory
-mesh_files          users' meshes, from files
-abaqus_input        parts, instances and node sets of an Abaqus input file
+mesh_files          users' meshes, from files: Abaqus input files, and what meshio reads
 elements            20-node hexahedra and 10-node tetrahedra: shape functions, faces, quadratures, compiled loops
 total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures
-static_equilibrium  equilibrium of a solid on its own; its stiffness with the outer surface held
 stress              Cauchy and von Mises stress at nodes and at any point
 linear              factors of a mesh's matrices
 modes               a bush reduced to modes: static ones of its bore, what these lack in motion

@@ -152,7 +152,7 @@ class ModalBush(_Solid):
         them. What the mass changes in the bore's response to a smooth pressure is then the mesh's within 1.5 % at half
         the lowest frequency, 9 % above it. The bush's mass still belongs to the housing's body, which must not be
         lighter than the bush: a joint refuses it. On a housing that moves, its acceleration and rotation act on the
-        modes and the modes on it (`exudyn_ehd.coupling.element.modal_inertia`). At 2e4 m/s^2, the big end of a crank of
+        modes and the modes on it (`exudyn_ehd.coupling.element.modal`). At 2e4 m/s^2, the big end of a crank of
         50 mm at 6000 rpm, the body force displaces the bore of a steel bush 20 mm thick by 0.13 um (3 mm thick: 3 nm),
         a rotation at that speed by 0.08 um. Gravity on the modes (0.1 nm) is left out.
     body_forces : bool

@@ -15,9 +15,8 @@ as in `exudyn_ehd.solid.modes.static`.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +25,7 @@ from scipy.sparse import csr_matrix, diags
 from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
+from exudyn_ehd.solid.linear.supernodal import sparse_factor
 from exudyn_ehd.solid.mesh import directed, frame_of
 from exudyn_ehd.solid.modes.static import (
     candidate_pressures,
@@ -33,7 +33,6 @@ from exudyn_ehd.solid.modes.static import (
     orthogonal_modes,
     sample_pressures,
 )
-from exudyn_ehd.solid.static_equilibrium import symmetric_factor
 from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
 
 # Vertices around and along of the quadrature over a bore: beyond the orders of the pressures.
@@ -154,7 +153,7 @@ class ReducedBore:
 
     def held(self) -> ReducedBore:
         """The same bore with all of its displacement left to the gap: for a frame that doesn't follow."""
-        out = dataclasses.replace(self)
+        out = replace(self)
         object.__setattr__(out, "rigid", np.zeros_like(self.rigid))
         return out
 
@@ -346,7 +345,7 @@ def _solve_held(K: csr_matrix, fixed: np.ndarray, loads: np.ndarray) -> np.ndarr
     free[(3 * fixed[:, None] + np.arange(3)).ravel()] = False
     solutions = np.zeros_like(loads)
     try:
-        solutions[free] = symmetric_factor(K[free][:, free]).solve(np.ascontiguousarray(loads[free]))
+        solutions[free] = sparse_factor(K[free][:, free]).solve(np.ascontiguousarray(loads[free]))
     except RuntimeError as error:
         raise InputError(
             f"add_bore_modes fixed_nodes don't hold the body: its stiffness is singular ({error})."

@@ -7,6 +7,5 @@ places          where rows are computed, and what becomes of a row whose process
 rows            one row, and the file of finished ones
 recommend       `recommend`: the cheapest film that keeps an error
 steps           `recommend_steps`: time steps in a mechanism
-film_errors     what a steady film says of a bearing, and how far two grids are apart in it
-richardson      converged values and their own error from three grids
+film_errors     what a steady film says of a bearing, how far two grids are apart in it; converged values from three
 """

@@ -26,8 +26,7 @@ from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.status import EHDError, FilmError, InputError, require_number, require_vector
-from exudyn_ehd.studies.film_errors import SCALES, measure_motions, motion_at, scale_of, time_of_sweep
-from exudyn_ehd.studies.richardson import converged
+from exudyn_ehd.studies.film_errors import SCALES, converged, measure_motions, motion_at, scale_of, time_of_sweep
 from exudyn_ehd.tables import format_seconds
 
 # Fields of `JournalBearing` to replace.

@@ -36,7 +36,7 @@ from exudyn_ehd.coupling.record.summary import without_lines
 from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SolveDynamic
 from exudyn_ehd.status import EHDError, InputError, RunError, require_number, require_plausible, require_type, warn_user
-from exudyn_ehd.studies.richardson import LOWEST_ORDER
+from exudyn_ehd.studies.film_errors import LOWEST_ORDER
 
 FEWEST, LEVELS = 90, 7
 FEWEST_ROWS = 8

@@ -16,16 +16,46 @@ from typing import Any
 
 import exudyn as exu
 from exudyn.utilities import InertiaCylinder
+from numba.core import types
+from numba.core.types.containers import BaseTuple
 
 import exudyn_ehd as ehd
 from exudyn_ehd.kernels.ahead import HELPER_VARIABLE
-from exudyn_ehd.kernels.signatures import PACKAGE, TABLE, find, write_type
+from exudyn_ehd.kernels.signatures import PACKAGE, SCALARS, TABLE, find
 
 SIZE = {"journal_radius": 0.01, "length": 0.02, "radial_clearance": 20e-6}
 FILMS = ("swift", "elrod", "bodies")
 CAVITATION = {"swift": ehd.SwiftStieber(), "elrod": ehd.ElrodAdams(cavity_pressure=-1e5)}
 
+LETTERS = {kind: letter for letter, kind in SCALARS.items()}
+
 Note = dict[str, Any]
+
+
+def write_type(kind: types.Type) -> str:
+    """Text of the type of an argument, which `read_types` reads.
+
+    Raises
+    ------
+    ValueError
+        For a type that no kernel of the table has.
+    """
+    if kind in LETTERS:
+        return LETTERS[kind]
+    if isinstance(kind, BaseTuple):
+        items = " ".join(write_type(item) for item in kind)
+        cls = getattr(kind, "instance_class", tuple)
+        name = "" if cls is tuple else f"{cls.__module__.removeprefix(f'{PACKAGE}.')}:{cls.__qualname__}"
+        return f"{name}({items})"
+    if (
+        isinstance(kind, types.Array)
+        and kind.mutable
+        and kind.aligned
+        and kind.layout in "CA"
+        and kind.dtype in LETTERS
+    ):
+        return f"{LETTERS[kind.dtype]}{kind.ndim}{'A' if kind.layout == 'A' else ''}"
+    raise ValueError(f"write_type: no text for {kind}")
 
 
 def note_compilations() -> list[Note]:

@@ -68,7 +68,7 @@ EFFECTS = {
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
     "energy": (("film.heat.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
     "walls": (
-        ("film.heat.passage", "film.heat.conduction"),
+        ("film.heat.conduction",),
         {
             "lubricant": HOT,
             "thermal": ehd.FilmEnergy(
@@ -162,9 +162,7 @@ SHARED = {
     "grid",
     "loads",
     "lubricant.lubricant",
-    "lubricant.named_oils",
     "reynolds.links",
-    "solvers.closure",
     "solvers.exact",
     "solvers.linear",
     "reynolds.stepped_gap",

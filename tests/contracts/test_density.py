@@ -9,7 +9,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant import density
 from exudyn_ehd.film.solvers import compiled, compressible
-from exudyn_ehd.joint.balance.advice import advice
+from exudyn_ehd.joint.balance.limits import advice
 from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 

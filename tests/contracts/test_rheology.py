@@ -165,9 +165,9 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         monkeypatch.setattr(f"exudyn_ehd.film.lubricant.shear_thinning.{target}", forbidden)
     for target in (
         "heat.temperature._Temperature.viscosity_ratio",
-        "heat.oil_flows.film_flows",
+        "heat.power.film_flows",
         "model.loads.couette_integral_ratio",
-        "balance.temperature._target",
+        "balance.film._target",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
     for model in (expected, make(cavitation=cavitation)):

@@ -7,7 +7,7 @@ import numpy as np
 import scenes
 import toy
 
-from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.status import Status
 

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.reference import short_bearing
+from tests.reference import short_bearing
 
 WALL = ehd.RegularisedWall(onset=1e-6, pressure=2e9)
 ROUGH = ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1.15e11, friction_coefficient=0.12)

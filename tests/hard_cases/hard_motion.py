@@ -11,7 +11,7 @@ from hard_registry import hard_case
 from hard_scene import CLEARANCE, SPEED, Rotor, bearing
 
 import exudyn_ehd as ehd
-from exudyn_ehd.reference import short_bearing
+from tests.reference import short_bearing
 
 
 @hard_case("sudden load reversal")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, step_errors
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind
 
 CLEARANCE, LENGTH, GAP = 20e-6, 0.02, 8e-6
 # stiffness and damping of translations and tilts, the latter with moments Mx, My; of a film that whirls while it decays
@@ -54,9 +54,10 @@ def ends(pose):
     return np.max([np.hypot(*(pose[:, :2] + s * 0.5 * LENGTH * pose[:, 2:4]).T) for s in (-1.0, 1.0)], axis=0)
 
 
-def estimate(time, motion, tangents=None, **options):
+def estimate(time, motion, tangents=None, deflection=None):
     blocks = np.broadcast_to(tangent().ravel()[BLOCKS], (time.size, 4, 4)) if tangents is None else tangents
-    return step_errors(time, motion, blocks, np.full(time.size, GAP), CLEARANCE, LENGTH, **options)
+    gaps = np.full(time.size, GAP)
+    return errors_behind(np.zeros(4), time, motion, blocks, gaps, CLEARANCE, LENGTH, deflection)[0]
 
 
 @pytest.mark.parametrize("uneven", [0.0, 0.4])

@@ -8,7 +8,8 @@ from numba.core import types
 
 from exudyn_ehd.film.reynolds.links import Coefficients
 from exudyn_ehd.kernels import ahead
-from exudyn_ehd.kernels.signatures import TABLE, find, read_types, table, write_type
+from exudyn_ehd.kernels.signatures import TABLE, find, read_types, table
+from tests.benchmarks.first_films import write_type
 
 f2 = types.Array(types.float64, 2, "C")
 

@@ -5,7 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
-from exudyn_ehd.pictures.units import unit_for
+from exudyn_ehd.pictures.records import unit_for
 from exudyn_ehd.status import InputError
 
 

@@ -5,7 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures import rotors
-from exudyn_ehd.pictures.units import Unit
+from exudyn_ehd.pictures.records import Unit
 
 SPEEDS = np.array([100.0, 200.0, 300.0])
 TABLE = {

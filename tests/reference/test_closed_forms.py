@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from exudyn_ehd.reference import elastic_rings, long_bearing, petroff, short_bearing, slider
+from tests.reference import elastic_rings, long_bearing, petroff, short_bearing, slider
 
 EPS = (0.1, 0.5, 0.9)
 

@@ -9,9 +9,9 @@ import pytest
 from exudyn_ehd.solid.elements.hex20 import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_equilibrium import equilibrium
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
+from tests.solid_equilibrium import equilibrium
 from tests.solid_vibrations import eigenfrequencies
 
 DATA = Path(__file__).parent / "data"

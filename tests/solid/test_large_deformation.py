@@ -16,9 +16,9 @@ from scipy.sparse.linalg import splu
 from exudyn_ehd.solid.elements.hex20 import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_equilibrium import EquilibriumError, equilibrium
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from tests.sampling import sample
+from tests.solid_equilibrium import EquilibriumError, equilibrium
 
 MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
 MESH = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=4, radial=2, circumferential=40).mesh()

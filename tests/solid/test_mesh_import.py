@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.abaqus_input import read_abaqus
+from exudyn_ehd.solid.mesh_files import read_abaqus
 from exudyn_ehd.status import InputError
 from tests.solid_tetrahedra import element_lines, node_lines, tet_mesh, tetrahedra
 

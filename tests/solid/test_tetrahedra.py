@@ -13,10 +13,10 @@ from exudyn_ehd.solid.elements.hex20 import IRONS14
 from exudyn_ehd.solid.elements.tet10 import EDGES, HAMMER4, WALKINGTON14
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, SurfaceLoad, dead_forces
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_equilibrium import equilibrium
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
+from tests.solid_equilibrium import equilibrium
 from tests.solid_tetrahedra import tet_mesh
 
 # kernels of an element are compiled for it alone, which takes longer than all these tests

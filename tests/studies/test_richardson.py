@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.status import InputError
-from exudyn_ehd.studies.richardson import LOWEST_ORDER, converged
+from exudyn_ehd.studies.film_errors import LOWEST_ORDER, converged
 
 SCALE = 2.0
 

@@ -14,7 +14,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.reference import long_bearing
+from tests.reference import long_bearing
 
 R, C, MU, SPEED, WIDTH = 0.025, 25e-6, 0.02, 100.0, 0.01
 

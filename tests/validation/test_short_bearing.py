@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.reference import short_bearing
+from tests.reference import short_bearing
 
 SPEED = 100.0
 FILM = ehd.ShortBearing(n_theta=512, n_z=6)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.reference import petroff, slider
+from tests.reference import petroff, slider
 
 
 @pytest.mark.parametrize("closure", (ehd.SwiftStieber(), ehd.FullSommerfeld(), ehd.Gumbel()))

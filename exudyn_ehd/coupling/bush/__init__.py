@@ -3,10 +3,8 @@
 Module map
 ----------
 object     CreateFlexibleBush
-functions  what Exudyn asks of it
-equations  its forces, matrices and Jacobians
-rigid_part  what its housing has of it
+equations  its forces, matrices and Jacobians, and what Exudyn asks of it
+rigid_part what its housing has of it
 residual   of a system with bushes
-factor     of the iteration matrix of a system with bushes
-recycled   linear equations with a film's operator
+linear     the factor of a system with bushes; linear equations with a film's operator
 """

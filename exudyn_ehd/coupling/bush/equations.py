@@ -17,6 +17,7 @@ from scipy.sparse import bmat, csr_matrix, identity
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.items.carrier import Carrier
 from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
 from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces, factor
@@ -56,7 +57,7 @@ class BushEquations:
     contained: RigidPart | None = None
 
     def motion(
-        self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
+        self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = CURRENT
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at a state of Exudyn."""
         u, v = self._nodal(q), self._nodal(q_t)
@@ -155,7 +156,7 @@ class BushEquations:
 
     def require_upright(self, mbs: exu.MainSystem, places: np.ndarray | slice, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
-        start, data = exu.ConfigurationType.StartOfStep, mbs.systemData
+        start, data = START_OF_STEP, mbs.systemData
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
         turned = self.solid.inversion(self.motion(q, q_t, start)[0])
         if turned:
@@ -326,3 +327,45 @@ class Block:
         """Return the block with the given values of the whole pattern."""
         shape = (len(self.indptr) - 1, self.columns)
         return csr_matrix((values[self.entries], self.indices, self.indptr), shape=shape, copy=False)
+
+
+class BushFunctions:
+    """What Exudyn asks of a nodal bush.
+
+    Parameters
+    ----------
+    equations : BushEquations
+    name : str
+        Of the object, for messages.
+    """
+
+    def __init__(self, equations: BushEquations, name: str) -> None:
+        self.equations, self.name = equations, name
+        self._watched = np.nan
+        self._weighed = False
+
+    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
+        """Generalised force (n,), a list, which Exudyn reads fastest; raises if an element was inside out."""
+        self.watch(mbs, item)
+        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
+
+    def watch(self, mbs: exu.MainSystem, item: int, places: np.ndarray | slice | None = None) -> None:
+        """Raise if an element is inside out at the start of a step; ``places`` of the object's coordinates if known."""
+        start = mbs.systemData.GetTime(START_OF_STEP)
+        if start != self._watched:
+            self._watched = start
+            known = np.array(mbs.systemData.GetObjectLTGODE2(item)) if places is None else places
+            self.equations.require_upright(mbs, known, start, self.name)
+
+    def jacobian(
+        self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
+    ) -> csr_matrix:
+        """Derivative (n, n) of minus the force, weighted for coordinates and rates."""
+        return self.equations.jacobian(t, np.array(q), np.array(q_t), f_q, f_qt)
+
+    def mass(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> csr_matrix:
+        """Mass (n, n) of a bush on a carrier."""
+        if not self._weighed:
+            self._weighed = True
+            self.equations.warn_if_light(mbs, self.name.removesuffix(" bush"), np.array(q))
+        return self.equations.mass(np.array(q))

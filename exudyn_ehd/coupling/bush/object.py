@@ -15,12 +15,11 @@ import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
 
-from exudyn_ehd.coupling.bush.equations import BushEquations
-from exudyn_ehd.coupling.bush.functions import BushFunctions
+from exudyn_ehd.coupling.bush.equations import BushEquations, BushFunctions
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
-from exudyn_ehd.coupling.contract import Index, NodeIndex, Side, require_system
+from exudyn_ehd.coupling.contract import CURRENT, Index, NodeIndex, Side, require_system
 from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
-from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.loads import Load
@@ -133,21 +132,21 @@ class FlexibleBush:
     nodeNumbers: np.ndarray
     equations: BushEquations
 
-    def coordinates(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def coordinates(self, configuration: exu.ConfigurationType = CURRENT) -> np.ndarray:
         """Return the object's coordinates q without reference values."""
         places = self.mbs.systemData.GetObjectLTGODE2(int(self.objectNumber))
         return np.asarray(self.mbs.systemData.GetODE2Coordinates(configuration))[places]
 
-    def coordinates_t(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def coordinates_t(self, configuration: exu.ConfigurationType = CURRENT) -> np.ndarray:
         """Return the rates dq/dt of the object's coordinates."""
         places = self.mbs.systemData.GetObjectLTGODE2(int(self.objectNumber))
         return np.asarray(self.mbs.systemData.GetODE2Coordinates_t(configuration))[places]
 
-    def displacements(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def displacements(self, configuration: exu.ConfigurationType = CURRENT) -> np.ndarray:
         """Return the displacement of all mesh nodes, shape (n, 3) [m], global frame."""
         return self._motion(configuration)[0]
 
-    def velocities(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def velocities(self, configuration: exu.ConfigurationType = CURRENT) -> np.ndarray:
         """Return the velocity of all mesh nodes, shape (n, 3) [m/s], global frame."""
         return self._motion(configuration)[1]
 
@@ -159,15 +158,13 @@ class FlexibleBush:
         """Stress recovery for `displacements`."""
         return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
 
-    def energy(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> tuple[float, float]:
+    def energy(self, configuration: exu.ConfigurationType = CURRENT) -> tuple[float, float]:
         """Return strain and kinetic energy [J]; without what a housing that contains the bush has of it."""
         u, v = self._motion(configuration)
         kinetic = 0.5 * float(np.einsum("ni,ni->", v, self.solid.scalar_mass @ v))
         return self.solid.energy(u), kinetic - self._contained()[0]
 
-    def momentum(
-        self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def momentum(self, configuration: exu.ConfigurationType = CURRENT) -> tuple[np.ndarray, np.ndarray]:
         """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s].
 
         Without what a housing that contains the bush has of it.

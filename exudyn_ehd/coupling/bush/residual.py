@@ -19,8 +19,8 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.bush.functions import BushFunctions
-from exudyn_ehd.coupling.contract import Index, ObjectIndex
+from exudyn_ehd.coupling.bush.equations import BushFunctions
+from exudyn_ehd.coupling.contract import CURRENT, Index, ObjectIndex
 from exudyn_ehd.coupling.items.object_mass import as_sparse
 
 # Exudyn's stubs lack the self of its solvers' methods.
@@ -89,7 +89,7 @@ class BushResiduals:
             for item, _, bush, _ in self.bushes:
                 mbs.SetObjectParameter(item, "forceUserFunction", bush.force)
         data, scale = mbs.systemData, solver.newmarkBeta * solver.it.currentStepSize**2
-        state = data.GetSystemStateDict(exu.ConfigurationType.Current, True)
+        state = data.GetSystemStateDict(CURRENT, True)
         motion = [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt")]
         residual, n = np.array(solver.GetSystemResidual()), len(motion[0])
         for item, places, bush, _ in self.bushes:

@@ -2,15 +2,12 @@
 
 Module map
 ----------
-attach          from a joint's description to its element
+attach          from a joint's description to its element; bores in balance with the films at the start
 rigid           `FilmElement`: user functions for a rigid bore
-spherical       `SphericalFilmElement`: of a ball in its socket
-settled_start   bores in balance with the films at the start
 accepted_steps  what was accepted: record, memory, watches, runs that go on
 presence        items of the joint, still in the system
 failures        messages of films that can't go on
-modal           bore by modes
-modal_inertia   inertia of the modes
+modal           bore by modes, and their inertia
 nodal           bore by nodes
 thrust          films on the end faces, an element of their own
 """

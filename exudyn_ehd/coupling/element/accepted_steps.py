@@ -19,49 +19,39 @@ from typing import Protocol
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Element, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films, tiny_forces, turning_meshes
-from exudyn_ehd.coupling.watch.chatter import ChatterWatch
+from exudyn_ehd.coupling.watch import poor_films, solver_state, tiny_forces
+from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
-from exudyn_ehd.joint.balance.hot_oil import HOT
+from exudyn_ehd.joint.balance.limits import HOT
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
 from exudyn_ehd.status import OverloadWarning, Status
 
-_CURRENT = exu.ConfigurationType.Current
-_START_OF_STEP = exu.ConfigurationType.StartOfStep
 # A run goes on with the last step of the run before if it starts at its end, share of that step.
 SAME_TIME = 1e-3
 
 
-class Film(Protocol):
+class Film(Element, Protocol):
     """What accepted steps ask of the element they belong to.
 
     Attributes
     ----------
-    model : JointModel
-    sides : pair of Side
-        Housing and journal.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
     """
 
-    model: JointModel
-    sides: tuple[Side, Side]
     failures: Failures
     is_massless: bool
-
-    def require_items(self, mbs: exu.MainSystem) -> None:
-        """Refuse a system of which items were deleted that the joint was made on."""
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element."""
@@ -138,7 +128,7 @@ class AcceptedSteps:
         self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
-        self._turning: turning_meshes.TurnWatch | None = None
+        self._turning: TurnWatch | None = None
         self._uses_memory = self._may_starve = self.in_own_run = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
@@ -178,9 +168,9 @@ class AcceptedSteps:
             solver_state.warn_unknown(self.film.failures.name)
         if self._uses_memory and self.memory is None:
             self.start = start
-            motion = self.film.motion(mbs, _START_OF_STEP)
+            motion = self.film.motion(mbs, START_OF_STEP)
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
-        trial = self.film.look(mbs, start, _START_OF_STEP)
+        trial = self.film.look(mbs, start, START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
         row = self.film.row(start, trial)
         if self.control is not None:
@@ -191,7 +181,7 @@ class AcceptedSteps:
             if not resumed or start > self.record.last_time:
                 self.record.append(row)
                 if self.recorder is not None:
-                    self.recorder.offer(start, lambda: self.film.fields(mbs, start, trial, _START_OF_STEP))
+                    self.recorder.offer(start, lambda: self.film.fields(mbs, start, trial, START_OF_STEP))
             for observe in self.observers:
                 observe(trial)
             if start > self.start:
@@ -204,7 +194,7 @@ class AcceptedSteps:
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
         self.film.require_items(mbs)
-        film, place, before = self.film, self.film.read(mbs, _START_OF_STEP)[0], self._first
+        film, place, before = self.film, self.film.read(mbs, START_OF_STEP)[0], self._first
         # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
         # nothing has moved either run starts where the other ended
         goes_on = start > self.record.last_time and (place != before or self.asked[1] == before)
@@ -224,12 +214,12 @@ class AcceptedSteps:
         self._chatter = ChatterWatch(bearing) if explicit else None
         area = 2.0 * bearing.journal_radius * bearing.length
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
-        self._turning = turning_meshes.turn_watch(mbs, film.sides, self.solver)
+        self._turning = turn_watch(mbs, film.sides, self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
         self.tangent = None
-        self._thin, self._told, self._overloaded = thin_films.limit(bearing), False, False
+        self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
         self._cool = HOT
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory = place, memory
@@ -263,7 +253,7 @@ class AcceptedSteps:
             if place != self.asked[1] and not solver_state.is_explicit(self.solver):
                 film.failures.warn_of_memory(start, end)
             if self._uses_memory and end > last:
-                trial = film.look(mbs, end, _START_OF_STEP)
+                trial = film.look(mbs, end, START_OF_STEP)
                 if trial.evaluation is not None and trial.status == Status.CONVERGED:
                     memory = trial.evaluation.history()
                 film.forget()
@@ -278,8 +268,7 @@ class AcceptedSteps:
 
     def _advance_memory(self, trial: Trial) -> None:
         if self._uses_memory:
-            assert trial.evaluation is not None
-            self.memory = trial.evaluation.history()
+            self.memory = trial.found.history()
             self.film.forget()
 
     def _check(self, start: float, trial: Trial, step: float, row: np.ndarray | None) -> None:
@@ -290,17 +279,16 @@ class AcceptedSteps:
         if row is not None and (absurd := failures.absurd(start, row, trial)) is not None:
             raise absurd
         self._cool = failures.check_heat(start, trial, self.memory, self._cool)
-        if self._may_starve and self.memory is not None and (lost := starvation.lost_share(self.memory)) > 0.0:
+        if self._may_starve and self.memory is not None and (lost := poor_films.lost_share(self.memory)) > 0.0:
             self._may_starve = False
-            starvation.warn(failures.name, start, lost)
+            poor_films.warn_of_starvation(failures.name, start, lost)
         if self._turning is not None:
             self._turning.take(failures.name, start)
         if row is None:
             return
         self._warn_of_film(start, trial, row)
         if self._ringing is not None:
-            assert trial.evaluation is not None
-            x, y = trial.evaluation.wrench[:2].tolist()
+            x, y = trial.found.wrench[:2].tolist()
             rang = self._ringing.rings
             if self._ringing.take(start, x, y) and not rang:
                 ringing.warn(failures.name, self._ringing, starts_well=self.in_own_run)
@@ -314,7 +302,7 @@ class AcceptedSteps:
         failures = self.film.failures
         if (gap := row[MINIMUM_GAP]) < self._thin:
             self._thin = -np.inf
-            thin_films.warn(failures.name, start, gap)
+            poor_films.warn_of_thin_film(failures.name, start, gap)
         if not self._overloaded and failures.overload(row) > 1.0:
             self._overloaded = True
             warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)
@@ -327,7 +315,7 @@ class AcceptedSteps:
     @property
     def _accepted(self) -> exu.ConfigurationType:
         # during a run, and after one that an exception has ended, the current state need not be an accepted one
-        return _CURRENT if self.is_idle else _START_OF_STEP
+        return CURRENT if self.is_idle else START_OF_STEP
 
     def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, exu.ConfigurationType]:
         """Time of the last accepted state, the film there, and the configuration that holds it."""
@@ -341,8 +329,7 @@ class AcceptedSteps:
         row, memory = self.film.row(time, trial), self.memory if self._uses_memory else self._aside
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
-            assert trial.evaluation is not None
-            memory = trial.evaluation.history()
+            memory = trial.found.history()
             self.film.forget()
         return time, memory, begin, self.record.rows(row)
 

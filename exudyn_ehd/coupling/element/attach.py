@@ -1,6 +1,11 @@
-"""Puts the items of a flexible bush into an Exudyn system and makes the film element on them."""
+"""Puts the items of a flexible bush into an Exudyn system and makes the film element on them.
+
+Flexible bores start in equilibrium with the films of the initial configuration; several on one body together.
+"""
 
 from __future__ import annotations
+
+import dataclasses
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -8,27 +13,38 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
-from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement, TurningFilmElement
-from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, describe
+from exudyn_ehd.coupling.element.modal import (
+    BoreFilmElement,
+    ModalFilmElement,
+    ModalInertia,
+    TurningFilmElement,
+    describe,
+)
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
-from exudyn_ehd.coupling.element.settled_start import initial_coordinates, settle_body, undeformed
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
-from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
-from exudyn_ehd.coupling.items.own_equations import own_equations
+from exudyn_ehd.coupling.items.object_mass import own_equations, require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
-from exudyn_ehd.joint.bore.shapes import ModalBore
+from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium
+from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
+from exudyn_ehd.joint.model.build import collect_effects
 from exudyn_ehd.joint.model.build_flexible import TurningModel
-from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.solid.loads import Gravity
 from exudyn_ehd.solid.modes.static import BoreModes
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import InputError, Status
 
 # Period over 2 pi of a mode on its numerical mass over the journal's radius, s/m: a thousandth of what sound takes.
 NUMERICAL_PERIOD = 2e-7
+# Name in mbs.variables of the films on every body, by the number of its modal node
+_BODIES = "lubricatedBodies"
 
 
 def attach_bush(
@@ -157,3 +173,167 @@ def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
     whole = np.zeros((n + len(mass), n + len(mass)))
     whole[n:, n:] = mass
     return whole
+
+
+@dataclasses.dataclass(frozen=True)
+class StartingFilm:
+    """A film on its bore, the motion (10,) and the journal's angle at which it starts, and what it remembers there."""
+
+    model: ElasticBearingModel
+    motion: np.ndarray
+    memory: History | None
+    spin: float
+
+    def at(self, part: float, bore: np.ndarray) -> ElasticEvaluation:
+        """The film with the pose scaled by ``part`` and the bore's coordinates and rates (2 k,)."""
+        motion = np.concatenate((self.motion, bore))
+        motion[:4] *= part
+        return self.model.evaluate(motion, self.memory, 0.0, self.spin)
+
+
+@dataclasses.dataclass(frozen=True)
+class FilmsOnOneBody:
+    """Films on bores of one body, whose modes they share, as `bore_equilibrium` takes them.
+
+    The first number of the motion is the part of all poses.
+    """
+
+    films: list[StartingFilm]
+
+    @property
+    def bore(self) -> Bore:
+        """One of the bores; all have the same coordinates."""
+        return self.films[0].model.bore
+
+    @property
+    def elasticity(self) -> Elasticity:
+        """That of the body, with its growth by spin where the first film is on a journal."""
+        return self.films[0].model.elasticity
+
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> FilmsTogether:
+        """All films at a motion (10 + 2 k,)."""
+        return FilmsTogether([film.at(float(motion[0]), motion[MOTION_SIZE:]) for film in self.films])
+
+
+@dataclasses.dataclass(frozen=True)
+class FilmsTogether:
+    """Evaluations of films on one body."""
+
+    parts: list[ElasticEvaluation]
+
+    @property
+    def status(self) -> Status:
+        """The first that is not `Status.CONVERGED`."""
+        return next((part.status for part in self.parts if part.status is not Status.CONVERGED), Status.CONVERGED)
+
+    @property
+    def bore(self) -> BoreState:
+        """Coordinates, and the sum of the loads."""
+        return self.parts[0].bore._replace(load=np.sum([part.bore.load for part in self.parts], axis=0))
+
+    def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
+        """Sum of the films' tangents to the bores' coordinates."""
+        return np.sum([part.combined_tangent(by_place, by_rate) for part in self.parts], axis=0)
+
+
+def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) -> np.ndarray | None:
+    """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
+
+    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
+    flooded film's first instant is Swift-Stieber's; with a heat balance it has the temperature that the run starts at.
+    The modes of a finite-element journal are those of its body, see `settle_body`.
+    """
+    if isinstance(model, TurningModel):
+        return None
+    return _equilibrium([_starting_film(model, sides)])
+
+
+def undeformed(mbs: exu.MainSystem, housing: Item, side: FloatingBoreSide) -> Item:
+    """The housing with its modes at rest, if they are where an earlier joint's film has put them."""
+    node = side.nodes[-1]
+    known = _known(mbs, side)
+    if not known or not np.array_equal(mbs.GetNodeParameter(node, "initialCoordinates"), known[1]):
+        return housing
+    initial = np.array(housing.initial_coordinates, dtype=float)
+    velocities = np.array(housing.initial_velocities, dtype=float)
+    initial[side.floating.size :] = velocities[side.floating.size :] = 0.0
+    return dataclasses.replace(housing, initial_coordinates=initial, initial_velocities=velocities)
+
+
+def settle_body(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Side, Side]) -> None:
+    """Let the modes of a reduced body start in equilibrium with all of its films, unless the scene has set them.
+
+    The body's frame is held; the sides' frames are those of the undeformed body. A journal that turns starts with what
+    centrifugal forces make it grow by, and with its shape at rest in the joint's frame.
+    """
+    pin = model.bearing.journal
+    surface, side = (pin.surface, sides[1]) if isinstance(pin, TurningJournal) else (model.bearing.bush, sides[0])
+    assert isinstance(surface, ReducedBore) and isinstance(side, FloatingBoreSide)
+    node, known = side.nodes[-1], _known(mbs, side)
+    present = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
+    others = known[0] if known and np.array_equal(present, known[1]) else []
+    if not surface.settled or (present.any() and not others):
+        return
+    films = [*others, _starting_film(model, sides, surface.held())]
+    # the body grows by its spin whatever joint comes first
+    films.sort(key=lambda film: not isinstance(film.model, TurningModel))
+    start = _equilibrium(films)
+    if start is not None:
+        mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())
+        mbs.SetNodeParameter(node, "initialCoordinates_t", _standing_rates(films, start).tolist())
+        put = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
+        mbs.variables.setdefault(_BODIES, {})[int(node)] = films, put
+
+
+def _known(mbs: exu.MainSystem, side: FloatingBoreSide) -> tuple[list[StartingFilm], np.ndarray] | None:
+    """Films that have settled a body before, and where they have put it."""
+    return mbs.variables.get(_BODIES, {}).get(int(side.nodes[-1]))
+
+
+def _starting_film(
+    model: ElasticBearingModel, sides: tuple[Side, Side], held: ReducedBore | None = None
+) -> StartingFilm:
+    """The film of a model at the sides' frames, on its own bore or on that of a body whose frame does not follow."""
+    bearing, film = model.bearing, model
+    if bearing.cavitation.conserves_mass:
+        closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
+        bearing = dataclasses.replace(bearing, cavitation=closure)
+    effects = collect_effects(bearing)
+    if held is not None and isinstance(model, TurningModel):
+        journal = dataclasses.replace(model.turning, surface=held)
+        film = TurningModel(bearing, journal, effects=effects)
+        film.turns = False
+        spin = float(sides[1].frame[:, 2] @ sides[1].frame[:, 5])
+        film.elasticity = Elasticity(lambda: held.stiffness_matrix, spin**2 * journal.mass)
+    else:
+        make = model.make_bore if held is None else lambda grid: ModalBore(held, grid)
+        film = ElasticBearingModel(bearing, make, elasticity=model.elasticity, effects=effects)
+    frames = sides[0].frame, sides[1].frame
+    motion = relative.motion_of(*frames)
+    return StartingFilm(film, motion, film.initial_history(motion), relative.angle_of(*frames))
+
+
+def _equilibrium(films: list[StartingFilm]) -> np.ndarray | None:
+    """Coordinates (k,) of the bores in equilibrium with their films, None if there is none."""
+    first = films[0]
+    if len(films) == 1:
+        settled = first.model.evaluate_steady(first.motion, first.memory, 0.0, first.spin)
+        return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None
+    together = FilmsOnOneBody(films)
+    found = bore_equilibrium(together, np.ones(MOTION_SIZE), (None, 0.0, 0.0), np.zeros(first.model.size))[0]
+    return None if found is None else found.bore.coordinates.copy()
+
+
+def _standing_rates(films: list[StartingFilm], q: np.ndarray) -> np.ndarray:
+    """Rates (k,) with which shapes of turning journals stand as well as their modes let them: T q_t = -omega D T q."""
+    turning = [(f.model.turning, f) for f in films if isinstance(f.model, TurningModel)]
+    if not turning:
+        return np.zeros_like(q)
+    maps = [journal.map(film.spin) for journal, film in turning]
+    # what spin alone makes of a journal goes round with it
+    elasticity = turning[0][1].model.elasticity
+    q = q - np.linalg.solve(elasticity.stiffness, elasticity.load)
+    carried = [film.motion[8] * journal.turned(T @ q) for (journal, film), T in zip(turning, maps, strict=True)]
+    return np.asarray(np.linalg.lstsq(np.concatenate(maps), -np.concatenate(carried), rcond=1e-6)[0])

@@ -11,9 +11,20 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, THRUST, eccentricity_ratios
-from exudyn_ehd.joint.balance.advice import advice
-from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above, seized
-from exudyn_ehd.joint.balance.overload import DEEPEST, HIGHEST_MEAN, HIGHEST_PEAK, PRESSED_THROUGH, mean_pressure
+from exudyn_ehd.joint.balance.limits import (
+    DEEPEST,
+    HIGHEST_MEAN,
+    HIGHEST_PEAK,
+    HOTTEST,
+    NO_OIL,
+    PRESSED_THROUGH,
+    advice,
+    hot_film,
+    hottest,
+    is_above,
+    mean_pressure,
+    seized,
+)
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 
@@ -75,8 +86,7 @@ class Failures:
 
     def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:
         """An explicit solver's ``step`` (s) beyond its stability limit; its rates miss its motion by ``miss`` (m)."""
-        assert trial.evaluation is not None
-        damping = -trial.evaluation.tangent()[: self.axes, 4 : 4 + self.axes]
+        damping = -trial.found.tangent()[: self.axes, 4 : 4 + self.axes]
         largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
         return self._at(
             time,
@@ -89,8 +99,8 @@ class Failures:
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
         """The state of an accepted step is none of a bearing; None if it is one."""
-        if seizure := self._seized(time, trial):
-            return seizure
+        if message := seized(getattr(getattr(trial.evaluation, "film", None), "walls", None)):
+            return self._at(time, message)
         if self._pressure(row) > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
         on_faces = None if getattr(self.bearing, "thrust", None) is None else self._absurd_faces(time, row)
@@ -206,11 +216,6 @@ class Failures:
             f"{PRESSED_THROUGH}; {self._place(trial.motion)}check load, mass and units; give the contact more "
             "stiffness (RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
         )
-
-    def _seized(self, time: float, trial: Trial) -> FilmError | None:
-        """Growing walls have taken the whole clearance; None if they have not."""
-        message = seized(getattr(getattr(trial.evaluation, "film", None), "walls", None))
-        return self._at(time, message) if message else None
 
     def overload(self, row: np.ndarray) -> float:
         """Pressures of an accepted step over what a material bears."""

@@ -18,15 +18,13 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.bush.object import FlexibleBush
-from exudyn_ehd.coupling.contract import Evaluation, Index, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, Evaluation, Index, Side, Trial
 from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.tangent.spread import complete, resultant, spread_matrix
 from exudyn_ehd.status import Status
-
-_CURRENT = exu.ConfigurationType.Current
 
 
 class NodalFilmElement(BoreFilmElement):
@@ -129,7 +127,7 @@ class NodalFilmElement(BoreFilmElement):
         self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> NodalTangent | None:
         """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
-        trial = self._try(mbs, q, q_t, _CURRENT, t)
+        trial = self._try(mbs, q, q_t, CURRENT, t)
         return NodalTangent(self, mbs, trial, f_q, f_qt) if trial.status == Status.CONVERGED else None
 
     def _turning_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Evaluation, Faces, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, Faces, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
@@ -28,8 +28,6 @@ from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
 from exudyn_ehd.status import Status
 
-_CURRENT = exu.ConfigurationType.Current
-_START_OF_STEP = exu.ConfigurationType.StartOfStep
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
 
@@ -92,7 +90,7 @@ class FilmElement:
         stepping = not steps.is_idle
         if stepping or steps.solver is None:
             steps.asked = t, q
-        trial = self._prepare(mbs, q, q_t, _CURRENT, t, stepping)
+        trial = self._prepare(mbs, q, q_t, CURRENT, t, stepping)
         if self.crew is not None:
             self.crew.evaluate(mbs, t, self, trial)
         if trial is not self._trial:
@@ -116,14 +114,14 @@ class FilmElement:
 
     def at(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
         """The film at a state for which Exudyn asks."""
-        return self._try(mbs, q, q_t, _CURRENT, t, stepping=not self.steps.is_idle)
+        return self._try(mbs, q, q_t, CURRENT, t, stepping=not self.steps.is_idle)
 
     def _accept(self, mbs: exu.MainSystem) -> None:
         """Take a state as accepted if the step has moved on; raise what that has met when another film was asked."""
         late, self.late = self.late, None
         if late is not None:
             raise late
-        start, steps, solvers = mbs.systemData.GetTime(_START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
+        start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
         if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
             steps.accept(mbs, start, solvers)
 
@@ -131,7 +129,7 @@ class FilmElement:
         """What `force` does before the film is evaluated, with its errors kept for it; None if nothing is left."""
         try:
             self._accept(mbs)
-            trial = self._prepare(mbs, q, q_t, _CURRENT, t, not self.steps.is_idle)
+            trial = self._prepare(mbs, q, q_t, CURRENT, t, not self.steps.is_idle)
         except Exception as error:
             self.late = error
             return None
@@ -213,8 +211,7 @@ class FilmElement:
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion."""
-        assert trial.evaluation is not None
-        return np.ascontiguousarray(trial.evaluation.tangent())
+        return np.ascontiguousarray(trial.found.tangent())
 
     def _move(
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
@@ -250,9 +247,8 @@ class FilmElement:
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
-        assert trial.evaluation is not None
         force = np.empty(len(trial.q))
-        self._rigid_force(trial.evaluation.wrench, force)
+        self._rigid_force(trial.found.wrench, force)
         return force
 
     def _rigid_force(self, wrench: np.ndarray, force_out: np.ndarray) -> None:
@@ -275,12 +271,11 @@ class FilmElement:
         self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
-        assert trial.evaluation is not None
         if solver_state.is_implicit(self.steps.solver):
             self.steps.tangent = tangent
         n = self.sides[0].size + self.sides[1].size
         state = np.array(trial.q[:n]), np.array(trial.q_t[:n])
-        return derivatives_between(mbs, self.sides, state, trial.evaluation.wrench, tangent, self.kinematics)
+        return derivatives_between(mbs, self.sides, state, trial.found.wrench, tangent, self.kinematics)
 
     @property
     def last(self) -> Trial | None:
@@ -309,7 +304,7 @@ class FilmElement:
         """Evaluate the film at the state that Exudyn holds in ``configuration``."""
         q, q_t = self.read(mbs, configuration)
         trial = self._try(mbs, q, q_t, configuration, time)
-        if configuration != _CURRENT and any(isinstance(side, MarkerSide) for side in self.sides):
+        if configuration != CURRENT and any(isinstance(side, MarkerSide) for side in self.sides):
             # the markers' Jacobians were not brought to this state: never reuse it
             self.forget()
         return trial
@@ -322,8 +317,8 @@ class FilmElement:
 
     def peek(self, mbs: exu.MainSystem) -> np.ndarray:
         """Motion at Exudyn's current state, for which the film will be asked next."""
-        q, q_t = self.read(mbs, _CURRENT)
-        motion = self._move(mbs, q, q_t, _CURRENT)
+        q, q_t = self.read(mbs, CURRENT)
+        motion = self._move(mbs, q, q_t, CURRENT)
         self.forget()
         self._peeked = q, q_t, motion
         return motion
@@ -364,5 +359,5 @@ class FilmElement:
 
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
-        time = mbs.systemData.GetTime(_CURRENT)
-        return self.row(time, self.look(mbs, time, _CURRENT))
+        time = mbs.systemData.GetTime(CURRENT)
+        return self.row(time, self.look(mbs, time, CURRENT))

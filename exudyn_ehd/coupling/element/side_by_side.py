@@ -26,11 +26,10 @@ from typing import Protocol
 
 import exudyn as exu
 
-from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.coupling.contract import CURRENT, JointModel, Trial
 from exudyn_ehd.kernels.ahead import cores
 from exudyn_ehd.status import Status, require_integer
 
-_CURRENT = exu.ConfigurationType.Current
 # States in a row at which all films were asked as expected, before they go side by side.
 ENOUGH = 4
 
@@ -104,7 +103,7 @@ class SideBySide:
         # another state than expected, or films that were not asked at the last one
         self._agreed = 0 if expected is not None or self._expected else self._agreed + 1
         others = [film for film in self.films if film is not asked]
-        self._expected = {film: film.read(mbs, _CURRENT) for film in others}
+        self._expected = {film: film.read(mbs, CURRENT) for film in others}
         if self._agreed < ENOUGH:
             return
         found = [(film, film.arrive(mbs, t, *self._expected[film])) for film in others]

@@ -21,10 +21,10 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Evaluation, JointModel, ObjectIndex, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, Evaluation, JointModel, ObjectIndex, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
-from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
 from exudyn_ehd.coupling.kinematics.sides import bind, derivatives_between
@@ -38,8 +38,6 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.thrust import ADVICE, ThrustEvaluation, ThrustModel
 from exudyn_ehd.progress import announced
 from exudyn_ehd.status import FilmError, InputError, Status
-
-_CURRENT = exu.ConfigurationType.Current
 
 
 class ThrustElement:
@@ -139,8 +137,8 @@ class ThrustElement:
             self._bound = True
         (housing, journal), n = self.sides, self.sides[0].size
         state, rates = np.array(q), np.array(q_t)
-        housing.update(mbs, state[:n], rates[:n], _CURRENT)
-        journal.update(mbs, state[n:], rates[n:], _CURRENT)
+        housing.update(mbs, state[:n], rates[:n], CURRENT)
+        journal.update(mbs, state[n:], rates[n:], CURRENT)
         found = self.at((housing.frame, journal.frame), relative.motion_of(housing.frame, journal.frame))
         self._last = q, q_t, found
         return found

@@ -2,16 +2,11 @@
 
 Module map
 ----------
-resolve         item numbers: bodies, nodes and markers
-item            what becomes of one
-bodies          nodes and bodies
-markers         rigid markers
-joint_frame     where the joint is
+bodies          what becomes of an item number; nodes and bodies
+markers         rigid markers, those on finite elements in absolute coordinates too; item numbers of any kind
+joint_frame     where the joint is, and what is held of its axial freedom
 beams           beams and cables
 reduced_bodies  reduced finite-element bodies
-own_equations   their equations with an exact Jacobian
-meshes          finite elements in absolute coordinates
 carrier         what carries a bush
-object_mass     mass of an object
-axial           axial freedom
+object_mass     mass of an object; equations of reduced bodies with an exact Jacobian
 """

@@ -8,9 +8,8 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Data, Index, NodeIndex
-from exudyn_ehd.coupling.kinematics import cables
-from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide
+from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
+from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide, slope_rotation
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
 from exudyn_ehd.status import InputError
 
@@ -46,7 +45,7 @@ def frame_along(tangent: np.ndarray, planar: bool) -> np.ndarray:
     """Reference frame (3, 3) of a cable, which has no orientation: x along it, z as close to the global z as can be."""
     t = tangent / np.linalg.norm(tangent)
     across = np.array([0.0, 0.0, 1.0]) if planar or abs(t[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    return cables.slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+    return slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
 
 
 def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarray, np.ndarray]:
@@ -169,7 +168,7 @@ def beam_side(
 
 def body_frame(mbs: exu.MainSystem, body: Index, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Position (3,) and rotation (3, 3) of a body in the reference state at local coordinates (3,)."""
-    kinds, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+    kinds, reference = exu.OutputVariableType, REFERENCE
     place = mbs.GetObjectOutputBody(body, kinds.Position, local.tolist(), reference)
     turn = mbs.GetObjectOutputBody(body, kinds.RotationMatrix, local.tolist(), reference)
     return np.array(place), np.array(turn).reshape(3, 3)

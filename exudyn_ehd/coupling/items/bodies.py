@@ -1,18 +1,21 @@
-"""Nodes and bodies of a scene, rigid and flexible, as items of a joint."""
+"""Nodes and bodies of a scene, rigid and flexible, as items of a joint.
+
+One entry of itemNumbers, resolved: where it is, how it moves, and which side it makes.
+"""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
+from exudyn_ehd.coupling.contract import REFERENCE, Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items import beams
-from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
-from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
+from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.status import InputError
 
 NODE_KINDS = {
@@ -26,11 +29,73 @@ MASS_POINTS = ("MassPoint", "MassPoint2D")
 _MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Item:
+    """One entry of itemNumbers, resolved.
+
+    Attributes
+    ----------
+    position, rotation : ndarray (3,), (3, 3)
+        Its frame in the reference configuration, global: the body's, the node's or the marker's; of a beam element that
+        of its local coordinates, x along it.
+    is_marker : bool
+        Whether it fixes the joint point itself.
+    kind : int or None
+        How its node turns, None for anything but a rigid body, a rigid node or ground.
+    planar : bool
+        Whether it moves in the global x-y plane only.
+    inner : bool
+        Whether it moves against other points of its own body by coordinates of the body's one node (link of a tree,
+        point of a mesh).
+    node : exudyn.NodeIndex or None
+        The rigid node.
+    marker : exudyn.MarkerIndex or None
+        The rigid marker that was given.
+    nodes : tuple
+        Nodes it depends on.
+    node_position, node_rotation : ndarray (3,), (3, 3)
+        Frame of its node (or of global space for ground) in the reference configuration.
+    reference_coordinates, initial_coordinates, initial_velocities : ndarray (n,)
+        Of its nodes; empty if only Exudyn's marker knows.
+    body, node_kind : exudyn.ObjectIndex, int
+        The reduced finite-element body, and how its rigid node turns; None for any other item.
+    build : function of point (3,) and joint rotation (3, 3), or None
+        Makes the side; None for rigid nodes and ground.
+    """
+
+    position: np.ndarray
+    rotation: np.ndarray
+    is_marker: bool
+    kind: int | None
+    planar: bool = False
+    inner: bool = False
+    node: Index | None = None
+    marker: Index | None = None
+    nodes: tuple[Index, ...] = ()
+    node_position: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
+    node_rotation: np.ndarray = dataclasses.field(default_factory=lambda: np.eye(3))
+    reference_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    initial_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    initial_velocities: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    body: Index | None = None
+    node_kind: int | None = None
+    build: Callable[[np.ndarray, np.ndarray], Side] | None = None
+
+    def side(self, point: np.ndarray, joint_rotation: np.ndarray) -> Side:
+        """Carrier of the frame that has global position ``point`` and ``joint_rotation`` in the reference state."""
+        if self.build is not None:
+            return self.build(point, joint_rotation)
+        assert self.kind is not None
+        reference = np.zeros(0) if self.node is None else self.reference_coordinates
+        rho = self.node_rotation.T @ (point - self.node_position)
+        return NodeSide(self.kind, self.node, reference, rho, self.node_rotation.T @ joint_rotation)
+
+
 def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of a rigid body, a beam, a cable or a mass point."""
     data = mbs.GetNode(node)
-    if data["nodeType"] in SLOPE_NODES:
-        return cable_item(mbs, where, (node,), SLOPE_NODES[data["nodeType"]], None)
+    if data["nodeType"] in beams.SLOPE_NODES:
+        return cable_item(mbs, where, (node,), beams.SLOPE_NODES[data["nodeType"]], None)
     if data["nodeType"] == "PointSlope23":
         return _slope_pair_item(mbs, where, node)
     kind = (NODE_KINDS | POINT_KINDS).get(data["nodeType"])
@@ -92,9 +157,9 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
     if kind in ("RigidBody", "RigidBody2D", *MASS_POINTS):
         return node_item(mbs, where, NodeIndex(int(data["nodeNumber"])))
     nodes = beams.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
-    if kind in CABLES:
-        return cable_item(mbs, where, nodes, CABLES[kind], float(data["length"]))
-    if kind in EXACT_BEAMS:
+    if kind in beams.CABLES:
+        return cable_item(mbs, where, nodes, beams.CABLES[kind], float(data["length"]))
+    if kind in beams.EXACT_BEAMS:
         return beam_item(mbs, where, nodes, float(data["length"]))
     if kind in ("ObjectANCFBeam", "RotationalMass1D", "Mass1D"):
         position, rotation = beams.body_frame(mbs, body, np.zeros(3))
@@ -147,7 +212,7 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
 
 def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of an ANCF beam."""
-    output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+    output, reference = exu.OutputVariableType, REFERENCE
     place = np.array(mbs.GetNodeOutput(node, output.Position, reference))
     frame = np.array(mbs.GetNodeOutput(node, output.RotationMatrix, reference)).reshape(3, 3)
     return Item(
@@ -211,3 +276,12 @@ def beam_item(
         initial_coordinates=initial,
         initial_velocities=velocities,
     )
+
+
+def body_of_node(mbs: exu.MainSystem, node: Index) -> Index | None:
+    """The rigid body or mass point that moves ``node``, or None if there is none yet."""
+    for i in range(mbs.systemData.NumberOfObjects()):
+        body = mbs.GetObject(i)
+        if body["objectType"] in ("RigidBody", "RigidBody2D", *MASS_POINTS) and int(body["nodeNumber"]) == int(node):
+            return ObjectIndex(i)
+    return None

@@ -17,12 +17,11 @@ import weakref
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, Side
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
-from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, detached
 
-_CURRENT, _REFERENCE = exu.ConfigurationType.Current, exu.ConfigurationType.Reference
 # Displacement, m or rad, over which initial velocities are found as differences of positions.
 SMALL = 1e-6
 
@@ -49,7 +48,7 @@ class Carrier:
         self.local = local
         self._bound = False
 
-    def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = _CURRENT) -> None:
+    def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = CURRENT) -> None:
         """Bring frame and Jacobians to the coordinates ``q`` and rates ``q_t`` (n,) of a ``configuration``."""
         if not self._bound:
             bind(self.mbs, self.side)
@@ -107,7 +106,7 @@ def initial_frame(mbs: exu.MainSystem, item: Item, side: Side) -> np.ndarray:
     """Frame (3, 6) of a side in the initial configuration, before Assemble."""
     if not isinstance(side, MarkerSide):
         own: Side = detached(side)
-        own.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
+        own.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
         return own.frame
     reference, initial, rates = node_coordinates(mbs, tuple(side.nodes))
     place, matrix = _marker_frame(mbs, side, reference + initial, reference)
@@ -134,8 +133,8 @@ def _marker_frame(
     output = exu.OutputVariableType
     try:
         _set_reference(mbs, side.nodes, coordinates)
-        place = np.array(mbs.GetMarkerOutput(side.marker, output.Position, _REFERENCE))
-        return place, np.array(mbs.GetMarkerOutput(side.marker, output.RotationMatrix, _REFERENCE)).reshape(3, 3)
+        place = np.array(mbs.GetMarkerOutput(side.marker, output.Position, REFERENCE))
+        return place, np.array(mbs.GetMarkerOutput(side.marker, output.RotationMatrix, REFERENCE)).reshape(3, 3)
     finally:
         _set_reference(mbs, side.nodes, reference)
 

@@ -1,4 +1,4 @@
-"""Rigid markers of a scene as items of a joint."""
+"""Rigid markers as items of a joint, those on finite elements in absolute coordinates too; items by their number."""
 
 from __future__ import annotations
 
@@ -8,24 +8,25 @@ from collections.abc import Callable
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Data, Index, NodeIndex, Side
-from exudyn_ehd.coupling.items import beams
-from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
+from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, MarkerIndex, NodeIndex, ObjectIndex, Side
+from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES, element_nodes, node_coordinates
 from exudyn_ehd.coupling.items.bodies import (
     MASS_POINTS,
     NODE_KINDS,
     POINT_KINDS,
+    Item,
     beam_item,
     body_item,
     cable_item,
     node_item,
 )
-from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.items.meshes import mesh_item
+from exudyn_ehd.coupling.kinematics.fitted_sides import FittedSide, fitted_rotation
 from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, NodeSide, TreeSide
 from exudyn_ehd.status import InputError
 
 _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeRigid")
+# How far weights may be from adding up to one; they are typed, or sums of many.
+WEIGHTS = 1e-6
 
 
 def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
@@ -43,7 +44,7 @@ def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
             f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. "
             "MarkerBodyRigid or MarkerNodeRigid."
         )
-    reference, output = exu.ConfigurationType.Reference, exu.OutputVariableType
+    reference, output = REFERENCE, exu.OutputVariableType
     rotation = np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, reference), dtype=float).reshape(3, 3)
     make, nodes = _marker_side(mbs, marker, data)
     return Item(
@@ -77,7 +78,7 @@ def _known_marker_item(mbs: exu.MainSystem, where: str, data: Data) -> Item | No
             item = cable_item(
                 mbs,
                 where,
-                beams.element_nodes(body),
+                element_nodes(body),
                 CABLES[body["objectType"]],
                 float(body["length"]),
                 float(local[0]),
@@ -87,7 +88,7 @@ def _known_marker_item(mbs: exu.MainSystem, where: str, data: Data) -> Item | No
                 item, position=item.position + item.rotation[:, 1:] @ local[1:], rotation=item.rotation @ turn
             )
         if kind == "BodyRigid" and body["objectType"] in EXACT_BEAMS:
-            return beam_item(mbs, where, beams.element_nodes(body), float(body["length"]), np.array(data["localHT"]))
+            return beam_item(mbs, where, element_nodes(body), float(body["length"]), np.array(data["localHT"]))
         if kind == "BodyRigid" and body["objectType"] in ("Ground", "RigidBody", "RigidBody2D"):
             return _transformed(body_item(mbs, where, data["bodyNumber"]), data)
         if body["objectType"] in MASS_POINTS:
@@ -113,7 +114,7 @@ def _marker_side(
         nodes: tuple[Index, ...] = (NodeIndex(int(data["nodeNumber"])),)
         return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
     body = mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"])
-    nodes = beams.element_nodes(body)
+    nodes = element_nodes(body)
     kind = data["markerType"]
     if kind == "KinematicTreeRigid":
         return (lambda rotation: TreeSide(marker, list(nodes), rotation)), nodes
@@ -123,3 +124,83 @@ def _marker_side(
         frame.rho[:] = 0.0
         return (lambda rotation: FloatingSide(marker, list(nodes), rotation, frame)), nodes
     return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
+
+
+def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: Data) -> Item:
+    """Item of a MarkerSuperElementRigid on nodes that are points.
+
+    Raises
+    ------
+    InputError
+        Nodes that are no points, weights that don't add up to one, nodes on one line.
+    """
+    numbers = element_nodes(body)
+    own = [mbs.GetNode(numbers[int(i)]) for i in np.array(data["meshNodeNumbers"], dtype=int)]
+    for node in own:
+        if node["nodeType"] not in ("Point", "PointGround"):
+            raise InputError(
+                f"{where}: MarkerSuperElementRigid on a node of type {node['nodeType']} has a rotation that is linear "
+                "in the displacements, wrong for a body that turns; give one on NodePoint, or a marker on a rigid body "
+                "that is joined to the mesh."
+            )
+    moving = np.array([node["nodeType"] == "Point" for node in own])
+    nodes = tuple(numbers[int(i)] for i, moves in zip(data["meshNodeNumbers"], moving, strict=True) if moves)
+    weights = np.array(data["weightingFactors"], dtype=float)
+    if not abs(weights.sum() - 1.0) <= WEIGHTS:
+        raise InputError(
+            f"{where}: weightingFactors of the marker must add up to 1, got {weights.sum():.9g}; divide them by it."
+        )
+    weights = weights / weights.sum()
+    points = np.array([node["referenceCoordinates"] for node in own], dtype=float)
+    if fitted_rotation(weights, points - weights @ points, points) is None:
+        raise InputError(f"{where}: the nodes of the marker lie on one line and fix no rotation; give more of them.")
+    size = 3 * len(nodes)
+    places = np.flatnonzero(np.repeat(moving, 3)), np.arange(size)
+    reference, initial, velocities = node_coordinates(mbs, nodes)
+    output, configuration = exu.OutputVariableType, REFERENCE
+    return Item(
+        position=np.array(mbs.GetMarkerOutput(marker, output.Position, configuration), dtype=float),
+        rotation=np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, configuration)).reshape(3, 3),
+        is_marker=True,
+        kind=None,
+        inner=True,
+        marker=marker,
+        nodes=nodes,
+        build=lambda point, rotation: FittedSide(list(nodes), size, points, places, weights, point, rotation),
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
+    )
+
+
+def resolve(mbs: exu.MainSystem, where: str, number: object) -> Item:
+    """Find out what an item number stands for.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system.
+    where : str
+        Name of the argument for messages.
+    number : exudyn.ObjectIndex, NodeIndex or MarkerIndex
+        The item; an int counts as an object, as in Exudyn.
+
+    Raises
+    ------
+    InputError
+        If it is no such item, or nothing that can turn.
+    """
+    try:
+        if isinstance(number, MarkerIndex):
+            return marker_item(mbs, where, number)
+        if isinstance(number, NodeIndex):
+            return node_item(mbs, where, number)
+        if isinstance(number, ObjectIndex) or (isinstance(number, int) and not isinstance(number, bool)):
+            return body_item(mbs, where, ObjectIndex(int(number)))
+    except exu.ExudynError as error:
+        raise InputError(f"{where} is not an item of this system: {number!r} ({error}).") from None
+    raise InputError(
+        f"{where} must be an ObjectIndex (body or ground), a NodeIndex (rigid-body, beam, cable or point node) or a "
+        f"MarkerIndex (rigid marker), got {number!r}; pass what AddObject, AddNode, AddMarker or mbs.Create... "
+        "returned."
+    )

@@ -15,7 +15,7 @@ from scipy.sparse import csr_matrix
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore

@@ -4,8 +4,7 @@ Module map
 ----------
 sides          pose, rates and Jacobians of a side
 rigid_nodes    nodes of rigid bodies
-beam_sides     points of beams
-cables         points of cables
+beam_sides     points of beams and cables
 floating_body  equations of motion of a body in a floating frame with modes
 fitted_sides   best rigid fit of the nodes of finite elements
 relative       motion of the journal in the housing's frame

@@ -15,8 +15,6 @@ from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCI
 
 # Rows of the Jacobians; numpy's integers, since numba compiles kernels anew for each plain one.
 _JP, _JR, _VQ, _WQ = (np.int64(k) for k in range(4))
-MOTION = ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w")
-"""Names of the ten motion components, joint frame."""
 
 
 def skew(v: np.ndarray) -> np.ndarray:
@@ -50,7 +48,7 @@ def _jac_column(jac, which, k):
 
 @njit(cache=True)
 def relative_motion(frame_h, frame_j, motion_out):
-    """Motion (10,) of the journal axis in the joint frame of the housing; see `MOTION`.
+    """Motion (10,) of the journal axis in the joint frame of the housing; see `exudyn_ehd.joint.solved_film`.
 
     The journal axis is the line (x + bx z, y + by z). All ten components are independent of where along the axis the
     journal's marker sits; w is the velocity along z of the journal's axis point in the mid-plane.

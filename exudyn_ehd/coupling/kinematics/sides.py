@@ -15,11 +15,9 @@ from typing import TypeVar
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, Side
+from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import skew, skews
 
-_CURRENT = exu.ConfigurationType.Current
 _NONE, _UNITS = np.zeros(3), np.eye(3)
 SideType = TypeVar("SideType", bound=Side)
 
@@ -119,7 +117,7 @@ class MarkerSide:
         self.frame[:, 3] = mbs.GetMarkerOutput(self.marker, output.Position, configuration)
         self.frame[:, 4] = mbs.GetMarkerOutput(self.marker, output.Velocity, configuration)
         self.frame[:, 5] = mbs.GetMarkerOutput(self.marker, output.AngularVelocity, configuration)
-        if configuration == _CURRENT:
+        if configuration == CURRENT:
             self.jac[0] = mbs.ComputeItem(self.marker, exu.ComputeItemType.PositionJacobian)
             self.jac[1] = mbs.ComputeItem(self.marker, exu.ComputeItemType.RotationJacobian)
 
@@ -192,7 +190,7 @@ class FloatingSide(MarkerSide):
 
     def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         n = self.floating.size
-        self.floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
+        self.floating.update(mbs, q[:n], np.zeros(n), CURRENT)
         return floating_change(self.floating, q[:n], self.frame[:, 3] - self.floating.frame[:, 3], self.jac)
 
 
@@ -212,10 +210,10 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
     """
     n, size = floating.size, jac.shape[2]
     # (n, 3, 3): cross products with the columns of Jr, vectors standing behind them
-    turns = skews(jac[1, :, :n])
+    turns = relative.skews(jac[1, :, :n])
     change = np.zeros((6, size, size))
     # row i of the cross product with the arm is arm x e_i, negative
-    for i, crossed in enumerate(-skew(arm)):
+    for i, crossed in enumerate(-relative.skew(arm)):
         floating.geometric(None, q, _NONE, _UNITS[i], change[3 + i, :n, :n])
         floating.geometric(None, q, _NONE, crossed, change[i, :n, :n])
     # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm

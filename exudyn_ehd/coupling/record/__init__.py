@@ -2,14 +2,11 @@
 
 Module map
 ----------
-element      what records ask of a joint's film element
 history      quantities over accepted steps
-spherical    the same of a ball joint, and its drawing
 record       the rows of a joint's accepted steps, and histories back from files
 thinning     some of the steps, with the worst ones
 on_disk      a history in a file, for long runs
 films        films over accepted steps
-results      what a joint's handle offers
 summary      a run in one line
 revolutions  extremes by revolution
 sensors      Exudyn sensors

@@ -19,9 +19,8 @@ import exudyn.graphics
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Data, Side, Trial
+from exudyn_ehd.coupling.contract import Data, Element, Side, Trial
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
-from exudyn_ehd.coupling.record.element import Element
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.status import Status
 

@@ -14,8 +14,7 @@ import numpy as np
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.joint.step_error import BLOCKS
 from exudyn_ehd.pictures.mixins import HistoryPictures
-from exudyn_ehd.pictures.records import History
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import History, shown
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv
@@ -359,8 +358,3 @@ def make_row(
         row[_FIRST_SCALAR + i] = quantities.get(name, np.nan)
     row[FIRST_BLOCK:] = np.nan if tangent is None else tangent.take(_BLOCKS)
     return row
-
-
-def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
-    """The part (k,) of a row that holds ``quantity``."""
-    return np.atleast_1d(row[COLUMNS[quantity.value]])

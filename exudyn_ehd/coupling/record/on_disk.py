@@ -110,7 +110,7 @@ class RowsOnDisk:
             if not self._head:
                 self._begin()
             with open(self.path, "r+b") as file:
-                self._require_own(file)
+                _require_head(file, self._head, self.path, self.joint)
                 file.seek(HEAD + 8 * self._width * self.count)
                 file.write(np.ascontiguousarray(rows).tobytes())
         except OSError as error:
@@ -136,9 +136,6 @@ class RowsOnDisk:
     def clear(self) -> None:
         """Begin anew at the next rows."""
         self.count, self._head = 0, b""
-
-    def _require_own(self, file: BinaryIO) -> None:
-        _require_head(file, self._head, self.path, self.joint)
 
 
 class RowsInFile(NamedTuple):
@@ -194,10 +191,6 @@ class RowsInFile(NamedTuple):
     def column(self, where: int | slice) -> np.ndarray:
         """One column (n,), or several (n, k)."""
         return np.concatenate([part[:, where] for part in self.parts()])
-
-    def read(self) -> np.ndarray:
-        """All rows (n, k)."""
-        return self.column(slice(None))
 
 
 def _require_head(file: BinaryIO, head: bytes, path: pathlib.Path, joint: str) -> None:

@@ -112,7 +112,7 @@ class Record:
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, width), with ``final`` behind them if given and later."""
         final = None if final is None or not final[TIME] > self.last_time else final
-        before = [] if self._disk is None else [self._disk.rows().read()]
+        before = [] if self._disk is None else [self._disk.rows().column(slice(None))]
         return np.concatenate([*before, *self._kept, self._behind(final)])
 
     def restore(self, rows: np.ndarray) -> None:

@@ -17,9 +17,8 @@ import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 
-from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.record.element import Element
-from exudyn_ehd.coupling.record.history import FORCE, Quantity, column
+from exudyn_ehd.coupling.contract import Element, Index
+from exudyn_ehd.coupling.record.history import COLUMNS, FORCE, Quantity
 from exudyn_ehd.status import InputError
 
 _SIZE = {Quantity.MOTION: 10, Quantity.ECCENTRICITY: 2, Quantity.FORCE: 3, Quantity.MOMENT: 3}
@@ -93,7 +92,7 @@ def reader(
 
     def read(mbs: exu.MainSystem) -> np.ndarray:
         row = element.current_row(mbs)
-        return missing if row is None else column(row, asked)
+        return missing if row is None else np.atleast_1d(row[COLUMNS[asked.value]])
 
     return asked.value, read
 

@@ -4,8 +4,7 @@ Module map
 ----------
 api        `SolveEquilibrium`, `SolveThreshold`, `stability_map`
 result     what was found: coefficients, eigenvalues, unbalance response
-solve      equilibrium of all films from speed to speed
-checks     what the theory asks of a system
+solve      equilibrium of all films from speed to speed; what the theory asks of a system
 films      the films about a state in which rotors spin
 system     an Exudyn system about such a state, without its films
 spinning   which nodes turn with a rotor, and about which axis

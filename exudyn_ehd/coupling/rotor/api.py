@@ -10,7 +10,7 @@ import exudyn as exu
 import numpy as np
 from scipy.optimize import brentq
 
-from exudyn_ehd.coupling.contract import Index, ObjectIndex, require_system
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, ObjectIndex, require_system
 from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
 from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, films_off
 from exudyn_ehd.coupling.rotor.spinning import WHERE
@@ -20,7 +20,7 @@ from exudyn_ehd.status import InputError, require_number, require_plausible
 # Speeds at which a threshold is first looked for between its limits.
 SCAN = 16
 # What the search overwrites of a system, and a run or the history of one goes on with.
-CONFIGURATIONS = (exu.ConfigurationType.Current, exu.ConfigurationType.StartOfStep)
+CONFIGURATIONS = (CURRENT, START_OF_STEP)
 
 
 def SolveEquilibrium(

@@ -10,12 +10,11 @@ import numpy as np
 from exudyn_ehd.coupling.contract import NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.status import InputError, Status
@@ -50,14 +49,14 @@ class Carrier:
         self.frame[:, :3] = turn @ self.side.rotation
         self.frame[:, 3] = self.node.position(q) + arm
         self.frame[:, 4], self.frame[:, 5] = v + np.cross(omega, arm), omega
-        self._arm = skew(arm)
+        self._arm = relative.skew(arm)
         self.jac[0, :, :3] = self.jac[1, :, 3:] = np.eye(3)
-        self.jac[0, :, 3:], self.jac[2, :, 3:] = -self._arm, -skew(omega) @ self._arm
+        self.jac[0, :, 3:], self.jac[2, :, 3:] = -self._arm, -relative.skew(omega) @ self._arm
 
     def geometric(self, force: np.ndarray) -> np.ndarray:
         """d(Jp^T F + Jr^T M) / dx (n, n) at fixed loads in space: the force's arm turns."""
         change = np.zeros((self.places.size, self.places.size))
-        change[3:, 3:] = skew(force) @ self._arm if change.size else 0.0
+        change[3:, 3:] = relative.skew(force) @ self._arm if change.size else 0.0
         return change
 
 

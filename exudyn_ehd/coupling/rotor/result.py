@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, require_system
+from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number
 
@@ -283,8 +283,8 @@ class RotorResult:
                 f"RotorResult.place: mbs must be the system of the result, of {self.coordinates.shape[1]} coordinates, "
                 f"got one of {size}."
             )
-        mbs.systemData.SetODE2Coordinates(self.coordinates[k].tolist(), exu.ConfigurationType.Initial)
-        mbs.systemData.SetODE2Coordinates_t(self.rates[k].tolist(), exu.ConfigurationType.Initial)
+        mbs.systemData.SetODE2Coordinates(self.coordinates[k].tolist(), INITIAL)
+        mbs.systemData.SetODE2Coordinates_t(self.rates[k].tolist(), INITIAL)
 
     def plot_campbell(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Campbell diagram: frequencies over the speed, by the sense of their whirl, and what grows."""
@@ -417,7 +417,7 @@ class StabilityMap:
         self, text: str, *, unit: str = "-", factor: float = 1.0, ax: Axes | None = None, path: Target = None
     ) -> Figure:
         """Stable and unstable speeds over the parameter, called ``text`` and shown as ``factor`` times its values."""
+        from exudyn_ehd.pictures.records import Unit
         from exudyn_ehd.pictures.rotors import plot_map
-        from exudyn_ehd.pictures.units import Unit
 
         return plot_map(self.values, self.thresholds, self.limits, (text, Unit(unit, factor)), ax=ax, path=path)

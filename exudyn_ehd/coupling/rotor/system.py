@@ -31,7 +31,7 @@ from typing import Any, TypeAlias, cast
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
@@ -135,7 +135,7 @@ class SpinningSystem:
                 f"{WHERE}: the system must have second-order coordinates only and no GeneralContact; take contact "
                 "objects and controllers without states of their own."
             )
-        self.q = np.array(data.GetODE2Coordinates(exu.ConfigurationType.Initial), dtype=float)
+        self.q = np.array(data.GetODE2Coordinates(INITIAL), dtype=float)
         self.nodes: dict[int, TurningNode] = {}
         self.size, plain = 0, np.ones(self.q.size, dtype=bool)
         for number in range(data.NumberOfNodes()):

@@ -4,11 +4,9 @@ Module map
 ----------
 solve              SolveDynamic, SolveStatic
 settings           ConfigureSolver
-start_guess        where Newton starts in a step
-gap_limit          how far it goes in one of its own steps
+start_guess        where Newton starts in a step, and which results of it are refused
+newton_limits      how far it goes in one of its own steps; where it ends, in the measure of the films' forces
 step_size          steps chosen by their error
-force_tolerance    where it ends, in the measure of the films' forces
-step_refusal       steps that converge to a film that none bears
 equilibrium_start  joints placed in equilibrium
 restart            states to go on from
 joint_state        what a joint knows besides coordinates, and whose it is

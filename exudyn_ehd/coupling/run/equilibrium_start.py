@@ -8,17 +8,16 @@ from collections.abc import Sequence
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import JointModel
+from exudyn_ehd.coupling.contract import INITIAL, JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
-from exudyn_ehd.joint.balance.temperature import settled_history
+from exudyn_ehd.joint.balance.film import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
-_INITIAL = exu.ConfigurationType.Initial
 _WHERE = "LubricatedJoint.place_in_equilibrium"
 
 
@@ -41,7 +40,7 @@ def place(
             "starts in equilibrium with its film."
         )
     force = require_vector(f"{_WHERE}: load", load, 2, "N")
-    q, q_t = (np.array(v) for v in read_state(mbs, element.sides, _INITIAL))
+    q, q_t = (np.array(v) for v in read_state(mbs, element.sides, INITIAL))
     motion = _motion(mbs, element, q, q_t)
     if speed is not None:
         motion[8] = require_number(f"{_WHERE}: speed", speed, "rad/s")
@@ -59,8 +58,8 @@ def place(
         axial_position=0.0 if element.faces is None else element.faces.place(element.sides, motion),
     )
     housing = element.sides[0].frame[:, :3]
-    coordinates = np.array(mbs.systemData.GetODE2Coordinates(_INITIAL), dtype=float)
-    rates = np.array(mbs.systemData.GetODE2Coordinates_t(_INITIAL), dtype=float)
+    coordinates = np.array(mbs.systemData.GetODE2Coordinates(INITIAL), dtype=float)
+    rates = np.array(mbs.systemData.GetODE2Coordinates_t(INITIAL), dtype=float)
     places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])), dtype=int)
     size = rigid_nodes.translations(journal.kind)
     coordinates[places[:size]] += (housing[:, :2] @ (result.position - motion[:2]))[:size]
@@ -71,11 +70,11 @@ def place(
         where = np.array(mbs.systemData.GetNodeLTGODE2(int(node)), dtype=int)
         coordinates[where], bore = bore[: where.size], bore[where.size :]
         rates[where] = 0.0
-    mbs.systemData.SetODE2Coordinates(coordinates.tolist(), _INITIAL)
-    mbs.systemData.SetODE2Coordinates_t(rates.tolist(), _INITIAL)
+    mbs.systemData.SetODE2Coordinates(coordinates.tolist(), INITIAL)
+    mbs.systemData.SetODE2Coordinates_t(rates.tolist(), INITIAL)
     at_rest = motion.copy()
     at_rest[:2], at_rest[4:8] = result.position, 0.0
-    element.steps.resume(float(mbs.systemData.GetTime(_INITIAL)), _memory(element.model, at_rest, result))
+    element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), _memory(element.model, at_rest, result))
     return result
 
 
@@ -83,7 +82,7 @@ def _motion(mbs: exu.MainSystem, element: FilmElement, q: np.ndarray, q_t: np.nd
     """Motion (10,) of the rigid surfaces in the initial state."""
     n = element.sides[0].size
     for side, part in zip(element.sides, (slice(0, n), slice(n, n + element.sides[1].size)), strict=True):
-        side.update(mbs, q[part], q_t[part], _INITIAL)
+        side.update(mbs, q[part], q_t[part], INITIAL)
     return relative.motion_of(element.sides[0].frame, element.sides[1].frame)
 
 

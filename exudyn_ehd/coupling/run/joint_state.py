@@ -16,7 +16,7 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.sensors import add_sensor
 from exudyn_ehd.coupling.watch.solver_state import require_end
-from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
+from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Data
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, Data
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
@@ -69,7 +69,7 @@ class SystemState:
         if not mbs.systemIsConsistent or solver is None:
             raise InputError("SystemState: the system has no run to take a state from; call SolveDynamic before.")
         finished = solver_state.is_finished(solver)
-        configuration = exu.ConfigurationType.Current if finished else exu.ConfigurationType.StartOfStep
+        configuration = CURRENT if finished else START_OF_STEP
         data, algorithmic = mbs.systemData, None
         solver_state.require_end("SystemState", mbs, solver)
         if isinstance(solver, exu.MainSolverImplicitSecondOrder):
@@ -86,7 +86,7 @@ class SystemState:
 
     def put_into(self, mbs: exu.MainSystem, joints: Sequence[Joint]) -> None:
         """Make this the initial state of a system of the same build, and of its joints."""
-        data, initial = mbs.systemData, exu.ConfigurationType.Initial
+        data, initial = mbs.systemData, INITIAL
         own = [np.size(part) for part in data.GetSystemState(initial)]
         given = [part.size for part in self.coordinates]
         if own != given:

@@ -11,17 +11,14 @@ from typing import Any, overload
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import ObjectIndex, require_system
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
-from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
-from exudyn_ehd.coupling.run.gap_limit import GapLimit
+from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit, free_bushes
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, judged, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
-from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
-from exudyn_ehd.coupling.run.step_refusal import StepRefusal
+from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, StepRefusal, UserFunction
 from exudyn_ehd.coupling.run.step_size import steps_by_error
-from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing
-from exudyn_ehd.coupling.watch.run_progress import run_progress
+from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing, run_progress
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
@@ -296,13 +293,13 @@ def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
 
 
 def _kept(mbs: exu.MainSystem) -> str:
-    time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+    time = mbs.systemData.GetTime(START_OF_STEP)
     return f"The last accepted state is at t = {time:.9g} s; joint.history holds all steps up to it."
 
 
 def _story(mbs: exu.MainSystem, *, static: bool) -> str:
     """What the joints looked like when a solver gave up."""
-    time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+    time = mbs.systemData.GetTime(START_OF_STEP)
     parts = [f"Exudyn's solver ended without success at t = {time:.9g} s, though every film could be evaluated; "]
     for joint in joints_of(mbs):
         history = joint.history
@@ -334,7 +331,7 @@ def _unheld(mbs: exu.MainSystem) -> str:
 
 def progress_of(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> AbstractContextManager[None]:
     """Where somebody looks, the progress of the run within."""
-    return run_progress(mbs, settings, [(joint.name, joint.element.steps.record) for joint in joints_of(mbs)])
+    return run_progress(mbs, settings, [(joint.name, joint.element.steps) for joint in joints_of(mbs)])
 
 
 def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:
@@ -404,7 +401,7 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
     def pre_step(own: Any, mbs: exu.MainSystem, t: float) -> bool:
         if first[0]:
             # Exudyn starts with algorithmic accelerations equal to the others; these differ once a run is under way
-            mbs.systemData.SetODE2Coordinates_tt(state.accelerations.tolist(), exu.ConfigurationType.Current)
+            mbs.systemData.SetODE2Coordinates_tt(state.accelerations.tolist(), CURRENT)
             first[0] = False
         return bool(own(mbs, t)) if own else True
 

@@ -17,9 +17,9 @@ Films on nodal bushes take part as operators: their dense blocks over the bore w
 with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
 zero at the films' coordinates alone, solves ``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r; the bush
 deflects little under a film's short waves, so that some seven products do. What they tell of F preconditions the next
-iteration's (`exudyn_ehd.coupling.bush.recycled`). Newton then takes the iterations it takes with a full Jacobian, and
+iteration's (`exudyn_ehd.coupling.bush.linear`). Newton then takes the iterations it takes with a full Jacobian, and
 the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as a journal that turns, is
-small and has its factor anew in every iteration where only films join the two (`exudyn_ehd.coupling.bush.factor`). The
+small and has its factor anew in every iteration where only films join the two (`exudyn_ehd.coupling.bush.linear`). The
 matrix is put together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
@@ -36,8 +36,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.bush.factor import SystemFactor
-from exudyn_ehd.coupling.bush.recycled import RecycledSolver
+from exudyn_ehd.coupling.bush.linear import RecycledSolver, SystemFactor
 from exudyn_ehd.coupling.bush.residual import BushResiduals, Solver
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
@@ -371,7 +370,6 @@ class _Newton:
 
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
-        assert self.factor is not None
         d = self._solve(solver, mbs, self.residual.vector)
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1

@@ -23,6 +23,13 @@ start and by far less from this one. Forces do not feel what is the same in ever
 the next as m g / (beta h^2): from one start to the other m v^2 / L at any step size, as much as the inertia. So
 Newton's method goes on where the opening jumps (`ConstraintJumps`). Exudyn takes that for a contact that has opened or
 closed, and begins again at zero accelerations; here each further pass of a step starts where the last one has ended.
+
+Steps that converge to a film that none bears, refused before Exudyn accepts them.
+
+Newton's method may well converge where there is no film: behind the end of a pressure law, where forces only lead its
+iterates back, or at a pressure that no steel bears, into which too large a step has thrown the journal. Its iterates
+may pass there; its result may not. After Newton's method Exudyn asks for an error and a step size: a step with such a
+result is repeated with half its size, down to the smallest one, where it ends the run.
 """
 
 from __future__ import annotations
@@ -33,13 +40,11 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import NodeIndex
-from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
-from exudyn_ehd.coupling.run.gap_limit import GapLimit
-from exudyn_ehd.coupling.run.step_refusal import PostNewton
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, NodeIndex
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit
+from exudyn_ehd.coupling.watch import solver_state
 
-_CURRENT = exu.ConfigurationType.Current
-_START_OF_STEP = exu.ConfigurationType.StartOfStep
 UserFunction: TypeAlias = Callable[[exu.MainSystem, float, int, int], object]
 """Exudyn's user function before a residual: system, time, Newton iteration, discontinuous iteration."""
 # Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
@@ -50,6 +55,10 @@ LARGEST_BEND = 0.1
 LARGEST_JUMP = 3e-5
 # Error for Exudyn's discontinuous iterations that makes Newton's method take another pass.
 GO_ON = 1e100, -1.0
+PostNewton: TypeAlias = Callable[[exu.MainSystem, float], Sequence[float]]
+"""Exudyn's user function after Newton's method: system and time to [error, recommended step size or -1]."""
+# Beyond any tolerance of Exudyn's discontinuous iterations.
+REFUSED = 1e100
 
 
 class StartGuess:
@@ -110,12 +119,12 @@ class StartGuess:
 
     def _set_start(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> None:
         data = mbs.systemData
-        start = data.GetTime(_START_OF_STEP)
+        start = data.GetTime(START_OF_STEP)
         if not self.past:
             # not before the run: Exudyn's solver assembles a system that is not
             self.additive, self.groups = additive_coordinates(mbs), coordinate_groups(mbs, self.bushes)
         if start != self.start:
-            now = np.array(data.GetODE2Coordinates_tt(_START_OF_STEP), dtype=float)
+            now = np.array(data.GetODE2Coordinates_tt(START_OF_STEP), dtype=float)
             self.past = [*self.past[-2:], (start, now)]
             expected = lasting(self.past, self.groups)
             self.guess = None if expected is None else expected * self.additive
@@ -167,7 +176,7 @@ class ConstraintJumps:
         opening = np.asarray(known.GetSystemResidual())[data.ODE2Size() + data.ODE1Size() :]
         if not opening.size:
             return [error, size]
-        start = data.GetTime(_START_OF_STEP)
+        start = data.GetTime(START_OF_STEP)
         if start != self.start:
             self.start, self.accepted = start, self.latest
         self.latest = opening
@@ -181,7 +190,7 @@ class ConstraintJumps:
 
 def motion(mbs: exu.MainSystem) -> list[np.ndarray]:
     """Coordinates of second order, velocities and accelerations now, not copied."""
-    state = mbs.systemData.GetSystemStateDict(_CURRENT, True)
+    state = mbs.systemData.GetSystemStateDict(CURRENT, True)
     return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt")]
 
 
@@ -241,3 +250,28 @@ def coordinate_groups(mbs: exu.MainSystem, bushes: Collection[int]) -> np.ndarra
             first = mbs.GetNodeODE2Index(node)
             groups[first : first + values["numberOfODE2Coordinates"]] = 1 + groups.max()
     return groups
+
+
+class StepRefusal:
+    """User function after Newton's method.
+
+    Parameters
+    ----------
+    films : sequence of FilmElement
+        Elements of all joints of a system.
+    before : callable or None
+        The user's own function, called first.
+    """
+
+    def __init__(self, films: Sequence[FilmElement], before: PostNewton | None) -> None:
+        self.films, self.before = films, before
+
+    def __call__(self, mbs: exu.MainSystem, t: float) -> list[float]:
+        error, size = (0.0, -1.0) if self.before is None else self.before(mbs, t)
+        if all(film.has_result() for film in self.films):
+            return [error, size]
+        solver = mbs.sys.get("dynamicSolver")
+        if solver is None or not solver_state.can_reject_step(solver):
+            return [error, size]
+        half = 0.5 * solver.it.currentStepSize
+        return [REFUSED, half if size < 0.0 else min(size, half)]

@@ -21,6 +21,7 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.contract import START_OF_STEP
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -127,7 +128,7 @@ class StepSize:
         error, wanted = own(mbs, time) if own else (0.0, -1.0)
         known = [used for joint in self.joints if (used := joint.used(time)) is not None]
         self.used = max(known, default=None)
-        step = time - mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+        step = time - mbs.systemData.GetTime(START_OF_STEP)
         smallest = mbs.sys["dynamicSolver"].it.minStepSize
         if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + ROUNDING):
             return [error, wanted]

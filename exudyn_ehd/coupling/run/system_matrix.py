@@ -10,7 +10,7 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 
-from exudyn_ehd.coupling.bush.functions import BushFunctions
+from exudyn_ehd.coupling.bush.equations import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass

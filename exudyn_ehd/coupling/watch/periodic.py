@@ -3,14 +3,17 @@
 A cycle is compared with the one before at the same phases. What two cycles in a row differ by is not yet how far the
 last one is from the limit: differences d_1, d_2, ... that shrink by a factor q = d_k / d_(k-1) leave d q / (1 - q),
 99 times the difference where a film warms up by 1 % of the rest in a cycle. So a run goes on until both are small.
+
+How far a run is, where somebody looks: steps per second, time left, the thinnest film so far.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from typing import Protocol
 
 import exudyn as exu
@@ -20,7 +23,8 @@ from scipy.interpolate import CubicHermiteSpline
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.watch.solver_state import hooked
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
+from exudyn_ehd.progress import Progress, is_shown
 from exudyn_ehd.status import InputError, RunError, require_number
 
 # Largest number of differences that may be left, also of those that do not shrink: rounding never does.
@@ -252,3 +256,69 @@ def _change(history: JointHistory, begin: float, end: float, period: float) -> f
     first = float(np.interp(begin, history.time, warm))
     rise = max(float(np.abs(last.film_temperature - first).max()), SMALLEST_RISE)
     return max(change, float(np.abs(last.film_temperature - np.interp(before, history.time, warm)).max()) / rise)
+
+
+class RunProgress:
+    """Function after a step of Exudyn.
+
+    Parameters
+    ----------
+    settings : exudyn.SimulationSettings
+    films : sequence of pairs
+        Names of the joints and their steps.
+    after_step : function or None
+        The user's own, called first.
+    """
+
+    def __init__(
+        self,
+        settings: exu.SimulationSettings,
+        films: Sequence[tuple[str, Steps]],
+        after_step: Callable[[exu.MainSystem, float], object] | None,
+    ) -> None:
+        run = settings.timeIntegration
+        self.films, self.after_step = films, after_step
+        self.start, self.span = run.startTime, run.endTime - run.startTime
+        self.line: Progress | None = None
+        self.steps, self.last = 0, (0, 0.0)
+
+    def __call__(self, mbs: exu.MainSystem, t: float) -> bool:
+        """Whether the run goes on behind the step to ``t``."""
+        goes_on = bool(self.after_step(mbs, t)) if self.after_step else True
+        if self.line is None:
+            # kernels are compiled before the first call, which is behind the initial state
+            self.line, self.last = Progress("exudyn_ehd"), (0, time.perf_counter())
+            return goes_on
+        self.steps += 1
+        if self.line.is_due:
+            now = time.perf_counter()
+            rate = (self.steps - self.last[0]) / (now - self.last[1])
+            self.last = self.steps, now
+            self.line.tell((t - self.start) / self.span, f", t = {t:.4g} s, {rate:.3g} steps/s{self._worst()}")
+        return goes_on
+
+    def close(self) -> None:
+        """Take the line away."""
+        if self.line is not None:
+            self.line.close()
+
+    def _worst(self) -> str:
+        """The thinnest film, in words."""
+        films = [(steps.record.thinnest, name) for name, steps in self.films]
+        gap, name = min(((gap, name) for gap, name in films if np.isfinite(gap)), default=(np.nan, ""))
+        return f", minimum film thickness {shown('length', gap)} in '{name}'" if name else ""
+
+
+@contextmanager
+def run_progress(
+    mbs: exu.MainSystem, settings: exu.SimulationSettings, films: Sequence[tuple[str, Steps]]
+) -> Iterator[None]:
+    """Show the progress of the run within, unless Exudyn's own does; the user's function comes back then."""
+    if not is_shown() or settings.timeIntegration.verboseMode > 0:
+        yield
+        return
+    with hooked(mbs, "PostStep", lambda own: RunProgress(settings, films, own)) as progress:
+        try:
+            yield
+        finally:
+            progress.close()

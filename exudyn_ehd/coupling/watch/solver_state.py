@@ -9,6 +9,7 @@ from typing import Any, TypeAlias, TypeVar, cast
 
 import exudyn as exu
 
+from exudyn_ehd.coupling.contract import CURRENT
 from exudyn_ehd.status import InputError
 
 Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | exu.MainSolverExplicit
@@ -70,7 +71,7 @@ def is_finished(solver: Solver | None) -> bool:
 
 def require_end(where: str, mbs: exu.MainSystem, solver: Solver | None) -> None:
     """Raise `InputError` where a system is not as a run of ``solver`` that has come to its end has left it."""
-    time = mbs.systemData.GetTime(exu.ConfigurationType.Current)
+    time = mbs.systemData.GetTime(CURRENT)
     if solver is not None and is_finished(solver) and time != solver.it.currentTime:
         raise InputError(
             f"{where}: the system is at t = {time:.9g} s, and its last run has ended at {solver.it.currentTime:.9g} s: "

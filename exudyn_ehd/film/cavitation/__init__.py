@@ -2,7 +2,7 @@
 
 Module map
 ----------
-closures          FullSommerfeld, Gumbel, SwiftStieber
+closures          what a closure offers; FullSommerfeld, Gumbel, SwiftStieber
 active_set        the film on a set of unknown pressures, and how the set is found
 rupture_line      where the film's edge lies inside a cell, and what it adds to balances and derivatives
 line_newton       Newton's method for a film with it

@@ -206,15 +206,8 @@ def clip_pressure(linear, fixed, pc, P_out, active_out):
     n, m = linear.shape
     for i in range(n):
         for j in range(m):
-            if fixed[i, j]:
-                P_out[i, j] = linear[i, j]
-                active_out[i, j] = False
-            elif linear[i, j] >= pc:
-                P_out[i, j] = linear[i, j]
-                active_out[i, j] = True
-            else:
-                P_out[i, j] = pc
-                active_out[i, j] = False
+            active_out[i, j] = linear[i, j] >= pc and not fixed[i, j]
+            P_out[i, j] = linear[i, j] if fixed[i, j] or active_out[i, j] else pc
 
 
 @njit(cache=True, inline="always")

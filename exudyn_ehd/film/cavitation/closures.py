@@ -1,8 +1,7 @@
 """Cavitation closures: what the film does where the linear Reynolds equation would go below the cavity pressure.
 
-Each closure is a small frozen object, which a scene names: what a film needs of it stands in
-`exudyn_ehd.film.solvers.closure.Closure`. All pressures here are scaled (see `exudyn_ehd.film.reynolds.links`);
-``cavity_pressure`` of the specs is a gauge pressure in Pa.
+Each closure is a small frozen object, which a scene names: what a film needs of it is `Closure`. All pressures
+here are scaled (see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of the specs is a gauge pressure in Pa.
 
 * `FullSommerfeld`: nothing; negative pressures stay.
 * `Gumbel` (half Sommerfeld): the linear problem is solved, then pressures below the cavity pressure are cut off.
@@ -17,7 +16,7 @@ Each closure is a small frozen object, which a scene names: what a film needs of
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -36,8 +35,35 @@ from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require
 
 # Gauge pressure of the absolute vacuum, Pa, where the air presses most.
 VACUUM = -1.1e5
-
 Placed = TypeVar("Placed")
+
+
+class Closure(Protocol):
+    """What a cavitation model offers a film solver; the one that conserves mass is
+    `exudyn_ehd.film.cavitation.elrod_adams`."""
+
+    @property
+    def cavity_pressure(self) -> float: ...
+
+    @property
+    def cavity_shear(self) -> float: ...
+
+    @property
+    def conserves_mass(self) -> bool: ...
+
+    @property
+    def clips(self) -> bool: ...
+
+    @property
+    def line_in_cells(self) -> bool | None: ...
+
+    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
+
+    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
+
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None: ...
+
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
 
 
 class SymmetricClosure:

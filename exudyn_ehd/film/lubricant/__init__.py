@@ -2,8 +2,7 @@
 
 Module map
 ----------
-lubricant              what a scene names
-named_oils             viscosity grades
+lubricant              what a scene names, and viscosity grades
 pressure_viscosity     Barus, Roelands and the Kirchhoff transform
 temperature_viscosity  Reynolds, Vogel, Walther
 shear_thinning         Carreau

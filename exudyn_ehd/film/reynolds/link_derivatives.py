@@ -13,7 +13,6 @@ link carries of a full film's Couette flow.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -21,20 +20,10 @@ from numba import njit
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-class LinkDerivatives(NamedTuple):
-    """(n, m) arrays, see the module's docstring; kernels are handed all of them in one (5, n, m)."""
-
-    DX: np.ndarray
-    DZ: np.ndarray
-    SX: np.ndarray
-    SZ: np.ndarray
-    SZX: np.ndarray
-
-
 @njit(cache=True)
 def derivatives_of(d):
-    """`LinkDerivatives` of their array (5, n, m)."""
-    return LinkDerivatives(d[0], d[1], d[2], d[3], d[4])
+    """DX, DZ, SX, SZ, SZX of their array (5, n, m), see the module's docstring."""
+    return d[0], d[1], d[2], d[3], d[4]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -67,7 +56,7 @@ def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flo
     mesh : tuple of arrays
         `Mesh`.
     out : (5, n, m) array
-        `LinkDerivatives`.
+        As for `derivatives_of`.
     """
     n, m = H.shape
     width_x, width_z, link_x, link_z = mesh
@@ -155,7 +144,7 @@ def add_cuts(P, H, HF, flow, slopes, by_speed, cuts, kx, kz, out):
 
 
 def contract_links(lam: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m) and `LinkDerivatives` d (5, n, m).
+    """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m) and the links' derivatives d (5, n, m).
 
     Returns
     -------

@@ -24,7 +24,7 @@ def motion_columns(order, count, d, slope, AR, AC, at, out):
     order, count
         Flat vertices of the unknowns.
     d : (5, n, m) array
-        `LinkDerivatives`, DX already by the true gap.
+        As for `derivatives_of`, DX already by the true gap.
     slope : (n, m) array
         d(film gap)/d(true gap) at the vertices; ones without a limiter.
     AR, AC : (n, m) arrays

@@ -2,8 +2,8 @@
 
 Module map
 ----------
-closure         what a cavitation model offers
 linear          linear for given sets: rigid surfaces, incompressible
+edge_flows      flows at prescribed vertices, where films end within a link
 newton          rules of Newton's method for gaps or densities that depend on the pressure
 exact           adjoints of what it finds
 compiled        the driver compiled as a whole, for the fast ones among them

@@ -28,13 +28,13 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compiled import factor, solve
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
 from exudyn_ehd.film.solvers.liner.line import FilmLine

@@ -9,21 +9,17 @@ import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, prolong_set
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.lagging_void import lag_void, outflow_of
 from exudyn_ehd.film.cavitation.line_newton import refine_factor
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.loads import end_films_of_areas, scatter
+from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
-from exudyn_ehd.film.reynolds.links import (
-    FluxEffect,
-    link_flux,
-    set_links,
-    vertex_balance,
-)
-from exudyn_ehd.film.solvers.closure import Closure
+from exudyn_ehd.film.reynolds.links import FluxEffect, link_flux, set_links, vertex_balance
+from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas, flow_pressures
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing time step where only the rates at one instant are asked for, share of the time in which the
@@ -384,36 +380,20 @@ class FilmSolver:
         return by_rate, (content - by_rate) * s.inverse_step
 
     def flow_pressures(self) -> tuple[np.ndarray, np.ndarray]:
-        """Pressures (n, m) whose differences drive the flows at prescribed vertices, and where the film is full.
-
-        Next to a prescribed pressure above the cavity's a film that is cut off has the linear film's gradient, up to a
-        line that may lie in front of the next vertex: that vertex counts with its linear pressure, and as full.
-        """
-        s, known = self.system, self.grid.fixed
-        if not self.closure.clips:
-            return s.pressure, self.work.active
-        near, pressed = np.zeros(known.shape, dtype=bool), known & (s.pressure > s.cavity_pressure)
-        for axis, links in enumerate((s.kx > 0.0, s.kz > 0.0)):
-            # nothing flows over the last links in z
-            near |= links & np.roll(pressed, -1, axis) | np.roll(links & pressed, 1, axis)
-        near &= ~known
-        return np.where(near, s.linear_pressure, s.pressure), self.work.active | near
+        """Pressures (n, m) that drive flows at prescribed vertices, and where the film is full, see `edge_flows`."""
+        return flow_pressures(self.system, self.work.active, self.closure.clips)
 
     def inflow(self, ended: bool = False) -> np.ndarray:
         """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
 
-        ``ended``: films next to a cavity end within a link, see `exudyn_ehd.film.loads.end_films_of_areas`.
+        ``ended``: films next to a cavity end within a link.
         """
-        s = self.system
+        s, conserves_mass = self.system, self.closure.conserves_mass
         balance = np.empty(self.grid.shape)
-        if self.closure.conserves_mass:
+        if conserves_mass:
             film_balance(s.pressure, s.fill, None, film_terms(s.coefficients, s.inverse_step, s.mass_old), balance)
         else:
             vertex_balance(self.flow_pressures()[0], s.kx, s.kz, s.b, balance)
-        if ended and self.complementary and not self.closure.conserves_mass:
-            g = self.grid
-            cuts = np.ones((2, *g.shape)) if g.cuts is None else g.cuts
-            end_films_of_areas(
-                (s.kx, s.kz), s.b, self.work.active, g.fixed, cuts, (g.width_x, g.width_z), np.diff(g.z), balance
-            )
+        if ended and self.complementary and not conserves_mass:
+            end_films_of_areas(s, self.work.active, self.grid, balance)
         return np.where(self.grid.fixed, balance, 0.0)

@@ -52,13 +52,13 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, contract_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver

@@ -30,8 +30,8 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, products

@@ -17,9 +17,8 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.joint.audit.changes import Comparison
-from exudyn_ehd.joint.audit.faces import with_ends
 from exudyn_ehd.joint.audit.findings import Case, Finding
-from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
+from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator, with_ends
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
 from exudyn_ehd.joint.audit.switches import turbulent, two_dimensional
 from exudyn_ehd.joint.model.build import build_study_model

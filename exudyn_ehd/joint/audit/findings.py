@@ -13,7 +13,7 @@ from exudyn_ehd.joint.audit.changes import MATTERS, NOTHING, Change, Comparison
 from exudyn_ehd.joint.audit.ringing import LIMIT
 from exudyn_ehd.joint.audit.samples import RecordedSteps, Sample
 from exudyn_ehd.joint.audit.switches import Switch, turbulent
-from exudyn_ehd.joint.balance.hot_oil import HOT
+from exudyn_ehd.joint.balance.limits import HOT
 from exudyn_ehd.status import InputError
 
 
@@ -36,7 +36,7 @@ LIMITS = {
     "piezoviscosity": Limit(0.1, "alpha p_max: 3 % of the load, 5 % of the peak pressure"),
     "heating": Limit(0.1, "change of the viscosity"),
     "walls": Limit(0.05, "of the heat, that much of the film's rise"),
-    "oil temperature": Limit(HOT, "K: `exudyn_ehd.joint.balance.hot_oil`, which warns from there on"),
+    "oil temperature": Limit(HOT, "K: `exudyn_ehd.joint.balance.limits`, which warns from there on"),
     "shear thinning": Limit(1.0, "shear rate over the one at which a multigrade oil begins to thin"),
     "roughness": Limit(
         3.0, "film over roughness: 6 % of the load by flow factors; below, asperities carry", below=True

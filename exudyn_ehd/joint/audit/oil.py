@@ -22,7 +22,7 @@ from exudyn_ehd.joint.audit.switches import (
     walled,
     warmer,
 )
-from exudyn_ehd.joint.balance.hot_oil import COOLER
+from exudyn_ehd.joint.balance.limits import COOLER
 
 
 def piezoviscosity(case: Case) -> Finding:

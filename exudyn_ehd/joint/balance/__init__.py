@@ -2,11 +2,8 @@
 
 Module map
 ----------
-film         film at a motion, its temperature and oil content settled
-temperature  steady temperature
-hot_oil      temperatures that oil does not bear
-overload     pressures that no material bears
-advice       what to do about films that can't be evaluated
-position     journal's position under a load
-faces        films on the end faces beside it
+film      film at a motion, its temperature and oil content settled; steady temperature
+limits    temperatures and pressures that no oil or steel bears; what to do about films without a solution
+position  journal's position under a load
+faces     films on the end faces beside it
 """

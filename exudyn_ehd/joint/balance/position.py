@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.balance.film import evaluate_at
-from exudyn_ehd.joint.balance.hot_oil import HOTTEST, is_above
-from exudyn_ehd.joint.balance.temperature import ACCELERATED, DEPTH, LARGEST_CHANGE, foreseen, is_settled
+from exudyn_ehd.joint.balance.film import ACCELERATED, DEPTH, LARGEST_CHANGE, evaluate_at, foreseen, is_settled
+from exudyn_ehd.joint.balance.limits import HOTTEST, is_above
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm

@@ -2,6 +2,5 @@
 
 Module map
 ----------
-ends   flows through the ends of the journal's film, and what their pressures do
-films  both films at the pressures at which their flows are the same
+films  both films at the pressures at which their flows are the same; flows through the ends of the journal's film
 """

@@ -13,7 +13,7 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.heat.energy import transport_slopes
-from exudyn_ehd.joint.heat.oil_flows import OilFlows
+from exudyn_ehd.joint.heat.power import OilFlows
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
@@ -59,6 +59,12 @@ class HeatedOil(Protocol):
         """What heat loses per kelvin within a step."""
 
 
+def temperature_of(film: SolvedFilm) -> np.ndarray:
+    """Temperature of a film, K: one for all of it, or a field (n, m)."""
+    assert film.temperature is not None
+    return np.asarray(film.temperature)
+
+
 class HeatBalance:
     """What warms a solved film over a step, or for good with a step of 0; fields (n, m).
 
@@ -70,9 +76,8 @@ class HeatBalance:
 
     def __init__(self, thermal: HeatedOil, film: SolvedFilm, step: float, heat: np.ndarray) -> None:
         area, shape = film.solver.area, film.grid.shape
-        assert film.temperature is not None
         self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
-        self.old = np.asarray(film.temperature)
+        self.old = temperature_of(film)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
         self.heat, self.flows = heat, OilFlows(film)
         self.entering, self.leaving = np.maximum(self.flows.outside, 0.0), np.maximum(-self.flows.outside, 0.0)

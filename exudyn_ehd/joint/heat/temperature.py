@@ -17,9 +17,8 @@ from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
-from exudyn_ehd.joint.heat.heat_balance import BandSolver, HeatBalance
-from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
-from exudyn_ehd.joint.heat.power import contact_power_loss
+from exudyn_ehd.joint.heat.heat_balance import BandSolver, HeatBalance, temperature_of
+from exudyn_ehd.joint.heat.power import OilFlows, contact_power_loss, heat_and_leakage
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Rounding of the flow through the ends, as a share of the largest flow over a link.
@@ -108,7 +107,7 @@ class LumpedTemperature(_Temperature):
 
     def advance(self, film: SolvedFilm) -> float:
         """Temperature at the end of a solved film's step."""
-        T = _number(film)
+        T = float(temperature_of(film))
         if film.step <= 0.0:
             return T
         heat, flow = self._rates(film)
@@ -119,7 +118,7 @@ class LumpedTemperature(_Temperature):
 
     def steady_temperature(self, film: SolvedFilm) -> float:
         """Temperature in balance with the heat of a solved film; inf without a way out for the heat."""
-        T, (heat, flow) = _number(film), self._rates(film)
+        T, (heat, flow) = float(temperature_of(film)), self._rates(film)
         G = self.spec.housing_conductance
         if flow + G <= 0.0:
             return math.inf if heat > 0.0 else T
@@ -129,7 +128,7 @@ class LumpedTemperature(_Temperature):
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
         heat, flow = self._rates(film)
-        T, store = _number(film), self.capacity / film.step if film.step > 0.0 else 0.0
+        T, store = float(temperature_of(film)), self.capacity / film.step if film.step > 0.0 else 0.0
         stored = store * (temperature - T)
         return {
             "heat_in": heat - float(self.follows(T, heat, store)) * (temperature - T),
@@ -137,18 +136,6 @@ class LumpedTemperature(_Temperature):
             "conducted": self.spec.housing_conductance * (temperature - self.housing),
             "stored": stored,
         }
-
-
-def _number(film: SolvedFilm) -> float:
-    """The one temperature of a film, K."""
-    assert film.temperature is not None
-    return float(film.temperature)
-
-
-def _field(film: SolvedFilm) -> np.ndarray:
-    """The temperature field of a film (n, m), K."""
-    assert film.temperature is not None
-    return np.asarray(film.temperature)
 
 
 class ViscosityField(FluxEffect):
@@ -222,7 +209,7 @@ class FilmTemperature(_Temperature):
 
     def advance(self, film: SolvedFilm) -> np.ndarray:
         """Temperatures at the end of a solved film's step (n, m)."""
-        return _field(film) if film.step <= 0.0 else self._solve(film, film.step)[0]
+        return temperature_of(film) if film.step <= 0.0 else self._solve(film, film.step)[0]
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """Temperatures in balance with the heat of a solved film (n, m); not finite without a way out for the heat.

@@ -5,7 +5,7 @@ bore outward, and the journal's, from its surface inward and the same in every r
 
 Film, bush and journal of a step are one linear system. The walls are condensed onto their surfaces, heat that they
 take by temperature there, `exudyn_ehd.film.heat.conduction`; what the film gives there follows from its own system,
-which is factored once, and from `exudyn_ehd.film.heat.passage`.
+which is factored once, and from `exudyn_ehd.film.heat.conduction`.
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.conduction import Rings, Walls
+from exudyn_ehd.film.heat.conduction import Passage, Rings, Walls
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
-from exudyn_ehd.film.heat.passage import Passage
 from exudyn_ehd.joint.heat.heat_balance import HeatBalance
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, ViscosityField
 from exudyn_ehd.joint.solved_film import History, SolvedFilm

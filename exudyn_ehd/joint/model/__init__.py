@@ -8,8 +8,7 @@ compile         kernels compiled before the first step
 rigid           rigid journal in a rigid bore
 flexible        elastic bore
 impedance       fitted map
-rheology        oil laws
-surfaces        profile, roughness, contact
+effects         profile, roughness, contact; oil laws
 parts           grid, solver and buffers
 loads           pressure and viscosity by the oil's laws; integrals and wrench
 quantities      scalars of a state

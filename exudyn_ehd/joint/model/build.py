@@ -8,10 +8,9 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.model.compile import compile_kernels
+from exudyn_ehd.joint.model.effects import collect_rheology, liner_of, surface_effects
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
-from exudyn_ehd.joint.model.rheology import collect_rheology
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.model.surfaces import liner_of, surface_effects
 from exudyn_ehd.joint.seams import Effects, shear_product
 from exudyn_ehd.status import InputError
 

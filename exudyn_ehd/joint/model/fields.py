@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.rigid import Evaluation
-from exudyn_ehd.joint.model.surfaces import worn_depth
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
-from exudyn_ehd.pictures.records import Film, JointFilm
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import Film, JointFilm, shown
 
 
 class FilmFields(JointFilm, FilmPictures):

@@ -39,7 +39,7 @@ from exudyn_ehd.joint.solved_film import (
     OilFields,
     SolvedFilm,
 )
-from exudyn_ehd.joint.tangent.bore import TangentProduct, elastic_tangent
+from exudyn_ehd.joint.tangent.bore import elastic_tangent
 from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
 from exudyn_ehd.joint.tangent.spread import complete
 from exudyn_ehd.status import Status
@@ -104,10 +104,6 @@ class ElasticEvaluation(Evaluation):
         if tangent is None:
             return super().steady_tangent(rough)
         return condensed_tangent(tangent, elasticity, self.bore.coordinates)
-
-    def tangent_product(self) -> TangentProduct:
-        """The tangent as an operator; there must be a film."""
-        return TangentProduct(self._found(), self.model.bore)
 
     def nodal_forces(self) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.

@@ -19,10 +19,10 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
+from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields
 from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
-from exudyn_ehd.joint.model.surfaces import worn_depth
 from exudyn_ehd.joint.plain_film import is_plain, solve_plain
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.balance.advice import advice
-from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
-from exudyn_ehd.pictures.records import Target
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import Target, shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
 
 if TYPE_CHECKING:

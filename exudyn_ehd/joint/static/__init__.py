@@ -6,7 +6,6 @@ solve_film          film in any gap
 steady              prescribed position
 thrust              films on the end faces there
 equilibrium         position under a load, stiffness and damping
-dynamic_stiffness   both at any frequency, for films that remember their oil
-yielding            the same between surfaces that yield
+dynamic_stiffness   both at any frequency, for films that remember their oil and between surfaces that yield
 stribeck            friction over speed
 """

@@ -18,10 +18,9 @@ from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
-from exudyn_ehd.joint.static.yielding import YieldingResponse, yielding_response
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
 
 if TYPE_CHECKING:
@@ -131,8 +130,8 @@ class EquilibriumResult:
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
         """Z = K + i nu C: the force's amplitude is -Z x for a motion x exp(i nu t).
 
-        With `ElrodAdams` K and C depend on the frequency, as the cavity's oil follows the journal with a delay, see
-        `exudyn_ehd.joint.static.dynamic_stiffness`; also where surfaces yield, see `exudyn_ehd.joint.static.yielding`.
+        With `ElrodAdams` K and C depend on the frequency, as the cavity's oil follows the journal with a delay; also
+        where surfaces yield. See `exudyn_ehd.joint.static.dynamic_stiffness`.
 
         Parameters
         ----------

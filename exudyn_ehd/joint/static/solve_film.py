@@ -6,18 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
+from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
-from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.joint.model.rheology import transform_law
+from exudyn_ehd.joint.model.effects import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import (
     FilmError,
     InputError,

@@ -16,16 +16,14 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
-from exudyn_ehd.joint.balance.hot_oil import warn_of_heat
-from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
-from exudyn_ehd.pictures.records import Film
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import Film, shown
 from exudyn_ehd.status import (
     InputError,
     Status,

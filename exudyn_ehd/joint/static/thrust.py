@@ -11,7 +11,7 @@ from exudyn_ehd.joint.balance.faces import require_fed
 from exudyn_ehd.joint.feed.films import FedFilms
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
-from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status
 
 

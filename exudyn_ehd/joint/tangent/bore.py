@@ -25,7 +25,6 @@ from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, add_line_stencil
 from exudyn_ehd.film.loads import couette_gradient
 from exudyn_ehd.film.sensitivity.bore_stencil import (
-    balance_change,
     gap_stencil,
     shear_fields,
     spread_gradient,
@@ -140,67 +139,7 @@ class Balances:
         return weight, vertices
 
 
-class TangentProduct:
-    """Tangent of a solved film as an operator; valid until the model's next evaluation.
-
-    Attributes
-    ----------
-    wrench : (6, 10) array
-        d wrench / d motion.
-    wrench_place, wrench_rate : (6, k) arrays
-        d wrench / dq, / dq_t.
-    """
-
-    def __init__(self, film: SolvedFilm, bore: Bore) -> None:
-        self.film, self.bore = film, bore
-        balances = Balances(film)
-        self.wrench, self.wrench_place, self.wrench_rate = _wrench_rows(film, bore, balances)
-        self.motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
-        self.by_place, self.vertices = balances.stencil(1.0, 0.0)
-        # the rate acts on a vertex's own storage alone
-        self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]
-        self.places = balances.places
-        self.weight = -film.scales.force * load_weights(film)
-        self.contact: np.ndarray | None = None
-        if film.pressing is not None:
-            self.contact = contact_slope(film, film.pressing) / film.parts.bearing.radial_clearance
-            self.contact_motion = -_contact_columns(film, bore, film.pressing)
-
-    def bore_load(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """Change of the bore's loads (k,) with changes of motion (10,), q and q_t (k,).
-
-        Raises
-        ------
-        RuntimeError
-            If the model has evaluated another state since.
-        """
-        moved, residual = self.residual(motion, place, rate)
-        field = np.zeros(moved.shape)
-        field.reshape(-1)[self.places] = self.weight * residual
-        if self.contact is None:
-            return self.bore.load(field)
-        return self.bore.load(field + self.contact * moved) + self.contact_motion @ motion[:4]
-
-    def residual(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement (n, m) of the bore, m, and minus the change (count,) of the film's unknowns."""
-        self.film.require_current()
-        moved, speed = self.bore.displacements(place, rate)
-        residual = np.empty(len(self.places))
-        balance_change(
-            self.motion,
-            self.by_place,
-            self.vertices,
-            self.by_rate,
-            motion,
-            moved.reshape(-1),
-            speed.reshape(-1),
-            residual,
-        )
-        self.film.solver.direct(residual)
-        return moved, residual
-
-
-def _wrench_rows(film: SolvedFilm, bore: Bore, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def wrench_rows(film: SolvedFilm, bore: Bore, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """d wrench / d motion (6, 10), / dq and / dq_t (6, k): the upper rows of `elastic_tangent` alone."""
     lam, count = _adjoints(film, bore, whole=False)
     weights, direct = wrench_weights(film, bore)

@@ -22,15 +22,16 @@ from scipy.sparse import csr_matrix, diags, vstack
 
 from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.sensitivity.bore_stencil import balance_change
 from exudyn_ehd.joint.bore.columns import column_forces, put_sparse
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import (
     Balances,
-    TangentProduct,
     contact_slope,
     couette_field,
     load_weights,
+    wrench_rows,
     wrench_weights,
 )
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, wrench_tangent
@@ -259,11 +260,25 @@ def nodal_tangent(film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> tupl
     return wrench, nodal.reshape(forces.count, 3, -1)
 
 
-class NodalProduct(TangentProduct):
-    """The same as an operator, one film solve per product; valid until the model's next evaluation."""
+class NodalProduct:
+    """Tangent of a solved film as an operator, one film solve per product; valid until the model's next evaluation.
+
+    Attributes
+    ----------
+    wrench : (6, 10) array
+        d wrench / d motion.
+    wrench_place, wrench_rate : (6, k) arrays
+        d wrench / dq, / dq_t.
+    """
 
     def __init__(self, film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> None:
-        super().__init__(film, bore)
+        self.film, self.bore = film, bore
+        balances = Balances(film)
+        self.wrench, self.wrench_place, self.wrench_rate = wrench_rows(film, bore, balances)
+        self.motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
+        self.by_place, self.vertices = balances.stencil(1.0, 0.0)
+        # the rate acts on a vertex's own storage alone
+        self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]
         self.forces, self.change = forces, TractionChange(film, forces)
         self.columns = _pose_columns(film) * film.parts.pose_scale
 
@@ -275,11 +290,29 @@ class NodalProduct(TangentProduct):
         RuntimeError
             If the model has evaluated another state since.
         """
-        moved, residual = self.residual(motion, place, rate)
+        moved, residual = self._residual(motion, place, rate)
         scaled = moved.ravel() / self.film.parts.bearing.radial_clearance
         gap = scaled - self.columns @ motion[:4]
         forces = self.change.vertex_forces(-residual, gap, scaled, motion[8:])
         return self.forces.nodal(forces)
+
+    def _residual(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (n, m) of the bore, m, and minus the change (count,) of the film's unknowns."""
+        self.film.require_current()
+        moved, speed = self.bore.displacements(place, rate)
+        residual = np.empty(len(self.vertices))
+        balance_change(
+            self.motion,
+            self.by_place,
+            self.vertices,
+            self.by_rate,
+            motion,
+            moved.reshape(-1),
+            speed.reshape(-1),
+            residual,
+        )
+        self.film.solver.direct(residual)
+        return moved, residual
 
 
 def _pose_columns(film: SolvedFilm) -> np.ndarray:

@@ -29,8 +29,7 @@ from exudyn_ehd.joint.tangent.drag import (
     drag_by_deflection,
     pulls_unevenly,
 )
-from exudyn_ehd.joint.tangent.fields import add_by_motion
-from exudyn_ehd.joint.tangent.line import by_fills, true_fills, true_line
+from exudyn_ehd.joint.tangent.line import add_by_motion, by_fills, true_fills, true_line
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
 _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.sparse import bmat, coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.solid.static_equilibrium import symmetric_factor
+from exudyn_ehd.solid.linear.supernodal import sparse_factor
 
 # Gauss points and weights of an interval, and the quadratic shape functions (points, 3) there with their slopes.
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -146,7 +146,7 @@ class Cylinder:
             free[1::3] = False  # torsion, which no pressure makes
         K = K[free][:, free]
         if held is not None or n > 1:
-            u[free] = symmetric_factor(K).solve(loads[free])
+            u[free] = sparse_factor(K).solve(loads[free])
             return u
         momentum = csc_matrix((self.mass(n) @ self.rigid(n))[free]) * (self.lame[1] / self.r[-1] ** 2)
         whole = splu(bmat([[K, momentum], [momentum.T, None]], format="csc"))

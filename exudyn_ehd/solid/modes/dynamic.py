@@ -17,9 +17,10 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.sparse.linalg import LinearOperator, eigsh
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh
 
-from exudyn_ehd.solid.static_equilibrium import held_stiffness
+from exudyn_ehd.solid.linear.supernodal import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
 # Share of the energy below which what is left of a vibration or of a response is rounding.
@@ -46,6 +47,15 @@ SMALLEST_RESPONSE = 0.1
 BODY_FORCE_FORMAT = 1
 # What a file of modes for body forces depends on besides the bush.
 BODY_FORCE_SETTINGS = (BODY_FORCE_FORMAT, SMALLEST_PART, SMALLEST_RESPONSE, DEPENDENT)
+
+
+def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperLU]:
+    """Free coordinates (3 n,) with the outer surface held, their stiffness at rest, and its factor."""
+    mesh = solid.mesh
+    free = np.ones(3 * len(mesh.nodes), dtype=bool)
+    free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
+    K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
+    return free, K, sparse_factor(K)
 
 
 def vibration_modes(solid: TotalLagrange, static: np.ndarray, stiffness: np.ndarray) -> dict[str, np.ndarray]:

@@ -50,8 +50,6 @@ from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.loads import Pressure, pressure_loads
 from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
 from exudyn_ehd.solid.modes import dynamic
-from exudyn_ehd.solid.modes.dynamic import body_force_modes, vibration_modes
-from exudyn_ehd.solid.static_equilibrium import held_stiffness
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import Shapes, cached_arrays
 
@@ -192,7 +190,7 @@ def bore_modes(bush: ModalBush) -> BoreModes:
         "bush_vibrations",
         content,
         {**shapes, "mass": ("m", "m"), "moments": (len(mesh.nodes), 4)},
-        lambda: vibration_modes(bush.solid(mesh), static.displacements, static.stiffness),
+        lambda: dynamic.vibration_modes(bush.solid(mesh), static.displacements, static.stiffness),
     )
     modes = BoreModes(
         mesh=mesh,
@@ -213,7 +211,7 @@ def _with_body_forces(bush: ModalBush, modes: BoreModes, content: bytes) -> Bore
         "bush_body_forces",
         content + repr(dynamic.BODY_FORCE_SETTINGS).encode(),
         {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",), "mass": ("k", "m")},
-        lambda: body_force_modes(bush.solid(mesh), modes.displacements, modes.stiffness, bush.tilted),
+        lambda: dynamic.body_force_modes(bush.solid(mesh), modes.displacements, modes.stiffness, bush.tilted),
     )
     rows = data["mass"]
     return replace(
@@ -240,7 +238,7 @@ def _content(bush: ModalBush, mesh: BushMesh) -> bytes:
 def compute_modes(bush: ModalBush, mesh: BushMesh) -> BoreModes:
     """Compute the modes of a bush on its mesh: one factorisation of its stiffness, one solve per pressure."""
     bore, size = mesh.bore, len(mesh.nodes)
-    free, _, factor = held_stiffness(bush.solid(mesh))
+    free, _, factor = dynamic.held_stiffness(bush.solid(mesh))
     pressures, orders = candidate_pressures(bush.tilted)
     samples = sample_pressures(bush.tilted)
     loads = pressure_loads(bore, size, [*pressures, *samples])

@@ -7,6 +7,7 @@ quartiles as spread.
 
 from __future__ import annotations
 
+import csv
 import dataclasses
 import math
 import pathlib
@@ -15,7 +16,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from exudyn_ehd.tables import format_seconds, read_rows, write_rows
+from exudyn_ehd.status import InputError
+from exudyn_ehd.storage import replacing
+from exudyn_ehd.tables import format_seconds
 
 DATA = pathlib.Path(__file__).parent / "data"
 _NONE = math.nan
@@ -143,7 +146,29 @@ def write_table(path: pathlib.Path, kind: type[Kind], rows: Iterable[Kind], note
     for row in rows:
         values = dataclasses.asdict(row)
         lines.append([values[n] if n in texts else number_text(values[n], digits) for n in names])
-    write_rows(path, lines, notes=notes, line_end="\n")
+    write_rows(path, lines, notes)
+
+
+def write_rows(path: str | pathlib.Path, rows: Iterable[Sequence[object]], notes: Iterable[str] = ()) -> None:
+    """Write rows, the first of them heads, as CSV; ``notes`` stand above them as lines ``# ...``."""
+    with replacing(path) as file:
+        file.writelines(f"# {note}\n" for note in notes)
+        csv.writer(file, lineterminator="\n").writerows(rows)
+
+
+def read_rows(path: str | pathlib.Path, head: Sequence[str]) -> tuple[list[dict[str, str]], list[str]]:
+    """Rows by head, and the notes, of a file of `write_rows`.
+
+    Raises
+    ------
+    InputError
+        If the file has other columns than ``head``.
+    """
+    lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
+    reader = csv.DictReader(line for line in lines if not line.startswith("# "))
+    if list(reader.fieldnames or ()) != list(head):
+        raise InputError(f"{path} must have the columns {list(head)}, got {reader.fieldnames}.")
+    return list(reader), [line.removeprefix("# ") for line in lines if line.startswith("# ")]
 
 
 def number_text(value: float, digits: int) -> str:

@@ -20,10 +20,10 @@ from exudyn_ehd.solid.bush import ANCFBush, Rayleigh
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.mesh_import import mesh_from_fem
-from exudyn_ehd.solid.static_equilibrium import equilibrium
 from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError, RunError
 from tests.sampling import sample
+from tests.solid_equilibrium import equilibrium
 from tests.solid_vibrations import eigenfrequencies
 
 SOFT = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)

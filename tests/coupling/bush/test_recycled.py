@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from exudyn_ehd.coupling.bush.recycled import LARGEST, RecycledSolver
+from exudyn_ehd.coupling.bush.linear import LARGEST, RecycledSolver
 
 
 def operator(rng, n=200):

@@ -10,7 +10,7 @@ import scenes
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.audit.faces import with_ends
+from exudyn_ehd.joint.audit.indicators import with_ends
 from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states
 from exudyn_ehd.joint.model.build import build_study_model
 

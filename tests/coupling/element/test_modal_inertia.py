@@ -18,8 +18,8 @@ from exudyn.utilities import InertiaCylinder
 from rods import PUSH, rod, total
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.element.modal_inertia import ModalInertia
-from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.element.modal import ModalInertia
+from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics.sides import detached
 from exudyn_ehd.solid.modes.static import bore_modes
 

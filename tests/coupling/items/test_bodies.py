@@ -18,7 +18,7 @@ from bodies import AGAINST_CONNECTOR, JACOBIANS
 from exudyn.advancedUtilities import NumericalJacobian
 from springs import DAMPING, STIFFNESS, TILTING, Spring, joined
 
-from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.status import InputError
 
 

@@ -16,7 +16,7 @@ from rods import JOURNAL, PUSH, RING, rod, total
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.bush.object import CarriedOuter, CreateFlexibleBush
-from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.items.markers import resolve
 from tests.sampling import sample
 
 SOFT = ehd.SaintVenantKirchhoff(youngs_modulus=1e8, poisson_ratio=0.3, density=2000.0)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.record.history import column, make_row
+from exudyn_ehd.coupling.record.history import COLUMNS, make_row
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.record.revolutions import revolution_times
 from exudyn_ehd.status import InputError
@@ -161,7 +161,7 @@ def test_turning_backwards_counts_and_swinging_needs_a_period():
 
 def test_place_of_the_smallest_gap_is_in_the_record(history):
     row = np.arange(64.0)
-    assert column(row, ehd.Quantity.MINIMUM_GAP_Z).size == 1
+    assert row[COLUMNS[ehd.Quantity.MINIMUM_GAP_Z.value]].size == 1
     assert history.minimum_gap_angle.shape == history.time.shape
 
 

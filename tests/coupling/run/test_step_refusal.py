@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scenes
 
-from exudyn_ehd.coupling.run.step_refusal import StepRefusal
+from exudyn_ehd.coupling.run.start_guess import StepRefusal
 
 
 def falling(before, largest, own):

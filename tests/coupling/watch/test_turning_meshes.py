@@ -11,7 +11,7 @@ from bodies import section
 from turning import BEARING, free_ring, spinning_ring
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch.turning_meshes import largest_turn, lost_share
+from exudyn_ehd.coupling.watch.long_steps import largest_turn, lost_share
 
 SPEED = 300.0
 

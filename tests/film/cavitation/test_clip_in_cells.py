@@ -7,8 +7,8 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.reference import short_bearing
 from tests.film.cavitation.test_rupture_line import _coefficients
+from tests.reference import short_bearing
 
 C, R = 25e-6, 0.025
 CELLS = ehd.Gumbel(line_in_cells=True)

@@ -8,8 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.heat.oil_flows import heat_and_leakage
-from exudyn_ehd.joint.heat.power import power_loss
+from exudyn_ehd.joint.heat.power import heat_and_leakage, power_loss
 from exudyn_ehd.joint.model.build import build_model, build_study_model
 from exudyn_ehd.status import Status
 from tests.film.cavitation.test_rupture_line import _coefficients, _films, _random_film

@@ -10,8 +10,7 @@ from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.joint.heat.oil_flows import Exchange, heat_and_leakage
-from exudyn_ehd.joint.heat.power import power_loss
+from exudyn_ehd.joint.heat.power import Exchange, heat_and_leakage, power_loss
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import Status
 

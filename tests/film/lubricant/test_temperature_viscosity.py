@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.named_oils import ISO_GRADES, MULTIGRADES, SAE_GRADES
+from exudyn_ehd.film.lubricant.lubricant import ISO_GRADES, MULTIGRADES, SAE_GRADES
 
 T40, T100 = 313.15, 373.15
 

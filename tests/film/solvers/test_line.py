@@ -7,8 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid, slider_grid
-from exudyn_ehd.joint.heat.oil_flows import heat_and_leakage
-from exudyn_ehd.joint.heat.power import power_loss
+from exudyn_ehd.joint.heat.power import heat_and_leakage, power_loss
 from exudyn_ehd.joint.model.build import build_model
 from tests.film.cavitation.test_rupture_line import _coefficients
 

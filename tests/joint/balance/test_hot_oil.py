@@ -8,7 +8,7 @@ import warnings
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.hot_oil import HOT, HOTTEST
+from exudyn_ehd.joint.balance.limits import HOT, HOTTEST
 
 R, L, C, SUPPLY, OMEGA = 0.025, 0.05, 25e-6, 320.0, 300.0
 LAW = ehd.ReynoldsTemperature(point=(SUPPLY, 0.02), coefficient=0.03)

@@ -5,7 +5,7 @@ import warnings
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
+from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK
 
 BEARING = ehd.JournalBearing(
     journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02)

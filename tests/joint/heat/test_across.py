@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.temperature import settled_history
-from exudyn_ehd.joint.heat.oil_flows import heat_and_leakage
+from exudyn_ehd.joint.balance.film import settled_history
+from exudyn_ehd.joint.heat.power import heat_and_leakage
 from exudyn_ehd.joint.model.build import build_model
 
 SUPPLY, C, SPEED = 313.15, 25e-6, 500.0

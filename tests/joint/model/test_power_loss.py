@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.heat.oil_flows import Exchange, heat_and_leakage
-from exudyn_ehd.joint.heat.power import sliding_power
+from exudyn_ehd.joint.heat.power import Exchange, heat_and_leakage, sliding_power
 from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 

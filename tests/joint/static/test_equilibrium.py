@@ -15,7 +15,7 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import whirl_threshold
-from exudyn_ehd.reference import short_bearing
+from tests.reference import short_bearing
 
 SPEED = 100.0
 FILM = ehd.FiniteLength(n_theta=64, n_z=8)

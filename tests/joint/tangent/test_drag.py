@@ -10,7 +10,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.surfaces.patir_cheng import nominal_gap, shear_flow_factor
-from exudyn_ehd.joint.heat.oil_flows import heat_and_leakage
+from exudyn_ehd.joint.heat.power import heat_and_leakage
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.tangent import drag
 

@@ -6,10 +6,10 @@ from scipy.integrate import solve_ivp
 from scipy.sparse.linalg import splu
 
 import exudyn_ehd as ehd
-from exudyn_ehd.reference.elastic_rings import bore_displacement, cylinder_yielding
 from exudyn_ehd.solid.journal.description import ElasticJournal, HeldBands, HeldEnds
 from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
 from exudyn_ehd.solid.journal.modes import FINE, GROWTH_INWARDS, _Reduction
+from tests.reference.elastic_rings import bore_displacement, cylinder_yielding
 
 E, NU = 2.1e11, 0.3
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=E, poisson_ratio=NU, density=7800.0)
@@ -105,9 +105,9 @@ def test_held_pin_bends_like_a_beam(inner):
 )
 def test_against_hexahedra(held, tolerance):
     """A hollow pin under a pressure of all waves, on a structured mesh of 20-node elements held at the same places."""
+    from exudyn_ehd.solid.linear.supernodal import sparse_factor
     from exudyn_ehd.solid.loads import pressure_loads
     from exudyn_ehd.solid.mesh import HollowCylinder
-    from exudyn_ehd.solid.static_equilibrium import symmetric_factor
     from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
     mesh = HollowCylinder(
@@ -129,7 +129,7 @@ def test_against_hexahedra(held, tolerance):
     free = np.repeat(~fixed, 3)
     K = TotalLagrange(mesh=mesh, material=STEEL).tangent(np.zeros_like(place))
     u = np.zeros(free.size)
-    u[free] = symmetric_factor(K[free][:, free]).solve(loads[free])
+    u[free] = sparse_factor(K[free][:, free]).solve(loads[free])
     on_film = np.abs(mesh.outer.z) < half + 1e-9
     expected = mesh.outer.radial(u[None])[0][on_film]
     journal = ElasticJournal(material=STEEL, span=(-2.0 * A, 2.0 * A), held=held, inner_radius=0.5 * A)

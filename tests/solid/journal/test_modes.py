@@ -5,10 +5,10 @@ import pytest
 from scipy.sparse.linalg import splu
 
 import exudyn_ehd as ehd
-from exudyn_ehd.reference.elastic_rings import cylinder_yielding
 from exudyn_ehd.solid.journal import modes
 from exudyn_ehd.solid.journal.harmonics import Cylinder
 from exudyn_ehd.solid.journal.modes import _Reduction, journal_modes
+from tests.reference.elastic_rings import cylinder_yielding
 
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 RADIUS, LENGTH = 0.011, 0.022

@@ -13,8 +13,8 @@ from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.elements.hex20 import GAUSS27, HEX20, shapes
 from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.modes.dynamic import held_stiffness
 from exudyn_ehd.solid.modes.static import bore_modes
-from exudyn_ehd.solid.static_equilibrium import held_stiffness
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
 from tests.solid_vibrations import eigenfrequencies

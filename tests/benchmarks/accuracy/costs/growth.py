@@ -26,9 +26,10 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.tables import format_seconds, read_rows, write_rows
+from exudyn_ehd.tables import format_seconds
 from tests.benchmarks.accuracy.scenes import mechanisms
 from tests.benchmarks.accuracy.scenes.measured import STEEL
+from tests.benchmarks.accuracy.table import read_rows, write_rows
 
 RADIUS, CLEARANCE, SPEED = 0.03, 30e-6, 100.0 * math.pi
 GRIDS = ((48, 8), (96, 16), (192, 32), (288, 48))
@@ -191,7 +192,7 @@ def write_growths(path: pathlib.Path, growths: list[Growth], note: str) -> None:
         for g in growths
         for n, t in zip(g.sizes, g.seconds, strict=True)
     ]
-    write_rows(path, [HEAD, *rows], notes=[note], line_end="\n")
+    write_rows(path, [HEAD, *rows], [note])
 
 
 def read_growths(path: pathlib.Path) -> tuple[list[Growth], list[str]]:

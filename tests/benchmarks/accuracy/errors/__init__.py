@@ -4,5 +4,4 @@ Module map
 ----------
 study       scene + ladder + references -> table; repeated in turns, or in parallel without times
 ladders     which settings a ladder has
-richardson  a converged reference with an estimate of its own error
 """

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.status import EHDError, InputError, require_integer
-from exudyn_ehd.studies.richardson import Converged, converged
+from exudyn_ehd.studies.film_errors import Converged, converged
 from tests.benchmarks.accuracy.scenes.setting import Outcome, QuantityOfInterest, Scene, Setting
 from tests.benchmarks.accuracy.table import Row
 

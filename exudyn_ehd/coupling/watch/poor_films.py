@@ -4,20 +4,26 @@ In a flooded film the cavity's void takes some 0.4 of ``1 - smallest gap / mean 
 What the load squeezes out beyond it costs load: 10 % at a void of 0.55, 0.7 and 0.85 of it (eccentricity ratios 0.3,
 0.6 and 0.9), which at a given eccentricity comes within one or two turns, and soon all. Under a given load the journal
 sinks.
+
+Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
 """
 
 from __future__ import annotations
 
+import math
 import warnings
 
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.steady import MORE_OIL
-from exudyn_ehd.status import StarvationWarning
+from exudyn_ehd.status import StarvationWarning, ThinFilmWarning
 
 # Void of a starved film over ``1 - smallest gap / mean gap``, and the least one that counts: shares of the volume.
 STARVED, LEAST = 0.6, 0.1
+# Roughness of a good surface, m; surfaces of the smallest bearings are as much finer as these are smaller.
+GOOD_SURFACE, CLEARANCE_SHARE = 0.2e-6, 0.05
 
 
 def lost_share(history: History) -> float:
@@ -31,12 +37,31 @@ def lost_share(history: History) -> float:
     return lost if lost > max(LEAST, STARVED * (1.0 - smallest)) else 0.0
 
 
-def warn(name: str, time: float, lost: float) -> None:
+def warn_of_starvation(name: str, time: float, lost: float) -> None:
     """Warn that the film of the joint ``name`` is starved."""
     warnings.warn(
         f"LubricatedJoint '{name}': at t = {time:.9g} s {100.0 * lost:.0f} % of the film's oil has left through the "
         "ends: with ElrodAdams and neither a supply nor ends above the cavity pressure none comes back, and the film "
         f"carries less and less; {MORE_OIL[:-1]}, or SwiftStieber() for a bearing that stays flooded.",
         StarvationWarning,
+        stacklevel=2,
+    )
+
+
+def smooth_limit(bearing: JournalBearing) -> float:
+    """Minimum film thickness below which a smooth film is none, m; -inf where the bearing models what touches."""
+    if any(getattr(bearing, name, None) is not None for name in ("asperity", "contact")):
+        return -math.inf
+    return min(GOOD_SURFACE, CLEARANCE_SHARE * bearing.radial_clearance)
+
+
+def warn_of_thin_film(name: str, time: float, gap: float) -> None:
+    """Warn that the film of the joint ``name`` is thinner than its surfaces are rough."""
+    warnings.warn(
+        f"LubricatedJoint '{name}': at t = {time:.9g} s the minimum film thickness is {1e6 * gap:.3g} um, less than "
+        "the roughness of a good surface: real surfaces touch there, and pressure, friction and film are those of "
+        "perfectly smooth ones; give the bearing asperity=GreenwoodTripp(...) and roughness=PatirCheng(...), "
+        "contact=RegularisedWall(onset=...) if surfaces only just touch, or check load, clearance and viscosity.",
+        ThinFilmWarning,
         stacklevel=2,
     )

@@ -1,4 +1,4 @@
-"""Equilibrium of a solid on its own, without a multibody model."""
+"""Equilibrium of a solid on its own, without a multibody model: Newton's method with loads that follow."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix, spmatrix
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse import csr_matrix
 
+from exudyn_ehd.solid.linear.supernodal import sparse_factor
 from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import EHDError, require_integer
@@ -92,7 +92,7 @@ def equilibrium(
                 K = K + part * _follower_matrix(load, positions)
             K = K[free][:, free]
             try:
-                factor = symmetric_factor(K)
+                factor = sparse_factor(K)
             except RuntimeError:
                 raise _failure(step, steps, float("inf")) from None
             correction = factor.solve(residual.ravel()[free])
@@ -107,26 +107,6 @@ def equilibrium(
     if turned := solid.inversion(u):
         raise EquilibriumError(f"equilibrium: {turned}")
     return Equilibrium(displacements=u, iterations=count, reactions=np.where(held, residual, 0.0))
-
-
-def symmetric_factor(K: spmatrix) -> SuperLU:
-    """Factor of a symmetric stiffness, without pivoting.
-
-    Raises
-    ------
-    RuntimeError
-        If the stiffness is singular.
-    """
-    return splu(K.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-
-
-def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperLU]:
-    """Free coordinates (3 n,) with the outer surface held, their stiffness at rest, and its factor."""
-    mesh = solid.mesh
-    free = np.ones(3 * len(mesh.nodes), dtype=bool)
-    free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
-    K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
-    return free, K, symmetric_factor(K)
 
 
 def _follower_matrix(load: FollowerPressure, positions: np.ndarray) -> csr_matrix:

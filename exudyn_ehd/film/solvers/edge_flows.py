@@ -1,0 +1,71 @@
+"""Flows at prescribed vertices, where the film beside them ends within a link."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.cavitation.active_set import FilmSystem
+from exudyn_ehd.film.grid import FilmGrid
+
+
+def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Pressures (n, m) whose differences drive the flows at prescribed vertices, and where the film is full.
+
+    Next to a prescribed pressure above the cavity's a film that is cut off has the linear film's gradient, up to a line
+    that may lie in front of the next vertex: that vertex counts with its linear pressure, and as full.
+    """
+    if not clips:
+        return s.pressure, active
+    near, pressed = np.zeros(active.shape, dtype=bool), s.fixed & (s.pressure > s.cavity_pressure)
+    for axis, links in enumerate((s.kx > 0.0, s.kz > 0.0)):
+        # nothing flows over the last links in z
+        near |= links & np.roll(pressed, -1, axis) | np.roll(links & pressed, 1, axis)
+    near &= ~s.fixed
+    return np.where(near, s.linear_pressure, s.pressure), active | near
+
+
+def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:
+    """Let the films between supply areas and a cavity end where they do, in the balances (n, m)."""
+    cuts = np.ones((2, *grid.shape)) if grid.cuts is None else grid.cuts
+    widths = grid.width_x, grid.width_z
+    _end_films((s.kx, s.kz), s.b, active, grid.fixed, cuts, widths, np.diff(grid.z), balance_out)
+
+
+@njit(cache=True)
+def _end_films(links, b, active, fixed, cuts, widths, length_z, balance_out):
+    """Let the film between a supply area and a cavity end where its parabola of pressure does.
+
+    What the turn carries away and the squeeze takes, B per length, leaves the area's edge up to the middle of the link,
+    where the control volumes meet, ``B (d - l / 2)`` with the link's length l and the distance d from the edge to the
+    cavity's first vertex. A film that begins with no more than the cavity's pressure ends at once and takes none of it;
+    one whose flow q takes the share of ``sqrt(2 q B l)`` in ``q + B l / 2``, up to the flow at which it reaches the
+    vertex, of what the vertex receives in all.
+
+    Parameters
+    ----------
+    links : conductances (n, m) in theta and z
+    b, active, fixed : (n, m), right-hand side of the balances, vertices of the film and prescribed ones
+    cuts : (2, n, m), of the links in theta and z, see `exudyn_ehd.film.grid.FilmGrid`
+    widths : control volumes' widths (n,) and (m,)
+    length_z : (m - 1,), of the links in z
+    balance_out : (n, m)
+        Balances, at prescribed vertices what these feed, which is changed in place.
+    """
+    n, m = b.shape
+    for axis in range(2):
+        for i in range(n):
+            for j in range(1, m - 1):
+                if not fixed[i, j]:
+                    continue
+                for way in (-1, 1):
+                    u, v = ((i + way) % n, j) if axis == 0 else (i, j + way)
+                    at = (i, j) if way > 0 else (u, v)
+                    if fixed[u, v] or active[u, v] or b[u, v] >= 0.0 or links[axis][at] <= 0.0:
+                        continue
+                    received = max(0.0, 2.0 * (1.0 + balance_out[u, v] / b[u, v]))
+                    width = widths[0][u] if axis == 0 else widths[1][v]
+                    length = widths[0][0] if axis == 0 else length_z[at[1]]
+                    d = length * min(1.0, 1.0 / cuts[axis][at])
+                    if received < 1.0:
+                        balance_out[i, j] += b[u, v] / width * (d - 0.5 * length) * (1.0 - np.sqrt(received)) ** 2

@@ -1,0 +1,147 @@
+"""Loads and temperatures that neither oil nor steel bears, and what to do about films that can't be evaluated."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.heat.conduction import Walls
+from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, Status, warn_user
+
+# Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
+HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
+# Depth in a rigid bore that no contact explains, over the clearance.
+DEEPEST = 1.0
+PRESSED_THROUGH = "the journal was pressed through its contact by more than the clearance"
+# K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
+# beyond any oil, so that a film of one is a wrong answer.
+HOT, HOTTEST = 423.15, 700.0
+COOLER = (
+    "let more oil flow through (end pressures, supply, clearance), give the thermal effect heat transfer to the "
+    "surfaces (housing_conductance, bush_coefficient, journal_coefficient), or take a thinner oil, less load or speed."
+)
+NO_OIL = f"and no oil is a liquid above {HOTTEST:g} K: the bearing seizes; {COOLER}"
+ROOM = (
+    "give the journal's heat a way out (Conduction.conductance, more oil), let it warm up slowly, or take a larger "
+    "radial_clearance."
+)
+Temperature = float | np.ndarray | None
+
+
+def mean_pressure(bearing: JournalBearing, force: float) -> float:
+    """Force, N, on the projected area, Pa."""
+    return force / (2.0 * bearing.journal_radius * bearing.length)
+
+
+def warn_of_overload(bearing: JournalBearing, peak: float, force: float, where: str) -> None:
+    """Warn in the name of ``where`` of a film with a peak pressure, Pa, or a force, N, that no material bears."""
+    mean = mean_pressure(bearing, force)
+    # films without a peak have nan
+    if not peak > HIGHEST_PEAK and not mean > HIGHEST_MEAN:
+        return
+    warn_user(
+        f"{where}: the film has a peak pressure of {peak:.3g} Pa, and with its contact {mean:.3g} Pa on the projected "
+        f"area; neither oil nor steel bears {HIGHEST_PEAK:.3g} or {HIGHEST_MEAN:.3g} Pa there: surfaces this close "
+        "touch or give way; look at the units of viscosity, speed and clearance, take a smaller eccentricity or load, "
+        "or give the bearing a contact (GreenwoodTripp, RegularisedWall) or a bush that deflects.",
+        OverloadWarning,
+    )
+
+
+def refuse_pressed_through(bearing: JournalBearing, gap: float, where: str) -> None:
+    """Refuse in the name of ``where`` a journal so deep in a rigid bore, ``gap`` in m, that no contact explains it."""
+    if getattr(bearing, "yielding", None) is None and math.isfinite(gap) and gap < -DEEPEST * bearing.radial_clearance:
+        raise FilmError(
+            f"{where}: {PRESSED_THROUGH}, minimum film thickness {gap:.3g} m; check load, eccentricity and units, or "
+            "give the contact more stiffness (RegularisedWall.pressure)."
+        )
+
+
+def is_above(limit: float, temperature: float | np.ndarray) -> bool:
+    """Whether a film's temperature, K, is above a limit somewhere, or no number."""
+    return not float(np.max(temperature)) <= limit
+
+
+def hottest(temperature: float | np.ndarray, grid: FilmGrid) -> str:
+    """Highest temperature of a film, with its place where it has a field, for messages."""
+    if np.ndim(temperature) == 0:
+        return f"{float(temperature):.4g} K"
+    T = np.asarray(temperature)[:, : grid.z.size]  # without the walls behind it
+    i, j = divmod(int(np.argmax(T)), grid.z.size)
+    return f"{T[i, j]:.4g} K at theta = {grid.x[i]:.3g} rad, z = {grid.z[j] * grid.reference_length:.4g} m"
+
+
+def require_oil_bears(temperature: Temperature, grid: FilmGrid, where: str) -> None:
+    """Raise `FilmError` in the name of ``where`` for a film in which no oil is a liquid."""
+    if temperature is not None and is_above(HOTTEST, temperature):
+        raise FilmError(f"{where}: the film is at {hottest(temperature, grid)}, {NO_OIL}")
+
+
+def hot_film(temperature: float | np.ndarray, grid: FilmGrid, where: str) -> str:
+    """What to say of a film that oil does not bear for long."""
+    return (
+        f"{where}: the film is at {hottest(temperature, grid)}, and mineral oils do not bear {HOT:g} K for long; "
+        f"{COOLER}"
+    )
+
+
+def seized(walls: Walls | None) -> str:
+    """What to say where the walls have grown by the whole clearance; empty if they have not."""
+    if walls is None or walls.clearance > 0.0:
+        return ""
+    return (
+        f"the bearing seizes: bush and journal have grown by more than the radial clearance, of which "
+        f"{walls.clearance:.3g} m are left; {ROOM}"
+    )
+
+
+def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
+    """Warn in the name of ``where`` of a film that oil does not bear for long; whether it is one."""
+    if temperature is None or not is_above(HOT, temperature):
+        return False
+    warn_user(hot_film(temperature, grid, where), HotFilmWarning)
+    return True
+
+
+def advice(status: Status, bearing: object) -> str:
+    """What to do about a failed evaluation of this bearing; `Status.advice` where the bearing changes nothing."""
+    if status is Status.NO_FILM and isinstance(getattr(bearing, "bush", None), ElasticLiner):
+        return (
+            "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not "
+            "deflect: name contact=RegularisedWall(onset=...) or asperity=GreenwoodTripp(...), which press on the "
+            "liner too, or reduce the load or the step size."
+        )
+    thermal = getattr(bearing, "thermal", None)
+    grows = any(getattr(getattr(thermal, side, None), "expansion", 0.0) > 0.0 for side in ("bush", "journal"))
+    if status is Status.NO_FILM and grows:
+        return (
+            "the gap closed somewhere, and the growth of bush and journal takes part in it: where the journal outgrows "
+            f"the clearance the bearing seizes; {ROOM} {status.advice}"
+        )
+    law = getattr(getattr(bearing, "lubricant", None), "pressure_law", None)
+    if status is Status.NO_PRESSURE and law is not None:
+        barus = "use RoelandsPressure instead of BarusPressure, " if isinstance(law, BarusPressure) else ""
+        return (
+            f"the pressure runs away: with {type(law).__name__} no finite pressure carries a film that is pressed "
+            "together as fast as here, and between rigid surfaces none carries more than a mean pressure (force / "
+            f"diameter / length) of some 1 / coefficient = {1.0 / law.coefficient:.3g} Pa; reduce loads and speeds of "
+            f"approach (initial velocities), check the law's coefficient, {barus}or name an elastic liner or bush."
+        )
+    oil, closure = getattr(bearing, "lubricant", None), getattr(bearing, "cavitation", None)
+    if (
+        status is Status.NOT_CONVERGED
+        and getattr(oil, "density_law", None)
+        and not getattr(closure, "conserves_mass", True)
+    ):
+        # rho dh/dt is there, h drho/dt, which would hold the pressure, is not
+        return (
+            f"{status.advice} With a density_law and {type(closure).__name__}, which keeps no account of the oil, thin "
+            "films that are pressed together fast may have no pressure: what oil takes in as it gets denser is left "
+            "out; cavitation=ElrodAdams(...) counts it, or take density_law=None."
+        )
+    return status.advice
