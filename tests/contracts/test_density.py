@@ -104,7 +104,7 @@ def test_rates_at_an_instant_are_exact(pressure):
     """Columns of the rates and speeds from a cavitated history without a step, where full films squeeze at once."""
     model = make(SOFT, pressure, cavitation=CLOSURES[3])
     history = start(model)
-    # An instant is a step of 1e-9 s in the volume: rounding 1e-16 / 1e-9 of the gap's rates.
+    # An instant is 1e-7 of the time in which the film changes: rounding 1e-16 / 1e-7 of the rates.
     assert tangent_error(model, history, 0.0, range(4, 8)) < 1e-5
 
 

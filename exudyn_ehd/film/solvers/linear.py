@@ -24,7 +24,7 @@ from exudyn_ehd.status import Status
 
 # Stands for a vanishing time step where only the rates at one instant are asked for, share of the time in which the
 # film changes.
-INSTANT = 1e-8
+INSTANT = 1e-7
 
 
 class FilmSolver:
