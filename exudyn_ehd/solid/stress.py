@@ -22,10 +22,13 @@ class MaterialPoints:
     ----------
     element : ndarray of int, shape (n,)
     natural : ndarray, shape (n, 3)
+    gradient : ndarray, shape (n, nodes of an element, 3)
+        Of the shape functions along the reference positions [1/m].
     """
 
     element: np.ndarray
     natural: np.ndarray
+    gradient: np.ndarray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,11 +47,8 @@ class StressRecovery:
 
     def cauchy_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
         """Return sigma = F S F^T / det F, shape (n, 3, 3) [Pa], at material points; u has a row per mesh node [m]."""
-        nodes = self.mesh.elements[points.element]
-        natural = self.mesh.element.shapes(points.natural)[1]
-        jacobian = np.einsum("nar,nai->nir", natural, self.mesh.nodes[nodes])
-        gradient = np.einsum("nar,nri->nai", natural, np.linalg.inv(jacobian))
-        return _cauchy(np.einsum("nai,naj->nij", np.asarray(u)[nodes], gradient), self.material)
+        values = np.asarray(u)[self.mesh.elements[points.element]]
+        return _cauchy(np.einsum("nai,naj->nij", values, points.gradient), self.material)
 
     def von_mises_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
         """Return the von Mises stress, shape (n,) [Pa], at material points."""
@@ -89,7 +89,10 @@ class StressRecovery:
         natural = np.empty((len(positions), 3))
         for i, position in enumerate(positions):
             element[i], natural[i] = _invert(self.mesh.element, corners, near[i], position)
-        return MaterialPoints(element=element, natural=natural)
+        along = self.mesh.element.shapes(natural)[1]
+        jacobian = np.einsum("nar,nai->nir", along, corners[element])
+        gradient = np.einsum("nar,nri->nai", along, np.linalg.inv(jacobian))
+        return MaterialPoints(element=element, natural=natural, gradient=gradient)
 
     @cached_property
     def _gradients(self) -> np.ndarray:
