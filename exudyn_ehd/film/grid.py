@@ -200,13 +200,14 @@ def axial_vertices(n_z: int, half_length: float, stretch: float) -> tuple[np.nda
         weight[-3:] *= 23 / 24, 7 / 6, 3 / 8
     else:
         weight[0], weight[-1] = 0.5 * weight[0], 0.5 * weight[-1]
-    return half_length * z, half_length * _exact(z, weight, 4)
+    return half_length * z, half_length * exact_weights(z, weight, 4)
 
 
-def _exact(z: np.ndarray, weight: np.ndarray, power: int) -> np.ndarray:
-    """Weights in [-1, 1] corrected to integrate even powers of z up to this one."""
-    moments = np.array([z**k for k in range(0, power + 1, 2)])
-    missing = np.array([2.0 / (k + 1) for k in range(0, power + 1, 2)]) - moments @ weight
+def exact_weights(z: np.ndarray, weight: np.ndarray, power: int, step: int = 2) -> np.ndarray:
+    """Weights in [-1, 1] corrected to integrate powers of z up to this one, even ones, or all with a ``step`` of 1."""
+    powers = range(0, power + 1, step)
+    moments = np.array([z**k for k in powers])
+    missing = np.array([(1.0 + (-1.0) ** k) / (k + 1) for k in powers]) - moments @ weight
     return weight * (1.0 + moments.T @ np.linalg.solve((moments * weight) @ moments.T, missing))
 
 
@@ -221,7 +222,7 @@ def rows_between(edges: Sequence[float], counts: Sequence[int], stretch: float) 
         half = 0.5 * (edges[k + 1] - edges[k])
         part, part_weight = axial_vertices(count, half, stretch)
         if count in (2, 3):
-            part_weight = half * _exact(part / half, part_weight / half, 2)
+            part_weight = half * exact_weights(part / half, part_weight / half, 2)
         z[first : first + count + 1] = edges[k] + half + part
         weight[first : first + count + 1] += part_weight
         first += count

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from exudyn_ehd.film.grid import rows_between
+from exudyn_ehd.film.grid import exact_weights, rows_between
 from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole, SupplyArea, axial_span
 
 # Intervals of a land, and of a part of one without an area.
@@ -92,8 +92,10 @@ def meeting_rows(
         k = low + int(np.lexsort(order)[0])
         z = np.insert(z, k + 1, 0.5 * (z[k] + z[k + 1]))
         fed = [j + (j > k) for j in fed]
+    z *= 2.0 / length
     ends = np.concatenate(([z[0]], 0.5 * (z[1:] + z[:-1]), [z[-1]]))
-    return z / radius, np.diff(ends) / radius
+    scale = 0.5 * length / radius
+    return scale * z, scale * exact_weights(z, np.diff(ends), 4, step=1)
 
 
 def _taken(lasting: Sequence[float], low: float, high: float, same: float) -> bool:
