@@ -164,6 +164,7 @@ SHARED = {
     "lubricant.lubricant",
     "reynolds.links",
     "solvers.exact",
+    "solvers.edge_flows",
     "solvers.linear",
     "reynolds.stepped_gap",
     "sensitivity.bore_stencil",
