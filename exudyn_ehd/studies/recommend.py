@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
@@ -25,7 +26,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush
-from exudyn_ehd.status import EHDError, FilmError, InputError, require_number, require_vector
+from exudyn_ehd.status import EHDError, FilmError, InputError, PlausibilityWarning, require_number, require_vector
 from exudyn_ehd.studies.film_errors import SCALES, converged, measure_motions, motion_at, scale_of, time_of_sweep
 from exudyn_ehd.tables import format_seconds
 
@@ -341,7 +342,10 @@ def _errors(
 ) -> list[float] | None:
     """Bounds of the errors at every eccentricity; None for a film that the bearing or the place does not allow."""
     try:
-        model = build_model(dataclasses.replace(bearing, **options))
+        with warnings.catch_warnings():
+            # grids too coarse for a profile are tried as well, and their error is measured
+            warnings.simplefilter("ignore", PlausibilityWarning)
+            model = build_model(dataclasses.replace(bearing, **options))
         values = [measure_motions(model, block)[0][quantity] for block in motions]
     except EHDError:
         return None

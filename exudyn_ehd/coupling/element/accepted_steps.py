@@ -108,6 +108,8 @@ class AcceptedSteps:
         Whether one of this package's calls of a solver is under way.
     unseen : int
         Steps in a row that no solver known has taken.
+    tolerance : float or None
+        Newton's absolute tolerance that the run was given, where it is raised for the rounding of meshes.
     tangent : (6, 10) array or None
         Of the film's wrench, as Newton's method of an implicit run has asked for it last.
     """
@@ -132,6 +134,7 @@ class AcceptedSteps:
         self._uses_memory = self._may_starve = self.in_own_run = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
+        self.tolerance: float | None = None
         self._thin = -np.inf
         self._told = True
         self._overloaded, self._cool = False, HOT
@@ -218,7 +221,7 @@ class AcceptedSteps:
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
-        self.tangent = None
+        self.tangent = self.tolerance = None
         self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
         self._cool = HOT
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
@@ -349,7 +352,7 @@ class AcceptedSteps:
             return
         self._told = True
         history = self.history(mbs)
-        tiny_forces.warn(self.film.failures.name, self.solver, self.film.model.bearing, history)
+        tiny_forces.warn(self.film.failures.name, self.solver, self.tolerance, self.film.model.bearing, history)
         if summary.is_on() and history.time.size > 1:
             implicit = solver_state.is_implicit(self.solver)
             summary.tell(self.film.failures.name, self.film.model.bearing, history, in_time=implicit)

@@ -199,6 +199,8 @@ class ForceTolerance:
         if self.given is None:
             self.given, self.relative = newton.absoluteTolerance, newton.relativeTolerance
             self.bushes = _bushes(mbs)
+            for film in self.films:
+                film.steps.tolerance = self.given
         newton.relativeTolerance = self.relative
         # mode 1 measures coordinates
         if newton.residualMode == 0:

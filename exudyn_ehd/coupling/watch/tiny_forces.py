@@ -16,15 +16,18 @@ from exudyn_ehd.coupling.watch.solver_state import Solver
 LOOSE, CLOSE, ROUNDING = 1e-3, 1e-6, 1e-10
 
 
-def warn(name: str, solver: Solver | None, bearing: object, history: JointHistory) -> None:
-    """Warn where a run with Newton's method has left a share of the forces of the joint ``name``."""
+def warn(name: str, solver: Solver | None, given: float | None, bearing: object, history: JointHistory) -> None:
+    """Warn where a run with Newton's method has left a share of the forces of the joint ``name``.
+
+    ``given``: the absolute tolerance that was asked for, where the solver has another one.
+    """
     if not isinstance(solver, exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic):
         return
     if not isinstance(bearing, JournalBearing) or history.time.size < 2:
         return
     newton = solver.newton
     force = float(np.mean(np.linalg.norm(history.force, axis=1)))
-    left = newton.absoluteTolerance / solver.conv.errorCoordinateFactor
+    left = (newton.absoluteTolerance if given is None else given) / solver.conv.errorCoordinateFactor
     unit = bearing.reference_force(float(np.abs(history.motion[:, 8]).max()))
     if newton.residualMode == 0 and ROUNDING * unit < force < left / LOOSE:
         warnings.warn(

@@ -70,7 +70,7 @@ def meeting_rows(
     for edge in sorted(edges):
         k = int(np.argmin(np.abs(z - edge)))
         if abs(z[k] - edge) <= same and not _taken(lasting, edge, edge, same):
-            lasting += [edge - near[k] / 3.0, edge + near[k] / 3.0]
+            lasting += [edge - near[k] / 2.0, edge + near[k] / 2.0]
     rows = [x for x in z if not any(abs(x - edge) <= same for edge in edges)] + lasting
     holes = [area for area in supply if isinstance(area, Hole)]
     for hole in holes:
@@ -84,14 +84,17 @@ def meeting_rows(
     rows = sorted({x for x in rows if abs(x) <= 0.5 * length})
     z = np.array([x for k, x in enumerate(rows) if k == 0 or x - rows[k - 1] > same])
     fed = [k for k, x in enumerate(z) if any(low <= x <= high for low, high in map(axial_span, supply))]
-    while fed[0] < LEAST or z.size - 1 - fed[-1] < LEAST or z.size % 2 == 0:
-        low, high = (0, fed[0]) if fed[0] < LEAST else (fed[-1] if z.size - 1 - fed[-1] < LEAST else 0, z.size - 1)
+    # areas may reach the ends
+    while (few := 0 < fed[0] < LEAST) or 0 < z.size - 1 - fed[-1] < LEAST or z.size % 2 == 0:
+        low, high = (0, fed[0]) if few else (fed[-1] if 0 < z.size - 1 - fed[-1] < LEAST else 0, z.size - 1)
         middles, widths = 0.5 * (z[1:] + z[:-1])[low:high], np.diff(z)[low:high]
         # of several the one nearest to the mid-plane, on the side to which all rows lean
         order = -middles * np.sign(np.round(z.sum() / length, 9)), np.abs(middles), -np.round(widths / length, 9)
         k = low + int(np.lexsort(order)[0])
         z = np.insert(z, k + 1, 0.5 * (z[k] + z[k + 1]))
         fed = [j + (j > k) for j in fed]
+    if z.size == found[0].size and np.allclose(z, radius * found[0], rtol=0.0, atol=same):
+        return found
     z *= 2.0 / length
     ends = np.concatenate(([z[0]], 0.5 * (z[1:] + z[:-1]), [z[-1]]))
     scale = 0.5 * length / radius
