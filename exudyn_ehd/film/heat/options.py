@@ -158,10 +158,10 @@ class FilmEnergy:
     Oil is mixed over the height of supply areas. `SteadyResult.walls` has the ``across`` temperatures, histories the
     surfaces' means.
 
-    Along z, 10, 20 and 40 intervals bring a film with a supply within 0.5, 0.1 and 0.01 % of the converged load. Without supply and
-    with hardly cooled walls, hot oil turns with the journal beside cold oil from the ends, a jump that a grid smears:
-    6, 3 and 1 %. The rise of the hottest place is mostly within 3 % on 10 intervals; in films fed through their ends
-    alone it may be a fifth too low (``tests/joint/heat/test_energy_along_z.py``).
+    Along z, 10, 20 and 40 intervals bring a film with a supply within 0.5, 0.1 and 0.01 % of the converged load.
+    Without supply and with hardly cooled walls, hot oil turns with the journal beside cold oil from the ends, a jump
+    that a grid smears: 6, 3 and 1 %. The rise of the hottest place is mostly within 3 % on 10 intervals; in films fed
+    through their ends alone it may be a fifth too low (``tests/joint/heat/test_energy_along_z.py``).
 
     Heat of compression, some 1.3 K per 10 MPa and reversible, is left out. With a ``density_law`` it counts masses.
 
