@@ -25,6 +25,8 @@ from exudyn_ehd.bearing import Cavitation, JournalBearing, MaximumGap
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.status import EHDError, FilmError, InputError, PlausibilityWarning, require_number, require_vector
 from exudyn_ehd.studies.film_errors import SCALES, converged, measure_motions, motion_at, scale_of, time_of_sweep
@@ -178,7 +180,7 @@ def recommend(
             film=film,
             options=options,
             error=max(errors),
-            seconds=time_of_sweep(build_model(chosen), flat),
+            seconds=time_of_sweep(_model(chosen), flat),
             reason=f"{_words(chosen)} for {place}: the {quantity} within {error:g}",
             evidence=tuple(
                 f"eps {e:.3g}: {100.0 * bound:.2g} %, of it {100.0 * MARGIN * own:.2g} % the reference's own"
@@ -319,7 +321,7 @@ def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]
     options: Options = _with_line(bearing) or {}
     levels = []
     for n, m in LEVELS:
-        model = build_model(dataclasses.replace(bearing, film=FiniteLength(n_theta=n, n_z=m), **options))
+        model = _model(dataclasses.replace(bearing, film=FiniteLength(n_theta=n, n_z=m), **options))
         values = measure_motions(model, motions)[0]
         if float(values["load"].min()) < LEAST_LOAD * bearing.reference_force(motions[0][8]):
             raise FilmError(
@@ -333,6 +335,13 @@ def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]
     return found.value, found.error
 
 
+def _model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
+    """Model on a grid whose error is measured: that it may be coarse for a profile need not be told."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PlausibilityWarning)
+        return build_model(bearing)
+
+
 def _errors(
     bearing: JournalBearing,
     options: Options,
@@ -342,10 +351,7 @@ def _errors(
 ) -> list[float] | None:
     """Bounds of the errors at every eccentricity; None for a film that the bearing or the place does not allow."""
     try:
-        with warnings.catch_warnings():
-            # grids too coarse for a profile are tried as well, and their error is measured
-            warnings.simplefilter("ignore", PlausibilityWarning)
-            model = build_model(dataclasses.replace(bearing, **options))
+        model = _model(dataclasses.replace(bearing, **options))
         values = [measure_motions(model, block)[0][quantity] for block in motions]
     except EHDError:
         return None

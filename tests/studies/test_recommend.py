@@ -30,6 +30,8 @@ def _solid(kind=ehd.ModalBush, **options):
 
 
 @pytest.mark.slow
+# of the films themselves, behind the advice, which warns of none
+@pytest.mark.filterwarnings("ignore:.* it departs from a straight line .*:UserWarning")
 def test_random_bearings():
     """The first 40 of the 200 that its record is about (studies/README.md)."""
     outcomes = [ask(draw(seed)) for seed in range(40)]
@@ -37,6 +39,19 @@ def test_random_bearings():
     assert len(found) >= 0.9 * len(outcomes)
     assert sum(out.true <= out.advice.error for out in found) >= 0.95 * len(found)
     assert np.median([out.advice.error / max(out.true, 1e-12) for out in found]) <= 5.0
+
+
+def test_trials_warn_of_no_grid():
+    """A relief that coarse grids do not see: their error is measured, and no warning leaves (it would be an error)."""
+    relief = ehd.EdgeRelief(drop=2e-6, relief_length=3e-4)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=25e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        profile=relief,
+    )
+    assert ehd.recommend(bearing, 0.05, "load", eccentricity_ratio=0.6, speed=300.0).found
 
 
 @pytest.mark.slow

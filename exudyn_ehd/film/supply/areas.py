@@ -10,7 +10,7 @@ With `SwiftStieber` on the default grid an area in the housing feeds mostly with
 the larger of its flow and the bearing's leakage.
 
 Within the cavity of `ElrodAdams` the band of oil behind an area is as wide as it, unless rows of other areas are in the
-way. Loads of films that live on that oil alone are mostly within 2 % on the default grid, at worst within 12 %, flows
+way. Loads of films that live on that oil alone are mostly within 2 % on the default grid, at worst within 15 %, flows
 within twice that; ``supply resolution`` of the audit measures it.
 """
 

@@ -1,9 +1,10 @@
-"""Prescribed vertices of supply areas, and links that end at an edge between two columns.
+"""Prescribed vertices of supply areas, and links that end at an edge between two columns or two rows.
 
 The link from the first free vertex to the last one inside conducts over the distance d to the edge, H^3 / d in place of
-H^3 / s with the columns' distance s, and integrals take the supply's pressure up to the edge. Where an edge passes a
-vertex, its link becomes infinitely short and it has the supply's pressure on either side: forces and flows are
-continuous. The control volumes stay those of the grid, so that flows balance as without supply.
+H^3 / s with the distance s of the columns or rows, and integrals take the supply's pressure up to an edge between
+columns. Where such an edge passes a vertex, its link becomes infinitely short and it has the supply's pressure on
+either side: forces and flows are continuous. The control volumes stay those of the grid, so that flows balance as
+without supply.
 """
 
 from __future__ import annotations
