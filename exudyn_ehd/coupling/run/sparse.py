@@ -279,7 +279,6 @@ class _Newton:
             if self.factor is None or age >= self.reuse.maximum_iterations:
                 if not self._factorise(solver, mbs, settings):
                     break
-                # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
                 age, renewable = 0, False
             elif not self._renew_rest(solver, mbs, settings):
                 break
@@ -295,13 +294,20 @@ class _Newton:
                 return True
             if iteration == 1 and newton.adaptInitialResidual:
                 first = max(first, error)
-            coupled = self.factor is None or self.factor.coupled
-            for_films = self.matrix.films and (not renewable or (not coupled and iteration <= FILMS_FIRST))
-            if error > self.reuse.contractivity * previous and not for_films:
+            if error > self.reuse.contractivity * previous and not self._slow_for_films(iteration, age, renewable):
                 self.factor = None
         self.factor = None
         self.run.rejected += 1
         return False
+
+    def _slow_for_films(self, iteration: int, age: int, renewable: bool) -> bool:
+        """Whether films are to blame for a slow iteration, whose tangents follow every one, and no old factor."""
+        if not self.matrix.films:
+            return False
+        if self.factor is None or self.factor.coupled:
+            # what holds the meshes may have turned far since
+            return not renewable and age <= FILMS_FIRST // 2
+        return not renewable or iteration <= FILMS_FIRST
 
     def _factorise(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
