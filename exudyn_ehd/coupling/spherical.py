@@ -6,7 +6,7 @@ import dataclasses
 import functools
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import exudyn as exu
 import exudyn.graphics
@@ -25,15 +25,20 @@ from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity, make_row
 from exudyn_ehd.coupling.record.sensors import OUTPUTS, reader
+from exudyn_ehd.coupling.record.spherical import PACK, BallRecord
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
+from exudyn_ehd.joint.step_error import pack_of_ball
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_bool, require_type, require_vector
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.audit.audit import Audit
 
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
@@ -71,16 +76,11 @@ class SphericalFilmElement(FilmElement):
     def __init__(self, model: JointModel, socket: Side, ball: Side, name: str) -> None:
         super().__init__(model, socket, ball, name)
         self.failures = SphericalFailures(name, model.bearing)
+        self.steps.record = BallRecord(model.bearing)
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion's `spherical.ROWS`."""
         return np.ascontiguousarray(trial.found.tangent()[:, spherical.ROWS])
-
-    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        found = super()._derivatives(mbs, trial, tangent)
-        # it is that of another motion than the estimates of step errors know
-        self.steps.tangent = None
-        return found
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film; its motion is place, velocity, angular velocity and 0."""
@@ -88,7 +88,10 @@ class SphericalFilmElement(FilmElement):
             return None
         motion = trial.motion[[0, 1, 2, 4, 5, 6, 8, 9, 10, 3]]
         ratio = float(np.linalg.norm(motion[:3])) / self.model.bearing.radial_clearance
-        return make_row(time, motion, (ratio, ratio), trial.evaluation.wrench, trial.evaluation.quantities())
+        row = make_row(time, motion, (ratio, ratio), trial.evaluation.wrench, trial.evaluation.quantities())
+        if self.steps.tangent is not None:
+            row[PACK] = pack_of_ball(self.steps.tangent)
+        return row
 
     def fields(
         self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
@@ -116,6 +119,9 @@ class SphericalHistory:
         m, Pa.
     power_loss, contact_load : (n,) arrays
         W that turn into heat, N of the wall in ``force``.
+    step_error : (n,) array
+        Estimated error of the ball's place that the time steps have made, over the minimum film thickness; of implicit
+        solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
 
     Examples
     --------
@@ -136,6 +142,7 @@ class SphericalHistory:
     peak_pressure: np.ndarray
     power_loss: np.ndarray
     contact_load: np.ndarray
+    step_error: np.ndarray
 
     def __repr__(self) -> str:
         if not self.time.size:
@@ -155,7 +162,7 @@ def spherical_history(rows: JointHistory) -> SphericalHistory:
         velocity=velocity,
         angular_velocity=spin,
         torque=rows.moment - np.cross(place, rows.force),
-        **{name: getattr(rows, name) for name in ("time", *_QUANTITIES)},
+        **{name: getattr(rows, name) for name in ("time", *_QUANTITIES, "step_error")},
     )
 
 
@@ -235,6 +242,31 @@ class LubricatedSphericalJoint(Joint):
         parts = {"place": motion[PLACE], "velocity": motion[VELOCITY], "angular_velocity": motion[SPIN]}
         return steady_spherical(self.bearing, **parts)
 
+    def audit(self) -> Audit:
+        """Which effects mattered in the accepted steps, and which of them a ball's film leaves out; print it.
+
+        The films at the worst recorded steps are evaluated again, on a model of their own: the joint is not touched.
+        See `exudyn_ehd.joint.spherical.audit`.
+
+        Raises
+        ------
+        InputError
+            Before anything was recorded.
+        """
+        h = self.history
+        if h.time.size == 0:
+            raise InputError(
+                f"LubricatedSphericalJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
+            )
+        # imported here: runs need none of it
+        from exudyn_ehd.joint.spherical.audit import RecordedBall, audit_ball
+
+        motion = np.zeros((h.time.size, SIZE))
+        motion[:, PLACE], motion[:, VELOCITY], motion[:, SPIN] = h.place, h.velocity, h.angular_velocity
+        names = [field.name for field in dataclasses.fields(RecordedBall) if field.name != "motion"]
+        record = RecordedBall(motion=motion, **{name: getattr(h, name) for name in names})
+        return audit_ball(self.bearing, [], record)
+
     def AddSensor(
         self,
         quantity: str | exu.OutputVariableType,
@@ -285,8 +317,8 @@ def CreateLubricatedSphericalJoint(
     Arguments that ``mbs.CreateSphericalJoint`` also has mean the same, so that one call replaces the other; a film
     holds the ball in three directions where the socket reaches beyond its equator (`SphericalBearing`). It is an
     ObjectGenericODE2 without mass on the nodes of the two bodies, with its exact Jacobian. Implicit, explicit and
-    static solvers, `SolveDynamic`, `SaveState` and restarts take it like a `CreateLubricatedJoint`; `StepControl` of a
-    run and `UntilPeriodic` do not.
+    static solvers, `SolveDynamic`, `SaveState` and restarts take it like a `CreateLubricatedJoint`; a `StepControl` of
+    the run too; `UntilPeriodic` does not.
 
     Parameters
     ----------

@@ -11,10 +11,10 @@ of its pose as its damping D = -dF/dr and stiffness K = -dF/dp let it, D de/dt +
 
     e1 = (D + h K)^-1 D (e0 + l),
 
-translations and tilts each by themselves, with the D and K of Newton's last iteration. No film is solved for it. The
-error of the gap is |e| at the end of the journal where it is larger. A liner's deflection w goes into the film by its
-difference quotient, of first order: dw/dt of the parabola through the last three states less (w1 - w0) / h, times h, is
-a step's further error, along the direction of the peak, unless the peak jumps.
+translations and tilts each by themselves (of a ball three translations), with the D and K of Newton's last iteration.
+No film is solved for it. The error of the gap is |e| at the end of the journal where it is larger. A liner's deflection
+w goes into the film by its difference quotient, of first order: dw/dt of the parabola through the last three states
+less (w1 - w0) / h, times h, is a step's further error, along the direction of the peak, unless the peak jumps.
 
 Left out: the first two steps, in which the rates still jump from what the model was given to what its films ask for;
 errors of the motion of the bodies, which films do not feel at once; and those of what films remember (cavities, heat,
@@ -29,6 +29,10 @@ import numpy as np
 
 # Entries of a tangent (6, 10), rows after each other: dF/dp, dF/dr of translations, and of tilts.
 BLOCKS = np.array([[10 * i + j for i in (k, k + 1) for j in (m, m + 1)] for k, m in ((0, 0), (0, 4), (3, 2), (3, 6))])
+# Rows of a tangent and places of the pose that go together.
+JOURNAL, BALL = (([0, 1], [0, 1]), ([3, 4], [2, 3])), (([0, 1, 2], [0, 1, 2]),)
+# Of a symmetric matrix what a ball's row keeps.
+_UPPER = np.triu_indices(3)
 # First state whose error is known.
 FIRST = 3
 # Least gap against which errors count, share of the clearance.
@@ -92,6 +96,50 @@ def errors_behind(
     return out, errors[-1]
 
 
+def pack_of_ball(tangent: np.ndarray) -> np.ndarray:
+    """What a record keeps (15,) of a ball's tangent (3, >= 7) to place, 0 and velocity: K, and D's symmetric part."""
+    damping = -tangent[:3, 4:7]
+    return np.concatenate([-tangent[:3, :3].ravel(), (0.5 * (damping + damping.T))[_UPPER]])
+
+
+def errors_of_ball(
+    time: np.ndarray,
+    place: np.ndarray,
+    velocity: np.ndarray,
+    packed: np.ndarray,
+    minimum_gap: np.ndarray,
+    clearance: float,
+) -> np.ndarray:
+    """Error (n,) of a ball's place over the minimum film thickness, of every accepted state; see `errors_behind`.
+
+    Parameters
+    ----------
+    time : (n,) array
+        s.
+    place, velocity : (n, 3) arrays
+        m, and m/s as the film was told.
+    packed : (n, 15) array
+        `pack_of_ball` of the tangents; nan where there was none: the last one counts.
+    minimum_gap : (n,) array
+        m.
+    clearance : float
+        m.
+    """
+    out = np.full(time.size, np.nan)
+    last = np.maximum.accumulate(np.where(np.isfinite(packed[:, 0]), np.arange(time.size), -1))
+    first = max(FIRST, int(np.count_nonzero(last < 0)))
+    if time.size <= first:
+        return out
+    missed, h = _missed(time, place, velocity), np.diff(time, prepend=time[0])
+    K, D = packed[last, :9].reshape(-1, 3, 3), np.empty((time.size, 3, 3))
+    D[:, _UPPER[0], _UPPER[1]] = D[:, _UPPER[1], _UPPER[0]] = packed[last, 9:]
+    kept, error = _kept_of_ball(K, D, h), np.zeros(3)
+    for k in range(first, time.size):
+        error = kept[k] @ (error + missed[k])
+        out[k] = np.sqrt(error @ error)
+    return out / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance)
+
+
 def next_error(
     time: np.ndarray,
     motion: np.ndarray,
@@ -100,6 +148,8 @@ def next_error(
     length: float,
     largest: float,
     deflection: np.ndarray | None = None,
+    *,
+    ball: bool = False,
 ) -> tuple[np.ndarray, float]:
     """Error of the pose behind a step, and what the step has missed over what it may miss.
 
@@ -120,6 +170,8 @@ def next_error(
         Of the bearing, and error of the gap that is allowed, m.
     deflection : (3, 2) array, optional
         Of a liner, where it is largest, m.
+    ball : bool
+        Whether the pose is a ball's place and a zero.
 
     Returns
     -------
@@ -128,14 +180,17 @@ def next_error(
     missed = _missed(time, motion[:, :4], motion[:, 4:8])[2]
     if deflection is not None:
         missed[:2] -= _lag(time, deflection)[2]
-    blocks, after, used = tangent.take(BLOCKS), np.empty(4), 0.0
-    for k, lever in ((0, 1.0), (2, 0.5 * length)):
-        kept = _kept(-blocks[k : k + 1], -blocks[k + 1 : k + 2], time[2:] - time[1]).reshape(2, 2)
-        after[k : k + 2] = kept @ (before[k : k + 2] + missed[k : k + 2])
+    after, used, h = np.zeros(4), 0.0, np.diff(time)[-1:]
+    for rows, places in BALL if ball else JOURNAL:
+        D, K = (-tangent[rows][:, np.add(places, shift)] for shift in (4, 0))
+        kept = _kept_of_ball(K[None], D[None], h)[0] if ball else _kept(K.reshape(1, 4), D.reshape(1, 4), h)
+        kept = kept.reshape(D.shape)
+        after[places] = kept @ (before[places] + missed[places])
+        lever = 1.0 if rows[0] == 0 else 0.5 * length
         forgotten = 1.0 - float(np.abs(np.linalg.eigvals(kept)).max())
-        left = largest - lever * math.hypot(*before[k : k + 2])
+        left = largest - lever * float(np.linalg.norm(before[places]))
         allowed = max(forgotten * largest, BUDGET * left, SMALLEST_BUDGET * largest)
-        used += lever * math.hypot(*missed[k : k + 2]) / allowed
+        used += lever * float(np.linalg.norm(missed[places])) / allowed
     return after, used
 
 
@@ -172,6 +227,15 @@ def _kept(K: np.ndarray, D: np.ndarray, step: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore", invalid="ignore"):
         out = np.stack((d * p - b * r, d * q - b * s, a * r - c * p, a * s - c * q)) / (a * d - b * c)
     return np.nan_to_num(out.T, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _kept_of_ball(K: np.ndarray, D: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """As `_kept`, of matrices (n, 3, 3)."""
+    a, b, c = np.moveaxis(D + step[:, None, None] * K, 2, 0)
+    turned = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        out = turned @ D / np.sum(a * turned[:, 0], axis=1)[:, None, None]
+    return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
 
 
 def _added(kept: np.ndarray, missed: np.ndarray, before: np.ndarray) -> np.ndarray:

@@ -2,6 +2,9 @@
 
 import dataclasses
 import itertools
+import math
+import re
+import warnings
 
 import exudyn as exu
 import numpy as np
@@ -308,10 +311,55 @@ def test_input_is_checked():
     mbs.Assemble()
     with pytest.raises(ehd.InputError, match="assembled already"):
         create(mbs, "b", [ground, body], [0, 0, 0], BALL)
-    settings = scenes.settings(0.01, 10)
-    for options in ({"stepControl": ehd.StepControl(error=0.02)}, {"until_periodic": ehd.UntilPeriodic(period=0.002)}):
-        with pytest.raises(ehd.InputError, match="joint 'ball' holds a ball"):
-            ehd.SolveDynamic(mbs, settings, **options)
+    with pytest.raises(ehd.InputError, match="joint 'ball' holds a ball"):
+        ehd.SolveDynamic(mbs, scenes.settings(0.01, 10), until_periodic=ehd.UntilPeriodic(period=0.002))
+    with pytest.raises(ehd.InputError, match=r"LubricatedSphericalJoint.audit: joint 'ball' has no accepted steps"):
+        pendulum()[1].audit()
+
+
+BELT = {"socket_angles": (0.7, math.pi - 0.7)}
+
+
+def swung(viscosity, steps, **options):
+    """A belt's pendulum, of which the film carries the arm across the belt's axis and along it."""
+    mbs, joint, _ = pendulum(dataclasses.replace(BALL, lubricant=ehd.Lubricant(viscosity=viscosity), **BELT))
+    run(mbs, 0.3, steps, **options)
+    return joint
+
+
+def step_error(history, fine):
+    """True error of the ball's place behind the first steps, over the film thickness."""
+    place = np.column_stack([np.interp(history.time, fine.time, fine.place[:, k]) for k in range(3)])
+    return (np.linalg.norm(history.place - place, axis=1) / history.minimum_gap)[3:].max()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("viscosity", [0.02, 0.006])
+def test_errors_of_the_steps(viscosity):
+    """Against a run of tiny steps; bodies make errors of their own, which are not told."""
+    fine = swung(viscosity, 3200).history
+    for steps in (60, 80, 100):
+        h = swung(viscosity, steps).history
+        true = step_error(h, fine)
+        assert true > 0.05 and 0.6 < np.nanmax(h.step_error) / true < 1.4
+    joint = swung(viscosity, 100, stepControl=ehd.StepControl(error=0.02))
+    assert step_error(joint.history, fine) < 0.02
+    # what fixed steps need for it
+    assert joint.element.evaluations < 2.2 * swung(viscosity, 140).element.evaluations
+
+
+def test_the_audit_of_a_run():
+    """What the record tells: coarse steps by the number that would do, and the worst films."""
+    joint = swung(0.006, 80)
+    audit = joint.audit()
+    found = audit["time step"]
+    assert found.matters and found.value == pytest.approx(np.nanmax(joint.history.step_error))
+    steps = int(re.search(r"take (\d+) steps in all", found.advice)[1])
+    assert 120 <= steps <= 400
+    better = swung(0.006, steps)
+    assert not better.audit()["time step"].matters
+    assert audit["piezoviscosity"].value == pytest.approx(2e-8 * joint.history.peak_pressure.max(), rel=1e-6)
+    assert audit["squeeze"].matters and audit["contact"].on
 
 
 @pytest.mark.parametrize("velocity", [(0.0, 0.0, -0.01), (0.01, 0.0, 0.0)])
@@ -328,3 +376,21 @@ def test_newtons_method_comes_back_from_behind_the_end_of_a_pressure_law(velocit
     joint = ehd.CreateLubricatedSphericalJoint(mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], ball, axis=[0, 0, -1])
     assert run(mbs, 1e-3, 20)
     assert joint.history.time.size >= 21 and np.all(np.isfinite(joint.history.force))
+
+
+def test_forces_below_newtons_tolerance_are_told():
+    """An arm of a grain's weight on thin oil; with the tolerance that the warning names there is none."""
+    told = []
+    for options in ({}, {"absoluteTolerance": 1e-14}):
+        mbs = scenes.new_system()
+        arm = mbs.CreateRigidBody(
+            inertia=InertiaCuboid(1e-8, [0.05] * 3), gravity=[0, 0, -9.81], initialAngularVelocity=[5.0, 0, 0]
+        )
+        gas = dataclasses.replace(BALL, lubricant=ehd.Lubricant(viscosity=1e-6))
+        ehd.CreateLubricatedSphericalJoint(mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], gas)
+        mbs.Assemble()
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            ehd.SolveDynamic(mbs, ehd.ConfigureSolver(scenes.settings(1e-4, 10), **options))
+        told.append([str(w.message) for w in found if "absolute tolerance lets" in str(w.message)])
+    assert len(told[0]) == 1 and not told[1], told

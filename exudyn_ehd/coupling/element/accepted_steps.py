@@ -291,9 +291,9 @@ class AcceptedSteps:
             return
         self._warn_of_film(start, trial, row)
         if self._ringing is not None:
-            x, y = trial.found.wrench[:2].tolist()
+            force = trial.found.wrench[: failures.axes].tolist()
             rang = self._ringing.rings
-            if self._ringing.take(start, x, y) and not rang:
+            if self._ringing.take(start, *force) and not rang:
                 ringing.warn(failures.name, self._ringing, starts_well=self.in_own_run)
             if self._ringing.throws:
                 raise failures.thrown(start, trial, *self._ringing.worst)

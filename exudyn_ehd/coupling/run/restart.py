@@ -132,12 +132,11 @@ class SystemState:
 
 
 def judged(joints: Sequence[Joint]) -> Sequence[Joint]:
-    """Joints by whose films steps or orbits can be judged; `InputError` if a record does not tell them."""
+    """Joints by whose films orbits can be judged; `InputError` if a record does not tell them."""
     for joint in joints:
         if joint.element.kinematics is not relative:
             raise InputError(
-                f"SolveDynamic: joint '{joint.name}' holds a ball, whose record has neither estimates of step errors "
-                "nor orbits; leave out stepControl and until_periodic, or give the joint a stepControl of its own."
+                f"SolveDynamic: joint '{joint.name}' holds a ball, whose record has no orbit; leave out until_periodic."
             )
     return joints
 

@@ -364,7 +364,7 @@ def step_control(
             f"{where}.stepControl needs an implicit solver and timeIntegration.adaptiveStep=True, with which Exudyn "
             "can repeat steps; ConfigureSolver(simulationSettings) sets it."
         )
-    return steps_by_error(mbs, settings, [joint.element for joint in judged(joints_of(mbs))], control.error)
+    return steps_by_error(mbs, settings, [joint.element for joint in joints_of(mbs)], control.error)
 
 
 @contextmanager

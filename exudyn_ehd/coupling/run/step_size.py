@@ -71,8 +71,9 @@ class _Joint:
         times, motions, deflections = map(np.array, zip(*self.states, self.now, strict=True))
         gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
         deflection = deflections if self.lags else None
+        allowed, ball = CANCELLED * self.error * gap, self.film.failures.axes == 3
         self.after, used = next_error(
-            times, motions, tangent, self.before, bearing.length, CANCELLED * self.error * gap, deflection
+            times, motions, tangent, self.before, bearing.length, allowed, deflection, ball=ball
         )
         return used
 

@@ -23,12 +23,15 @@ def warn(name: str, solver: Solver | None, given: float | None, bearing: object,
     """
     if not isinstance(solver, exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic):
         return
-    if not isinstance(bearing, JournalBearing) or history.time.size < 2:
+    reference_force = getattr(bearing, "reference_force", None)
+    if reference_force is None or history.time.size < 2:
         return
     newton = solver.newton
     force = float(np.mean(np.linalg.norm(history.force, axis=1)))
     left = (newton.absoluteTolerance if given is None else given) / solver.conv.errorCoordinateFactor
-    unit = bearing.reference_force(float(np.abs(history.motion[:, 8]).max()))
+    # of a ball the angular velocity is there in three parts
+    spin = history.motion[:, 8:9] if isinstance(bearing, JournalBearing) else history.motion[:, 6:9]
+    unit = reference_force(float(np.linalg.norm(spin, axis=1).max()))
     if newton.residualMode == 0 and ROUNDING * unit < force < left / LOOSE:
         warnings.warn(
             f"LubricatedJoint '{name}': its film carries {force:.2g} N in the mean, of which Newton's absolute "

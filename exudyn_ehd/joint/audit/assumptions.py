@@ -151,7 +151,7 @@ def ringing(case: Case) -> Finding | None:
     record, b = case.record, case.bearing
     if record is None:
         return None
-    watch = watched(record.time, record.force, 2.0 * b.journal_radius * b.length)
+    watch = watched(record.time, record.force[:, :2], 2.0 * b.journal_radius * b.length)
     when = (
         ""
         if watch.most == 0

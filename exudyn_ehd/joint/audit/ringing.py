@@ -74,8 +74,8 @@ class RingingWatch:
         self.most, self.rings = 0, False
         self.first = self.last = math.nan
         # time and force of the last steps; d with its size; sizes before those
-        self._states: deque[tuple[float, float, float]] = deque(maxlen=4)
-        self._bends: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)] * 3, maxlen=3)
+        self._states: deque[tuple[float, float, float, float]] = deque(maxlen=4)
+        self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 3, maxlen=3)
         self._earlier: deque[float] = deque([0.0] * 5, maxlen=5)
         self._bursts: deque[int] = deque()
         self._throws: deque[int] = deque([-WINDOW] * MOST_THROWS, maxlen=MOST_THROWS)
@@ -83,15 +83,15 @@ class RingingWatch:
         self._step = self._zigzags = 0
         self._largest = self._strength = 0.0
 
-    def take(self, time: float, x: float, y: float) -> bool:
+    def take(self, time: float, x: float, y: float, z: float = 0.0) -> bool:
         """Take an accepted step.
 
         Parameters
         ----------
         time : float
             s; not after the last one begins anew.
-        x, y : float
-            Force, N.
+        x, y, z : float
+            Force, N; z of a ball.
 
         Returns
         -------
@@ -102,19 +102,19 @@ class RingingWatch:
         if states and not time > states[-1][0]:
             self.begin_anew()
             states = self._states
-        states.append((time, x, y))
+        states.append((time, x, y, z))
         self._step += 1
-        self._largest = max(math.hypot(x, y), FADING * self._largest)
+        self._largest = max(math.hypot(x, y, z), FADING * self._largest)
         if len(states) < 3:
             return False
-        (t_2, x_2, y_2), (t_1, x_1, y_1) = states[-3], states[-2]
+        (t_2, x_2, y_2, z_2), (t_1, x_1, y_1, z_1) = states[-3], states[-2]
         share = (t_1 - t_2) / (time - t_2)
-        dx, dy = x_1 - x_2 - share * (x - x_2), y_1 - y_2 - share * (y - y_2)
-        self._earlier.append(self._bends[0][2])
-        self._bends.append((dx, dy, math.hypot(dx, dy)))
-        force = math.hypot(x_1, y_1)
+        dx, dy, dz = x_1 - x_2 - share * (x - x_2), y_1 - y_2 - share * (y - y_2), z_1 - z_2 - share * (z - z_2)
+        self._earlier.append(self._bends[0][3])
+        self._bends.append((dx, dy, dz, math.hypot(dx, dy, dz)))
+        force = math.hypot(x_1, y_1, z_1)
         if force > self.heavy and force > STRONG_SHARE * self._largest:
-            mean = math.hypot(x_1 - 0.5 * dx, y_1 - 0.5 * dy)
+            mean = math.hypot(x_1 - 0.5 * dx, y_1 - 0.5 * dy, z_1 - 0.5 * dz)
             if force > PROPORTION * mean:
                 self._throws.append(self._step)
                 self.worst = max(self.worst, (force, mean))
@@ -124,18 +124,18 @@ class RingingWatch:
         return self._is_burst() and self._count(t_1)
 
     def _zigzag(self) -> bool:
-        (ax, ay, a), (bx, by, b), (cx, cy, c) = self._bends
+        (ax, ay, az, a), (bx, by, bz, b), (cx, cy, cz, c) = self._bends
         if not (b > max(self.smallest, LARGEST_SHARE * self._largest) and a > EVEN * b and c > EVEN * b):
             return False
-        if ax * bx + ay * by > OPPOSITE * a * b or bx * cx + by * cy > OPPOSITE * b * c:
+        if ax * bx + ay * by + az * bz > OPPOSITE * a * b or bx * cx + by * cy + bz * cz > OPPOSITE * b * c:
             return False
-        force = sum(math.hypot(x, y) for _, x, y in list(self._states)[:3]) / 3.0
+        force = sum(math.hypot(x, y, z) for _, x, y, z in list(self._states)[:3]) / 3.0
         return b > LOCAL_SHARE * force
 
     def _is_burst(self) -> bool:
         if self._bursts and self._step - self._bursts[-1] < APART:
             return False
-        strength = max(bend[2] for bend in self._bends)
+        strength = max(bend[3] for bend in self._bends)
         lasting = self._zigzags >= LASTING and strength > KEPT * self._strength
         if not (lasting or strength > STRONGER * max(self._earlier)):
             return False
@@ -161,10 +161,10 @@ class RingingWatch:
 
 
 def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:
-    """A watch that has seen a record: times (n,) in s and forces (n, >= 2) in N on an area in m2."""
+    """A watch that has seen a record: times (n,) in s and forces (n, 2) or (n, 3) in N on an area in m2."""
     watch = RingingWatch(area)
-    for t, (x, y) in zip(time.tolist(), force[:, :2].tolist(), strict=True):
-        watch.take(t, x, y)
+    for t, parts in zip(time.tolist(), force.tolist(), strict=True):
+        watch.take(t, *parts)
     return watch
 
 

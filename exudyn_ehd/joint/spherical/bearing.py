@@ -71,7 +71,7 @@ class SphericalBearing:
     contact: RegularisedWall | None = None
 
     # what a joint's watches ask of every bearing
-    bush = yielding = thermal = asperity = roughness = wear = None
+    bush = yielding = thermal = asperity = roughness = wear = film = turbulence = None
     profiles = supply = ()
     levers = (1.0, 1.0, 1.0, 0.0)
 
@@ -127,3 +127,8 @@ class SphericalBearing:
     def length(self) -> float:
         """Length of a journal of the same radius and projected area, pi R / 2, m."""
         return 0.5 * math.pi * self.ball_radius
+
+    def reference_force(self, speed: float) -> float:
+        """Of a journal of that length, L D mu |omega| / psi^2, N; ``speed`` in rad/s."""
+        psi = self.radial_clearance / self.ball_radius
+        return 2.0 * self.ball_radius * self.length * self.lubricant.viscosity * abs(speed) / psi**2

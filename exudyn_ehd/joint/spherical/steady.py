@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
+    from exudyn_ehd.joint.audit.audit import Audit
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SphericalResult:
@@ -42,6 +44,8 @@ class SphericalResult:
     power_loss, contact_load : float
         W that turn into heat, N of the wall in ``force``.
     bearing : SphericalBearing
+    motion : (11,) array
+        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.model`.
 
     Examples
     --------
@@ -64,11 +68,19 @@ class SphericalResult:
     power_loss: float
     contact_load: float
     bearing: SphericalBearing = field(repr=False)
+    motion: np.ndarray = field(repr=False)
 
     def __repr__(self) -> str:
         load, gap = shown("force", float(np.linalg.norm(self.force))), shown("length", self.minimum_gap)
         peak, loss = shown("pressure", self.peak_pressure), shown("power", self.power_loss)
         return f"<SphericalResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
+
+    def audit(self) -> Audit:
+        """Which effects matter in this film, and which of them it leaves out; print it for a table."""
+        # imported here: films need none of it
+        from exudyn_ehd.joint.spherical.audit import audit_ball
+
+        return audit_ball(self.bearing, [self.motion])
 
     def plot_pressure(self, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
         """The pressure on the socket, seen along its axis; colatitudes in degrees outwards. See `FilmPictures`."""
@@ -149,4 +161,5 @@ def steady_spherical(
         power_loss=quantities["power_loss"],
         contact_load=quantities["contact_load"],
         bearing=bearing,
+        motion=motion,
     )

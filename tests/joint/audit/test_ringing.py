@@ -73,3 +73,13 @@ def test_a_time_that_steps_back_begins_anew():
     y = 1000.0 * (1.0 + 0.5 * SIGN)
     t = np.concatenate((K[:290] * 1e-4, K[:10] * 1e-4))
     assert bursts(y[:290]) >= LIMIT and bursts(y, t) <= 1
+
+
+def test_balls_ring_in_any_direction():
+    """As along y, for forces turned into any direction."""
+    rng, y = np.random.default_rng(3), 1000.0 * (1.0 + 0.5 * SIGN)
+    t = 1e-4 * K
+    for _ in range(5):
+        way = rng.normal(size=3)
+        force = np.outer(y, way / np.linalg.norm(way))
+        assert watched(t, force, AREA).most == bursts(y)
