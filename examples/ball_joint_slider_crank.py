@@ -185,6 +185,8 @@ def main(
         }
     for key, value in rows.items():
         print(f"{key:35s}{value:12.4g}")
+    for joint in mechanism.joints:
+        print(f"{joint.name}: {joint.audit()!r}")
     if output is not None:
         folder = pathlib.Path(output)
         folder.mkdir(parents=True, exist_ok=True)

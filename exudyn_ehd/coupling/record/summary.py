@@ -89,7 +89,7 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
             f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {time[k]:.6g} s: take "
             f"{enough_steps(time, h.motion[:, 8], h.step_error, h.step_count)}"
         )
-    doubts = worth_an_audit(bearing, history) if isinstance(bearing, JournalBearing) else []
+    doubts = worth_an_audit(bearing, history) if hasattr(bearing, "reference_force") else []
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
 
 
@@ -99,12 +99,18 @@ def _halved(time: np.ndarray) -> int:
     return int(np.sum(steps < HALVED * steps.max())) if steps.size else 0
 
 
+def spins(bearing: object, history: JointHistory) -> np.ndarray:
+    """Size (n,) of the relative spin, rad/s; a ball's rows have its angular velocity in three parts."""
+    parts = slice(8, 9) if isinstance(bearing, JournalBearing) else slice(6, 9)
+    return np.asarray(np.linalg.norm(history.motion[:, parts], axis=1))
+
+
 def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
     """Effects that the record alone shows to matter, and that the bearing leaves out."""
-    b, h = bearing, history
+    b, h, spin = bearing, history, spins(bearing, history)
     thinnest, highest = float(np.nanmin(h.minimum_gap)), float(np.nanmax(h.peak_pressure, initial=0.0))
-    speed = float(np.max(np.abs(h.motion[:, 8]))) * b.journal_radius
-    couette = 0.5 * float(np.mean(np.abs(h.motion[:, 8]))) * b.journal_radius * b.radial_clearance * b.length
+    speed = float(np.max(spin)) * b.journal_radius
+    couette = 0.5 * float(np.mean(spin)) * b.journal_radius * b.radial_clearance * b.length
     flow = max(float(np.nanmean(h.leakage)) if np.any(np.isfinite(h.leakage)) else 0.0, couette)
     heat = b.lubricant.density * b.lubricant.specific_heat * flow
     rise = float(np.nanmean(h.power_loss)) / heat if heat > 0.0 else 0.0

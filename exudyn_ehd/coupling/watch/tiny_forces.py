@@ -7,8 +7,8 @@ import warnings
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.record.summary import spins
 from exudyn_ehd.coupling.watch.solver_state import Solver
 
 # Tolerance over the mean force of a run from which on it is told, one to take, and the force that is rounding, as a
@@ -29,9 +29,7 @@ def warn(name: str, solver: Solver | None, given: float | None, bearing: object,
     newton = solver.newton
     force = float(np.mean(np.linalg.norm(history.force, axis=1)))
     left = (newton.absoluteTolerance if given is None else given) / solver.conv.errorCoordinateFactor
-    # of a ball the angular velocity is there in three parts
-    spin = history.motion[:, 8:9] if isinstance(bearing, JournalBearing) else history.motion[:, 6:9]
-    unit = reference_force(float(np.linalg.norm(spin, axis=1).max()))
+    unit = reference_force(float(spins(bearing, history).max()))
     if newton.residualMode == 0 and ROUNDING * unit < force < left / LOOSE:
         warnings.warn(
             f"LubricatedJoint '{name}': its film carries {force:.2g} N in the mean, of which Newton's absolute "
