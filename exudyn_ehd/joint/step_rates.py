@@ -80,7 +80,7 @@ class StepStart:
     @functools.cached_property
     def _largest(self) -> float:
         """Of the places; journals have two places and two slopes, balls, whose motion is odd, three places."""
-        return float(np.abs(self._expected[: 2 + self.motion.size % 2]).max())
+        return max(map(abs, self._expected[: 2 + self.motion.size % 2].tolist()))
 
     def film_motion(self, motion: np.ndarray, time: float) -> np.ndarray:
         """Motion (10 + 2 k,) as given for the end of the step, with the rates that the film takes."""
@@ -97,8 +97,10 @@ class StepStart:
 
 
 @functools.cache
-def _places(k: int) -> tuple[np.ndarray, np.ndarray]:
+def _places(k: int) -> tuple[slice, slice] | tuple[np.ndarray, np.ndarray]:
     """Where a motion with k bore coordinates holds places and their rates, (4 + k,) each."""
+    if k == 0:
+        return slice(4), _RATES
     return np.r_[:4, _BORE : _BORE + k], np.r_[4:8, _BORE + k : _BORE + 2 * k]
 
 
@@ -121,9 +123,10 @@ def next_start(before: StepStart | None, motion: np.ndarray, time: float, cleara
         return StepStart(time, motion, 0.0, np.empty((0, 4 + k)), clearance)
     if before.time == time:
         return dataclasses.replace(before, motion=motion)
-    step = time - before.time
-    change, mean = (motion - before.motion) / step, 0.5 * (motion + before.motion)
+    step, old = time - before.time, before.motion
     place, rate = _places(k)
     known = before.misses[:2] if step <= LARGEST_GROWTH * before.step else before.misses[:0]
-    misses = np.vstack(((change[place] - mean[rate]) / step**2, known))
+    misses = np.empty((1 + len(known), 4 + k))
+    misses[0] = ((motion[place] - old[place]) / step - 0.5 * (motion[rate] + old[rate])) / step**2
+    misses[1:] = known
     return StepStart(time, motion, step, misses, clearance)

@@ -110,6 +110,8 @@ class AcceptedSteps:
         Steps in a row that no solver known has taken.
     tolerance : float or None
         Newton's absolute tolerance that the run was given, where it is raised for the rounding of meshes.
+    chosen : bool
+        Whether the run under way chooses the size of its steps.
     tangent : (6, 10) array or None
         Of the film's wrench, as Newton's method of an implicit run has asked for it last.
     """
@@ -131,7 +133,7 @@ class AcceptedSteps:
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
         self._turning: TurnWatch | None = None
-        self._uses_memory = self._may_starve = self.in_own_run = False
+        self._uses_memory = self._may_starve = self.in_own_run = self.chosen = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
         self.tolerance: float | None = None
@@ -354,8 +356,8 @@ class AcceptedSteps:
         history = self.history(mbs)
         tiny_forces.warn(self.film.failures.name, self.solver, self.tolerance, self.film.model.bearing, history)
         if summary.is_on() and history.time.size > 1:
-            implicit = solver_state.is_implicit(self.solver)
-            summary.tell(self.film.failures.name, self.film.model.bearing, history, in_time=implicit)
+            even = solver_state.is_implicit(self.solver) and not self.chosen
+            summary.tell(self.film.failures.name, self.film.model.bearing, history, even=even)
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the end of the run or the current state if that is later than the last step.

@@ -101,10 +101,11 @@ class Failures:
         """The state of an accepted step is none of a bearing; None if it is one."""
         if message := seized(getattr(getattr(trial.evaluation, "film", None), "walls", None)):
             return self._at(time, message)
-        if self._pressure(row) > self._bearable:
+        pressure = self._pressure(row)
+        if pressure > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
         on_faces = None if getattr(self.bearing, "thrust", None) is None else self._absurd_faces(time, row)
-        return on_faces or self._beyond_limit(time, row, trial) or self._pressed_through(time, trial)
+        return on_faces or self._beyond_limit(time, row, trial, pressure) or self._pressed_through(time, trial)
 
     def _absurd_faces(self, time: float, row: np.ndarray) -> FilmError | None:
         """A collar pressed through its contact by more than any explains, or with what no steel bears."""
@@ -160,9 +161,11 @@ class Failures:
             "is halved.",
         )
 
-    def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
+    def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial, peak: float) -> FilmError | None:
         """The film of an accepted step exceeds what the user allows; None if it does not."""
-        force, peak = float(np.linalg.norm(row[FORCE])), self._pressure(row)
+        if self.largest_force == math.inf and not peak > self.largest_pressure:
+            return None
+        force = float(np.linalg.norm(row[FORCE]))
         if not (force > self.largest_force or peak > self.largest_pressure):
             return None
         return self._at(

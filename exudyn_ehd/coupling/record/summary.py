@@ -51,7 +51,7 @@ def without_lines() -> Iterator[None]:
         LOGGER.setLevel(level)
 
 
-def tell(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: bool) -> None:
+def tell(name: str, bearing: JournalBearing, history: JointHistory, *, even: bool) -> None:
     """Log the line of a joint whose run has ended.
 
     Parameters
@@ -61,13 +61,13 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
     bearing : JournalBearing
     history : JointHistory
         With one step or more.
-    in_time : bool
-        Whether the run has steps in time, which differ in size only where they were halved.
+    even : bool
+        Whether the run has steps in time that differ in size only where they were halved.
     """
-    LOGGER.info("%s", line(name, bearing, history, in_time=in_time))
+    LOGGER.info("%s", line(name, bearing, history, even=even))
 
 
-def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: bool) -> str:
+def line(name: str, bearing: JournalBearing, history: JointHistory, *, even: bool) -> str:
     """The line that `tell` logs."""
     h, time = history, history.time
     text = f"LubricatedJoint '{name}', {h.step_count[-1]} steps to t = {time[-1]:.6g} s"
@@ -80,7 +80,7 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
             k = int(worst(values))
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
     # a thinned record does not know the size of every step
-    halved = _halved(time) if in_time and not h.is_thinned else 0
+    halved = _halved(time) if even and not h.is_thinned else 0
     text += f", {halved} halved steps" if halved else ""
     error = float(np.nanmax(h.step_error, initial=0.0))
     if error > LIMITS["time step"].value:

@@ -187,6 +187,10 @@ def steps_by_error(
         hooked(mbs, "PostStep", lambda own: partial(control.choose, own)),
     ):
         try:
+            for film in films:
+                film.steps.chosen = True
             yield
         finally:
+            for film in films:
+                film.steps.chosen = False
             run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = kept

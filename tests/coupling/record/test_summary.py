@@ -74,6 +74,14 @@ def test_a_run_by_exudyn_itself_says_it_when_the_history_is_read_first(lines):
     assert len(lines) == 1
 
 
+def test_steps_that_a_run_chooses_are_not_halved(lines):
+    mbs, joint = scene()
+    ehd.SolveDynamic(mbs, ehd.ConfigureSolver(scenes.settings(0.02, 100)), stepControl=ehd.StepControl(error=0.02))
+    assert np.ptp(np.diff(joint.history.time)) > 1e-4
+    assert len(lines) == 1 and "halved" not in "".join(lines)
+    assert not joint.element.steps.chosen
+
+
 def test_halved_steps_are_counted_and_the_last_one_is_not():
     steps = np.array([1.0, 1.0, 0.5, 0.25, 0.25, 1.0, 0.3])
     assert summary._halved(np.concatenate(([0.0], np.cumsum(steps)))) == 3
@@ -132,7 +140,7 @@ def test_steps_that_are_too_coarse_are_named(lines):
     coarse.step_error[40] = 0.08
     needed = enough_steps(coarse.time, coarse.motion[:, 8], coarse.step_error)
     said = f"error of the time steps 8 % of the minimum film thickness at {history.time[40]:.6g} s: take {needed}"
-    assert said in summary.line("bearing", joint.bearing, coarse, in_time=True)
+    assert said in summary.line("bearing", joint.bearing, coarse, even=True)
 
 
 @pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])
