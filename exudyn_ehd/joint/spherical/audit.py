@@ -22,17 +22,15 @@ from exudyn_ehd.joint.audit.assumptions import SURELY_FINE
 from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, finding, judged
+from exudyn_ehd.joint.audit.oil import piezoviscosity
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
 from exudyn_ehd.joint.audit.samples import TENSION, intervals_at_half
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
-    TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_ROUGHNESS,
     TYPICAL_SHEAR_ONSET,
     TYPICAL_TEMPERATURE_COEFFICIENT,
     Switch,
-    isoviscous,
-    piezoviscous,
     swift_stieber,
 )
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
@@ -198,20 +196,7 @@ def _surfaces(case: _BallCase) -> list[Finding]:
 
 def _oil(case: _BallCase) -> list[Finding]:
     b, record = case.bearing, case.record
-    oil, law = b.lubricant, b.lubricant.pressure_law
-    alpha = TYPICAL_PRESSURE_COEFFICIENT if law is None else law.coefficient
-    rows = [
-        judged(
-            cast(Case, case),
-            "piezoviscosity",
-            f"alpha p_max, alpha = {alpha:g} 1/Pa",
-            alpha * case.largest("peak_pressure"),
-            law is not None,
-            piezoviscous if law is None else isoviscous,
-            mattering="give the lubricant pressure_law=RoelandsPressure(coefficient=...).",
-            needless="pressures are low: pressure_law=None.",
-        )
-    ]
+    oil, rows = b.lubricant, [piezoviscosity(cast(Case, case))]
     heat = [(s.power_loss, s.flow) for s in case.samples]
     if record is not None:
         slide = b.ball_radius * np.linalg.norm(record.motion[:, SPIN], axis=1)
