@@ -13,7 +13,7 @@ from exudyn_ehd.coupling.watch.solver_state import Solver
 
 # Tolerance over the mean force of a run from which on it is told, one to take, and the force that is rounding, as a
 # share of the film's unit.
-LOOSE, CLOSE, ROUNDING = 1e-3, 1e-6, 1e-10
+LOOSE, CLOSE, ROUNDING = 1e-3, 1e-6, 1e-8
 
 
 def warn(name: str, solver: Solver | None, given: float | None, bearing: object, history: JointHistory) -> None:
