@@ -15,6 +15,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.joint.audit.findings import LIMITS
+from exudyn_ehd.joint.audit.samples import time_mean
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_ROUGHNESS,
@@ -110,10 +111,10 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
     b, h, spin = bearing, history, spins(bearing, history)
     thinnest, highest = float(np.nanmin(h.minimum_gap)), float(np.nanmax(h.peak_pressure, initial=0.0))
     speed = float(np.max(spin)) * b.journal_radius
-    couette = 0.5 * float(np.mean(spin)) * b.journal_radius * b.radial_clearance * b.length
-    flow = max(float(np.nanmean(h.leakage)) if np.any(np.isfinite(h.leakage)) else 0.0, couette)
+    couette = 0.5 * time_mean(h.time, spin) * b.journal_radius * b.radial_clearance * b.length
+    flow = float(np.fmax(time_mean(h.time, h.leakage), couette))
     heat = b.lubricant.density * b.lubricant.specific_heat * flow
-    rise = float(np.nanmean(h.power_loss)) / heat if heat > 0.0 else 0.0
+    rise = time_mean(h.time, h.power_loss) / heat if heat > 0.0 else 0.0
     rough = not (b.asperity is None and b.contact is None and b.roughness is None)
     found = {
         "elasticity": b.bush is None and highest * b.journal_radius / STEEL > LIMITS["elasticity"].value * thinnest,

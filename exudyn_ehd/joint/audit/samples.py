@@ -97,6 +97,14 @@ class FilmState:
         return model.evaluate(self.motion, self.history, self.step, self.spin)
 
 
+def time_mean(time: np.ndarray, values: np.ndarray) -> float:
+    """Mean over time of what is known of values (n,), whatever the sizes of the steps; nan of none."""
+    known = np.isfinite(values)
+    time, values = time[known], values[known]
+    span = float(np.ptp(time)) if time.size else 0.0
+    return float(np.trapezoid(values, time)) / span if span > 0.0 else float(values[-1]) if values.size else math.nan
+
+
 def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmState]:
     """The worst states of a record, with the histories that its last steps lead to (a worn depth starts at zero).
 
