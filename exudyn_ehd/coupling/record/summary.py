@@ -52,7 +52,7 @@ def without_lines() -> Iterator[None]:
         LOGGER.setLevel(level)
 
 
-def tell(name: str, bearing: JournalBearing, history: JointHistory, *, even: bool) -> None:
+def tell(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> None:
     """Log the line of a joint whose run has ended.
 
     Parameters
@@ -62,13 +62,13 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, even: boo
     bearing : JournalBearing
     history : JointHistory
         With one step or more.
-    even : bool
-        Whether the run has steps in time that differ in size only where they were halved.
+    since : float, optional
+        Start of the run, s, if it has steps in time that differ in size only where they were halved.
     """
-    LOGGER.info("%s", line(name, bearing, history, even=even))
+    LOGGER.info("%s", line(name, bearing, history, since=since))
 
 
-def line(name: str, bearing: JournalBearing, history: JointHistory, *, even: bool) -> str:
+def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> str:
     """The line that `tell` logs."""
     h, time = history, history.time
     text = f"LubricatedJoint '{name}', {h.step_count[-1]} steps to t = {time[-1]:.6g} s"
@@ -81,7 +81,7 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, even: boo
             k = int(worst(values))
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
     # a thinned record does not know the size of every step
-    halved = _halved(time) if even and not h.is_thinned else 0
+    halved = 0 if since is None or h.is_thinned else _halved(time[time >= since])
     text += f", {halved} halved steps" if halved else ""
     error = float(np.nanmax(h.step_error, initial=0.0))
     if error > LIMITS["time step"].value:
