@@ -17,8 +17,9 @@ from exudyn_ehd.joint.static.steady import require_oil
 from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible, require_type
 
 LARGEST_HALVINGS = 8
-# Share of a speed from which on the next one has none in between, and change of temperature, K, that asks for one.
-NEXT, LEAP = 0.9, 10.0
+# Share of a speed from which on the next one has none in between, and change of temperature, K, that asks for one: a
+# tenth of the viscosity.
+NEXT, LEAP = 0.9, 3.0
 # Speed by which boundary friction would pass through rest, as a share of the slowest sliding.
 NO_TRANSITION = 1e-9
 
