@@ -164,15 +164,19 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
 def _follow(search: LoadSearch, before: Carried | None, motion: np.ndarray, last: float, speed: float) -> Carried:
     """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where it is not found.
 
-    So too where its temperature leaps: the branch may end on the way, or the search have left it.
+    So too where its temperature leaps: the branch may end on the way, or the search have left it. Where no way leads
+    on, the branch has ended, and the leap counts.
     """
     target, halvings = speed, 0
+    leaped: Carried | None = None
     while True:
         motion = motion.copy()
         motion[8] = target
         try:
             found = search.find(motion, before)
         except FilmError as error:
+            if leaped is not None:
+                return leaped
             halvings += 1
             target = math.sqrt(last * target)
             if halvings > LARGEST_HALVINGS or target / last > NEXT:
@@ -182,6 +186,7 @@ def _follow(search: LoadSearch, before: Carried | None, motion: np.ndarray, last
                 ) from error
             continue
         if before is not None and target / last < NEXT and _leap(before, found) > LEAP:
+            leaped = found if target == speed else leaped
             target = math.sqrt(last * target)
         elif target == speed:
             return found
