@@ -19,6 +19,7 @@ from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.record.sensors import reader
 from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
@@ -209,13 +210,13 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     def film(self) -> FilmFields:
         """The film at the last accepted state: pressure, gap, fill and temperature on the grid.
 
-        Available at any time after Assemble, also within a run; read it before the system's state is changed, as
-        `history`. With an `ImpedanceMap`, which holds no pressure, the film behind the map is solved.
+        Available at any time after Assemble, also within a run. With an `ImpedanceMap`, which holds no pressure, the
+        film behind the map is solved.
 
         Raises
         ------
         InputError
-            Before Assemble.
+            Before Assemble, and where the system's state was changed since its run.
         FilmError
             If there is no film at that state.
         """
@@ -224,6 +225,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
                 f"LubricatedJoint.film: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
             )
         self.element.require_items(self.mbs)
+        require_end("LubricatedJoint.film", self.mbs, self.element.steps.solver)
         time, trial, configuration = self.element.steps.look_at_accepted(self.mbs)
         if trial.evaluation is None or trial.status is not Status.CONVERGED:
             raise FilmError(
@@ -260,11 +262,17 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
 
     @property
     def films(self) -> tuple[FilmFields, ...]:
-        """Films kept since `record_films`, the last one at the last accepted state; empty without it."""
+        """Films kept since `record_films`, the last one at the last accepted state; empty without it.
+
+        Without the last one where the system's state was changed since its run.
+        """
         recorder = self.element.steps.recorder
         if recorder is None or not self.mbs.systemIsConsistent:
             return ()
-        now = self.film()
+        try:
+            now = self.film()
+        except InputError:
+            return tuple(recorder.films)
         return (*(film for film in recorder.films if film.time < now.time), now)
 
     def animate(self, path: str | pathlib.Path, *, frames_per_second: int = 15, largest_count: int = 150) -> None:

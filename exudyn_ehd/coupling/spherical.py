@@ -28,6 +28,7 @@ from exudyn_ehd.coupling.record.sensors import OUTPUTS, reader
 from exudyn_ehd.coupling.record.spherical import PACK, BallRecord
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
+from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
@@ -231,13 +232,14 @@ class LubricatedSphericalJoint(Joint):
         Raises
         ------
         InputError
-            Before Assemble.
+            Before Assemble, and where the system's state was changed since its run.
         FilmError
             If there is no film at that state.
         """
         if not self.mbs.systemIsConsistent:
             raise InputError(f"LubricatedSphericalJoint.film: call mbs.Assemble() first, for joint '{self.name}' too.")
         self.element.require_items(self.mbs)
+        require_end("LubricatedSphericalJoint.film", self.mbs, self.element.steps.solver)
         motion = self.element.steps.look_at_accepted(self.mbs)[1].motion
         parts = {"place": motion[PLACE], "velocity": motion[VELOCITY], "angular_velocity": motion[SPIN]}
         return steady_spherical(self.bearing, **parts)

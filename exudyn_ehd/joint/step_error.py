@@ -17,8 +17,9 @@ w goes into the film by its difference quotient, of first order: dw/dt of the pa
 less (w1 - w0) / h, times h, is a step's further error, along the direction of the peak, unless the peak jumps.
 
 Left out: the first two steps, in which the rates still jump from what the model was given to what its films ask for;
-errors of the motion of the bodies, which films do not feel at once; and those of what films remember (cavities, heat,
-wear), which are of first order there: with `ElrodAdams` the estimate is some 0.4 to 0.9 of the error.
+errors of the motion of the bodies, which films do not feel at once; what the trapezoidal rule, which does not damp,
+lets ring on; and errors of what films remember (cavities, heat, wear), which are of first order there: with
+`ElrodAdams` the estimate is some 0.4 to 0.9 of the error.
 """
 
 from __future__ import annotations

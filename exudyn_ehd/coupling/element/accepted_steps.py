@@ -86,6 +86,8 @@ class AcceptedSteps:
     ----------
     start : float
         Time of the last accepted step, s; nan before the first.
+    began : float
+        Time at which the last run began, s.
     solvers : pair
         Exudyn's stored solvers in the run under way, see `solver_state.stored_solvers`.
     solver : object or None
@@ -119,7 +121,7 @@ class AcceptedSteps:
     def __init__(self, film: Film) -> None:
         # the element holds its steps: without a circle it goes as soon as its system does
         self.film: Film = weakref.proxy(film)
-        self.start = np.nan
+        self.start = self.began = np.nan
         self.solvers = solver_state.NO_RUN
         self.solver: solver_state.Solver | None = None
         self.memory: History | None = None
@@ -227,7 +229,7 @@ class AcceptedSteps:
         self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
         self._cool = HOT
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
-        self._first, self._first_memory = place, memory
+        self._first, self._first_memory, self.began = place, memory, start
         if not resumed and not goes_on:
             self.record.clear()
             if self.recorder is not None:
@@ -356,8 +358,8 @@ class AcceptedSteps:
         history = self.history(mbs)
         tiny_forces.warn(self.film.failures.name, self.solver, self.tolerance, self.film.model.bearing, history)
         if summary.is_on() and history.time.size > 1:
-            even = solver_state.is_implicit(self.solver) and not self.chosen
-            summary.tell(self.film.failures.name, self.film.model.bearing, history, even=even)
+            since = self.began if solver_state.is_implicit(self.solver) and not self.chosen else None
+            summary.tell(self.film.failures.name, self.film.model.bearing, history, since=since)
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the end of the run or the current state if that is later than the last step.

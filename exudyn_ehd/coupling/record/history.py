@@ -326,8 +326,14 @@ class JointHistory(History, HistoryPictures):
         Raises
         ------
         InputError
-            If there is no whole revolution or period.
+            If there is no whole revolution or period, and of a thinned record (`Every`, `Period`).
         """
+        if self.is_thinned:
+            raise InputError(
+                f"JointHistory.revolutions: the record keeps {self.time.size} of {np.ptp(self.step_count) + 1} states, "
+                "the worst of spans that are no revolutions, of which neither extremes nor means of a revolution "
+                "follow; record all steps, with File(...) where memory is short."
+            )
         return revolutions({name: getattr(self, name) for name in COLUMNS}, period)
 
 

@@ -113,6 +113,7 @@ class RowsOnDisk:
                 _require_head(file, self._head, self.path, self.joint)
                 file.seek(HEAD + 8 * self._width * self.count)
                 file.write(np.ascontiguousarray(rows).tobytes())
+                file.truncate()
         except OSError as error:
             raise RunError(
                 f"LubricatedJoint '{self.joint}': its record can't be written to '{self.path}' ({error.strerror}); "

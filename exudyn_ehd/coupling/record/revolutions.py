@@ -77,16 +77,18 @@ class Revolutions(Table):
 def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
     """Instants (k + 1,) at which the journal has turned by 0, 1, ... k whole revolutions against the housing.
 
-    One way or the other counts.     The angle is the integral of the relative spin, by the trapezoidal rule; linear
-    between steps.
+    One way or the other counts. The angle is the integral of the relative spin, by the trapezoidal rule; linear between
+    steps.
     """
-    angle = np.concatenate(([0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(time)))) / TURN
+    angle = np.abs(np.concatenate(([0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(time)))) / TURN)
     # a journal that swings back counts when it comes by for the first time
-    reached = np.maximum.accumulate(np.abs(angle))
+    reached = np.maximum.accumulate(angle)
     # a run of whole revolutions ends a rounding short of the last one
     whole = int(np.floor(reached[-1] + 1e-9))
-    first = np.concatenate(([True], np.diff(reached) > 0.0))
-    return np.interp(np.arange(whole + 1.0), reached[first], time[first])
+    turns = np.minimum(np.arange(1.0, whole + 1.0), reached[-1])
+    at = np.searchsorted(reached, turns)
+    share = (turns - angle[at - 1]) / (angle[at] - angle[at - 1])
+    return np.concatenate((time[:1], time[at - 1] + share * (time[at] - time[at - 1])))
 
 
 def revolutions(history: Columns, period: float | None = None) -> Revolutions:

@@ -15,6 +15,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.joint.audit.findings import LIMITS
+from exudyn_ehd.joint.audit.samples import time_mean
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_ROUGHNESS,
@@ -51,7 +52,7 @@ def without_lines() -> Iterator[None]:
         LOGGER.setLevel(level)
 
 
-def tell(name: str, bearing: JournalBearing, history: JointHistory, *, even: bool) -> None:
+def tell(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> None:
     """Log the line of a joint whose run has ended.
 
     Parameters
@@ -61,13 +62,13 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, even: boo
     bearing : JournalBearing
     history : JointHistory
         With one step or more.
-    even : bool
-        Whether the run has steps in time that differ in size only where they were halved.
+    since : float, optional
+        Start of the run, s, if it has steps in time that differ in size only where they were halved.
     """
-    LOGGER.info("%s", line(name, bearing, history, even=even))
+    LOGGER.info("%s", line(name, bearing, history, since=since))
 
 
-def line(name: str, bearing: JournalBearing, history: JointHistory, *, even: bool) -> str:
+def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> str:
     """The line that `tell` logs."""
     h, time = history, history.time
     text = f"LubricatedJoint '{name}', {h.step_count[-1]} steps to t = {time[-1]:.6g} s"
@@ -80,7 +81,7 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, even: boo
             k = int(worst(values))
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
     # a thinned record does not know the size of every step
-    halved = _halved(time) if even and not h.is_thinned else 0
+    halved = 0 if since is None or h.is_thinned else _halved(time[time >= since])
     text += f", {halved} halved steps" if halved else ""
     error = float(np.nanmax(h.step_error, initial=0.0))
     if error > LIMITS["time step"].value:
@@ -110,10 +111,10 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
     b, h, spin = bearing, history, spins(bearing, history)
     thinnest, highest = float(np.nanmin(h.minimum_gap)), float(np.nanmax(h.peak_pressure, initial=0.0))
     speed = float(np.max(spin)) * b.journal_radius
-    couette = 0.5 * float(np.mean(spin)) * b.journal_radius * b.radial_clearance * b.length
-    flow = max(float(np.nanmean(h.leakage)) if np.any(np.isfinite(h.leakage)) else 0.0, couette)
+    couette = 0.5 * time_mean(h.time, spin) * b.journal_radius * b.radial_clearance * b.length
+    flow = float(np.fmax(time_mean(h.time, h.leakage), couette))
     heat = b.lubricant.density * b.lubricant.specific_heat * flow
-    rise = float(np.nanmean(h.power_loss)) / heat if heat > 0.0 else 0.0
+    rise = time_mean(h.time, h.power_loss) / heat if heat > 0.0 else 0.0
     rough = not (b.asperity is None and b.contact is None and b.roughness is None)
     found = {
         "elasticity": b.bush is None and highest * b.journal_radius / STEEL > LIMITS["elasticity"].value * thinnest,

@@ -38,8 +38,9 @@ class Every:
 
     Of each span of steps the last one, and those with the smallest ``minimum_gap``, the largest ``peak_pressure`` and
     the largest load across the axis: the record's extremes are those of the run, ``step_count`` says which steps they
-    are. A span takes up to four rows, 1.9 KB. `LubricatedJoint.audit` and `UntilPeriodic`, which need all steps, refuse
-    such a record. Means over it are those of its rows, and errors of steps begin anew behind a restart.
+    are. A span takes up to four rows, 1.9 KB. `LubricatedJoint.audit`, `JointHistory.revolutions` and `UntilPeriodic`,
+    which need all steps, refuse such a record. Means over it are those of its rows, and errors of steps begin anew
+    behind a restart.
 
     Parameters
     ----------

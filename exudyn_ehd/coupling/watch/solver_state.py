@@ -75,8 +75,8 @@ def require_end(where: str, mbs: exu.MainSystem, solver: Solver | None) -> None:
     if solver is not None and is_finished(solver) and time != solver.it.currentTime:
         raise InputError(
             f"{where}: the system is at t = {time:.9g} s, and its last run has ended at {solver.it.currentTime:.9g} s: "
-            "its state was changed since (ComputeLinearizedSystem, Assemble, another solve); store it right behind the "
-            "run."
+            "its state was changed since (ComputeLinearizedSystem, Assemble, another solve); read or store it right "
+            "behind the run."
         )
 
 

@@ -13,7 +13,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit import assumptions, oil, surfaces
 from exudyn_ehd.joint.audit.findings import Case, Finding, finding, judged
-from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps
+from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, time_mean
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_TEMPERATURE_COEFFICIENT,
     cavity_pressure,
@@ -53,7 +53,7 @@ def faces_share(case: Case) -> Finding | None:
     record = case.record
     if record is None or case.faces is None:
         return None
-    faces, film = float(np.nanmean(record.thrust_power_loss)), float(np.nanmean(np.abs(record.power_loss)))
+    faces, film = (time_mean(record.time, loss) for loss in (record.thrust_power_loss, np.abs(record.power_loss)))
     value = faces / (faces + film) if faces + film > 0.0 else 0.0
     return finding("thrust faces", "share of the faces in the loss", value, True)
 
@@ -65,8 +65,8 @@ def faces_heat(case: Case) -> Finding | None:
         return None
     films = faces.lower + faces.upper
     carried = 0.25 * films * faces.clearance * (faces.outer_radius**2 - faces.inner_radius**2)
-    flow = carried * float(np.mean(np.abs(record.motion[:, 8])))
-    loss = float(np.nanmean(record.thrust_power_loss))
+    flow = carried * time_mean(record.time, np.abs(record.motion[:, 8]))
+    loss = time_mean(record.time, record.thrust_power_loss)
     rise = loss / (oil.density * oil.specific_heat * flow) if flow > 0.0 else 0.0
     return finding(
         "heat of thrust faces",

@@ -8,6 +8,7 @@ import numpy as np
 
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.joint.audit.findings import Case, Finding, finding, judged
+from exudyn_ehd.joint.audit.samples import time_mean
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_SHEAR_ONSET,
@@ -49,8 +50,8 @@ def temperature_rise(case: Case) -> float:
     b, r = case.bearing, case.record
     pairs = [(s.power_loss, s.flow, s.speed) for s in case.samples]
     if r is not None and np.all(np.isfinite(r.leakage)):
-        speed = float(np.mean(np.abs(r.motion[:, 8]))) * b.journal_radius
-        pairs = [(float(np.mean(r.power_loss)), float(np.mean(r.leakage)), speed)]
+        power, flow, spin = (time_mean(r.time, v) for v in (r.power_loss, r.leakage, np.abs(r.motion[:, 8])))
+        pairs = [(power, flow, spin * b.journal_radius)]
     rises = []
     for power, flow, speed in pairs:
         couette = 0.5 * speed * b.radial_clearance * b.length

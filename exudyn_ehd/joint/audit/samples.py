@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -13,8 +14,9 @@ from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import Status
 
-# Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started.
-REPLAYED = 60
+# Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started: the
+# last ones, and so many a turn of the turns before, fewer in a flexible bore.
+REPLAYED, A_TURN, TURNS = 60, 80, (3.0, 1.0)
 # Gauge pressure below which oil at ambient pressure would have to carry tension, Pa.
 TENSION = -1e5
 
@@ -97,6 +99,14 @@ class FilmState:
         return model.evaluate(self.motion, self.history, self.step, self.spin)
 
 
+def time_mean(time: np.ndarray, values: np.ndarray) -> float:
+    """Mean over time of what is known of values (n,), whatever the sizes of the steps; nan of none."""
+    known = np.isfinite(values)
+    time, values = time[known], values[known]
+    span = float(np.ptp(time)) if time.size else 0.0
+    return float(np.trapezoid(values, time)) / span if span > 0.0 else float(values[-1]) if values.size else math.nan
+
+
 def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmState]:
     """The worst states of a record, with the histories that its last steps lead to (a worn depth starts at zero).
 
@@ -107,23 +117,31 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
     spin = np.concatenate([[0.0], np.cumsum(turns)])
     flexible = model.flexible
     motions = _differenced(record) if flexible else record.motion
-    replayed = REPLAYED if model.remembers else 0
+    turned = np.concatenate([[0.0], np.cumsum(np.abs(turns))])
     states: list[FilmState] = []
     reached, history, step = -1, None, 0.0
     for k in record.worst(model.bearing):
-        first = max(0, k - replayed)
+        before = int(np.searchsorted(turned, turned[k] - TURNS[flexible] * 2.0 * math.pi))
+        first = max(0, min(k - REPLAYED, before)) if model.remembers else k
         if reached < first:
             reached, history, step = first, _first_history(model, record, first), 0.0
-        for i in range(reached, k):
+        for i, after in itertools.pairwise(_replayed(turned, reached, k)):
             if step > 0.0:
                 passed = model.evaluate_steady(motions[i], history, step, float(spin[i]))
                 history = passed.history() if passed.status is Status.CONVERGED else history
-            step = float(intervals[i])
+            step = float(record.time[after] - record.time[i])
         reached, motion = k, motions[k]
         if flexible:
             motion = model.evaluate_steady(motion, history, step, float(spin[k])).motion
         states.append(FilmState(motion, history, step, float(spin[k]), recorded=k))
     return states
+
+
+def _replayed(turned: np.ndarray, first: int, last: int) -> list[int]:
+    """Steps from one to another one, of the angles (n,) that the journal has turned: the last ones, some before."""
+    recent = max(first, last - REPLAYED)
+    early = np.searchsorted(turned, np.arange(turned[first], turned[recent], 2.0 * math.pi / A_TURN))
+    return np.unique(np.concatenate([np.maximum(early, first), np.arange(recent, last + 1)])).tolist()
 
 
 def _differenced(record: RecordedSteps) -> np.ndarray:

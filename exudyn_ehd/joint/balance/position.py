@@ -105,8 +105,10 @@ class LoadSearch:
         self._history: History | None = None
         self._follows = np.zeros((2, 2))
 
-    def find(self, motion: np.ndarray) -> Carried:
+    def find(self, motion: np.ndarray, near: Carried | None = None) -> Carried:
         """Position, from that of a motion (10,) on, in which the film carries the load.
+
+        It starts at the temperature of the film ``near``, by default of the last that it has solved.
 
         Raises
         ------
@@ -116,6 +118,7 @@ class LoadSearch:
         b = self.model.bearing
         tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * b.reference_force(motion[8]) / self.size)
         self.first = self.model.parts.evaluations.count
+        self._history = self._history if near is None else near.film.history
         self.carried, most = 0.0, LARGEST_LOAD_STEPS
         fresh, place = self._history is None, self.heated(motion, tolerance)
         if place is motion and fresh and self.model.effects.thermal is not None:

@@ -24,7 +24,7 @@ from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.oil import piezoviscosity
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.samples import TENSION, intervals_at_half
+from exudyn_ehd.joint.audit.samples import TENSION, intervals_at_half, time_mean
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
     TYPICAL_ROUGHNESS,
@@ -203,7 +203,7 @@ def _oil(case: _BallCase) -> list[Finding]:
         first, last = b.socket_angles
         flows = 0.5 * slide * b.radial_clearance * b.ball_radius * (last - first)
         flows += math.pi * b.ball_radius**2 * np.linalg.norm(record.motion[:, VELOCITY], axis=1)
-        heat = [(float(np.nanmean(record.power_loss)), float(np.mean(flows)))]
+        heat = [(time_mean(record.time, record.power_loss), time_mean(record.time, flows))]
     rises = [loss / (oil.density * oil.specific_heat * flow) for loss, flow in heat if flow > 0.0]
     rise = max(0.0, *rises) if rises else 0.0
     rows.append(

@@ -17,6 +17,9 @@ from exudyn_ehd.joint.static.steady import require_oil
 from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible, require_type
 
 LARGEST_HALVINGS = 8
+# Share of a speed from which on the next one has none in between, and change of temperature, K, that asks for one: a
+# tenth of the viscosity.
+NEXT, LEAP = 0.9, 3.0
 # Speed by which boundary friction would pass through rest, as a share of the slowest sliding.
 NO_TRANSITION = 1e-9
 
@@ -92,8 +95,8 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     Every speed is a steady state with its own temperature (``thermal``) and shape of the bore (``bush``). Sliding
     lasts, so that boundary friction acts in full: ``GreenwoodTripp.transition_speed``, by which that of a joint passes
     through rest, takes no part. Speeds are worked through from the fastest to the slowest, each starting from the
-    last position; where no position is found, speeds in between lead to it. Load and friction are those of the
-    journal's film, without films on end faces (``bearing.thrust``).
+    last position; where no position is found, or the temperature leaps, speeds in between lead to it. Load and friction
+    are those of the journal's film, without films on end faces (``bearing.thrust``).
 
     Parameters
     ----------
@@ -146,8 +149,9 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     motion[:2] = first_guess(bearing, last, search.force, np.zeros(2))
     rows: list[dict[str, float | np.ndarray]] = [{}] * values.size
     told = False
+    found: Carried | None = None
     for k in order:
-        found = _follow(search, motion, last, float(values[k]))
+        found = _follow(search, found, motion, last, float(values[k]))
         motion, last = found.motion, float(values[k])
         film = found.evaluation.film
         assert film is not None
@@ -157,26 +161,43 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     return StribeckResult(speeds=values, **columns)
 
 
-def _follow(search: LoadSearch, motion: np.ndarray, last: float, speed: float) -> Carried:
-    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where it is not found."""
+def _follow(search: LoadSearch, before: Carried | None, motion: np.ndarray, last: float, speed: float) -> Carried:
+    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where it is not found.
+
+    So too where its temperature leaps: the branch may end on the way, or the search have left it. Where no way leads
+    on, the branch has ended, and the leap counts.
+    """
     target, halvings = speed, 0
+    leaped: Carried | None = None
     while True:
         motion = motion.copy()
         motion[8] = target
         try:
-            found = search.find(motion)
+            found = search.find(motion, before)
         except FilmError as error:
+            if leaped is not None:
+                return leaped
             halvings += 1
             target = math.sqrt(last * target)
-            if halvings > LARGEST_HALVINGS or target / last > 0.9:
+            if halvings > LARGEST_HALVINGS or target / last > NEXT:
                 raise FilmError(
                     f"stribeck: no equilibrium found at {speed:.4g} rad/s under {search.size:.4g} N; next to "
                     f"{last:.4g} rad/s: {error}"
                 ) from error
             continue
-        if target == speed:
+        if before is not None and target / last < NEXT and _leap(before, found) > LEAP:
+            leaped = found if target == speed else leaped
+            target = math.sqrt(last * target)
+        elif target == speed:
             return found
-        motion, last, target = found.motion, target, speed
+        else:
+            before, motion, last, target = found, found.motion, target, speed
+
+
+def _leap(before: Carried, found: Carried) -> float:
+    """Change of the mean temperature, K."""
+    one, other = before.film.temperature, found.film.temperature
+    return 0.0 if one is None or other is None else abs(float(np.mean(other)) - float(np.mean(one)))
 
 
 def _row(evaluation: Evaluation, speed: float, load: float) -> dict[str, float | np.ndarray]:

@@ -42,6 +42,20 @@ def test_films_stand_at_their_instants_and_belong_to_their_rows(recorded):
         np.testing.assert_allclose(film.pressure, expected, atol=1e-9 * max(expected.max(), 1.0))
 
 
+def test_films_of_a_run_are_none_of_a_state_that_was_changed_since():
+    """A linearisation leaves the system at its initial values: what was kept stays, the present film is none of it."""
+    mbs, joint = rotor()
+    joint.record_films(period=5e-4)
+    mbs.Assemble()
+    run(mbs)
+    before = joint.films
+    mbs.ComputeLinearizedSystem()
+    assert [film.time for film in joint.films] == [film.time for film in before[:-1]]
+    for read in (joint.film, joint.plot_pressure):
+        with pytest.raises(InputError, match=r"film: the system is at t = 0 s.*read or store it right behind the run"):
+            read()
+
+
 def test_recording_changes_no_bit_of_the_run(recorded):
     mbs, joint = rotor()
     mbs.Assemble()

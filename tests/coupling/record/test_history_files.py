@@ -144,6 +144,12 @@ def test_turning_backwards_counts_and_swinging_needs_a_period():
     there_and_back = np.concatenate([np.full(100, 1.5), np.full(100, -1.5), np.full(101, 3.0)]) * 2.0 * np.pi
     times = revolution_times(np.linspace(0.0, 3.0, 301), there_and_back)
     np.testing.assert_allclose(times, [0.0, 2.0 / 3.0, 2.0 + 2.0 / 3.0, 3.0], atol=0.02)
+    # a hair short of a turn, back, and on through it
+    edges = np.array([0.0, 0.2, 0.5, 1.0])
+    rates = 2.0 * np.pi * np.diff([0.0, 0.9999, 0.1, 2.0]) / np.diff(edges)
+    steps = np.sort(np.concatenate([t, edges[1:3]]))
+    spin = np.concatenate([np.full(np.sum((t >= a) & (t <= b)), rate) for a, b, rate in zip(edges, edges[1:], rates)])
+    np.testing.assert_allclose(revolution_times(steps, spin)[1], 0.5 + 0.9 / 1.9 * 0.5, atol=1e-9)
     swing = made_up(t, np.cos(2.0 * np.pi * t), minimum_gap=np.cos(2.0 * np.pi * t), power_loss=np.ones(201))
     with pytest.raises(InputError, match=r"not turned once against the housing; give period="):
         swing.revolutions()
@@ -155,6 +161,8 @@ def test_turning_backwards_counts_and_swinging_needs_a_period():
         swing.revolutions(period=2.0)
     with pytest.raises(InputError, match="no recorded step between"):
         swing.revolutions(period=0.001)
+    with pytest.raises(InputError, match=r"keeps 2 of 201 states.*record all steps"):
+        dataclasses.replace(swing.between(0.5, 0.505), step_count=np.array([0, 200])).revolutions()
     with pytest.raises(InputError, match="no steps; run a solver first"):
         made_up([0.0], [1.0]).revolutions()
 

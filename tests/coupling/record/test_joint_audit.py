@@ -1,5 +1,6 @@
 """The audit of a joint: from its accepted steps, without touching it."""
 
+import dataclasses
 import math
 
 import elastic_scene
@@ -9,6 +10,8 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
+from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states
+from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 
 SPEED = 300.0
@@ -170,12 +173,40 @@ def test_an_audit_says_the_same_again():
     assert str(joint.audit()) == str(joint.audit())
 
 
-def test_heat_is_averaged_over_the_run():
+@pytest.mark.parametrize("control", [None, ehd.StepControl(error=0.002)], ids=["equal", "chosen"])
+def test_heat_is_averaged_over_the_time_of_a_run(control):
     mbs, joint = _joint()
-    _run(mbs)
+    ehd.SolveDynamic(mbs, ehd.ConfigureSolver(scenes.settings(5e-3, 50)), stepControl=control)
     h, oil = joint.history, joint.bearing.lubricant
-    rise = np.mean(h.power_loss) / (oil.density * oil.specific_heat * np.mean(h.leakage))
+    loss, flow = (np.trapezoid(values, h.time) for values in (h.power_loss, h.leakage))
+    rise = loss / (oil.density * oil.specific_heat * flow)
     assert joint.audit()["heating"].value == pytest.approx(0.03 * rise, rel=1e-12)
+    # small steps at the start are many of the rows and little of the time
+    assert control is None or abs(np.mean(h.power_loss) / np.mean(h.leakage) * flow / loss - 1.0) > 0.01
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+        {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)},
+    ],
+    ids=["elrod", "liner"],
+)
+def test_films_that_remember_are_those_of_the_run_whatever_its_steps(options):
+    """A flooded, undeformed start is forgotten within a turn, of which sixty small steps are little."""
+    mbs, joint = _joint(**options)
+    _run(mbs, end=4.0 * math.pi / SPEED, steps=2000)
+    history, model = joint.history, build_model(joint.bearing)
+    record = RecordedSteps(**{field.name: getattr(history, field.name) for field in dataclasses.fields(RecordedSteps)})
+    late = [state for state in recorded_states(model, record) if state.recorded > 200]
+    assert late
+    for state in late:
+        force = history.force[state.recorded]
+        assert np.linalg.norm(state.evaluate(model).wrench[:3] - force) < 0.05 * np.linalg.norm(force)
+
+
+def test_heat_of_a_thermal_run_is_its_own():
     lumped = {
         "thermal": ehd.LumpedThermal(supply_temperature=320.0),
         "lubricant": ehd.oil("ISO VG 46", temperature=320.0),

@@ -82,6 +82,16 @@ def test_steps_that_a_run_chooses_are_not_halved(lines):
     assert not joint.element.steps.chosen
 
 
+def test_steps_smaller_than_those_of_the_run_before_are_not_halved(lines):
+    mbs, joint = scene()
+    ehd.SolveDynamic(mbs, ehd.ConfigureSolver(scenes.settings(0.004, 40)), updateInitialValues=True)
+    settings = ehd.ConfigureSolver(scenes.settings(0.008, 160))
+    settings.timeIntegration.startTime = 0.004
+    ehd.SolveDynamic(mbs, settings)
+    assert joint.history.time.size == 201
+    assert len(lines) == 2 and "200 steps" in lines[1] and "halved" not in "".join(lines)
+
+
 def test_halved_steps_are_counted_and_the_last_one_is_not():
     steps = np.array([1.0, 1.0, 0.5, 0.25, 0.25, 1.0, 0.3])
     assert summary._halved(np.concatenate(([0.0], np.cumsum(steps)))) == 3
@@ -140,7 +150,7 @@ def test_steps_that_are_too_coarse_are_named(lines):
     coarse.step_error[40] = 0.08
     needed = enough_steps(coarse.time, coarse.motion[:, 8], coarse.step_error)
     said = f"error of the time steps 8 % of the minimum film thickness at {history.time[40]:.6g} s: take {needed}"
-    assert said in summary.line("bearing", joint.bearing, coarse, even=True)
+    assert said in summary.line("bearing", joint.bearing, coarse, since=0.0)
 
 
 @pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])

@@ -80,6 +80,20 @@ def test_any_course_gives_steps_of_the_whole_record(name, on_disk, tmp_path):
         require_thinned(whole.snapshot(None), thinned.snapshot(None), rule)
 
 
+def test_a_file_ends_with_the_rows_that_are_kept(tmp_path):
+    """A step that is the worst in every way takes the places of three rows that the file has already."""
+    rng, (_, thinned) = np.random.default_rng(0), records(RULES["1000 steps"], tmp_path / "main.rows")
+    for k in range(600):
+        row = random_row(rng, 1e-4 * k)
+        if k == 590:
+            row[rows_of.MINIMUM_GAP], row[rows_of.PEAK_PRESSURE], row[rows_of.FORCE] = 1e-7, 1e9, 1e6
+        thinned.append(row)
+        if k in (300, 595):
+            found = thinned.snapshot(None)
+            same(ehd.load_history(tmp_path / "main.rows"), found)
+    assert found.step_count.tolist() == [0, 590, 595]
+
+
 def test_a_restored_record_goes_on(tmp_path):
     """Steps and extremes as without the stop; errors of steps begin anew behind it."""
     for path in (None, tmp_path / "main.rows"):

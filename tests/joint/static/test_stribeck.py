@@ -69,6 +69,28 @@ def test_order_of_speeds_does_not_matter():
     np.testing.assert_array_equal(mixed.speeds, speeds)
 
 
+@pytest.mark.filterwarnings("ignore::exudyn_ehd.HotFilmWarning")
+def test_a_branch_is_kept_whatever_the_other_speeds():
+    """At 40 rad/s a film of 320 K carries the load, and one of 613 K that rubs; the curve comes from the first."""
+    b = ehd.JournalBearing(
+        journal_radius=0.01,
+        length=0.02,
+        radial_clearance=20e-6,
+        lubricant=ehd.oil("ISO VG 46"),
+        thermal=ehd.LumpedThermal(supply_temperature=313.0),
+        asperity=dataclasses.replace(ASPERITY, composite_roughness=0.5e-6, composite_modulus=7.4e10),
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+    )
+    fine = ehd.stribeck(b, load=2000.0, speeds=np.geomspace(500.0, 40.0, 25))
+    assert fine.film_temperature[-1] < 330.0
+    for speeds in ([500.0, 40.0], [500.0, 150.0, 40.0, 10.0]):
+        curve = ehd.stribeck(b, load=2000.0, speeds=speeds)
+        at = speeds.index(40.0)
+        assert curve.friction_coefficient[at] == pytest.approx(fine.friction_coefficient[-1], rel=1e-6)
+    # behind the end of the branch there is the other one alone
+    assert curve.film_temperature[-1] > 500.0
+
+
 @pytest.mark.parametrize("load", [10.0, 1e3, 1e5])
 def test_wide_range_of_loads(load):
     rough = ehd.PatirCheng(composite_roughness=0.4e-6)
