@@ -149,3 +149,29 @@ def test_short_bearing_keeps_its_oil(n_theta):
         forces.append(np.hypot(*evaluation.wrench[:2]))
     # the same film wherever the seam of the grid lies
     assert np.ptp(forces) < 1e-9 * forces[0]
+
+
+def test_oil_that_nothing_but_time_determines():
+    """A groove at the cavity's pressure over the smallest gap of a steady film leaves rows in which oil goes round
+    without pressure: how much is a matter of where it comes from, and of rounding whether Newton's method finds it."""
+    bearing = ehd.JournalBearing(
+        journal_radius=RADIUS,
+        length=RADIUS,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.04),
+        film=ehd.FiniteLength(n_theta=64, n_z=16),
+        cavitation=ehd.ElrodAdams(),
+        supply=(ehd.AxialGroove(angle=5.66, width_angle=0.86),),
+    )
+    model, rng = build_model(bearing), np.random.default_rng(1)
+    place = np.array([0.940181, -0.340332, 1.54206e-3, -5.17195e-3]) * CLEARANCE
+    for k in range(150):
+        motion = np.zeros(10)
+        motion[:4] = place * (1.0 + 10.0 ** rng.uniform(-8.0, -4.3) * rng.normal())
+        motion[8] = 1800.0
+        if k % 2:
+            model.forget()
+        found = model.evaluate(motion)
+        assert found.status is ehd.Status.CONVERGED and found.iterations < 500, (k, found.iterations)
+        fill = model.solver.fill
+        assert fill.min() >= 0.0 and fill.max() <= 1.0 and np.hypot(*found.wrench[:2]) < 1e-3

@@ -48,7 +48,7 @@ from exudyn_ehd.film.cavitation.closures import SwiftStieber, check_cavity_press
 from exudyn_ehd.film.cavitation.lagging_void import hold_back
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine
 from exudyn_ehd.film.cavitation.oil_line.newton import solve_on_curve
-from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
+from exudyn_ehd.film.cavitation.pseudo_time import NONE, pseudo_time
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
 from exudyn_ehd.film.reynolds.links import flow_direction
 from exudyn_ehd.status import Status, require_bool
@@ -195,7 +195,7 @@ class ElrodAdams:
         return ok, steps
 
     def _follow(self, s: FilmSystem, work: Workspace) -> tuple[bool, int]:
-        """In pseudo time from a full film."""
+        """In pseudo time from a full film, whose oil stays in rows that it goes round in without pressure."""
         largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
         largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
         rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
@@ -211,7 +211,7 @@ class ElrodAdams:
                 np.multiply(s.fill, s.H, out=mass)
             return ok, steps
 
-        return pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE)
+        return pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE, last=NONE)
 
     def _factor(self, work: Workspace) -> tuple[np.ndarray, np.ndarray]:
         """L and U of the folded ring."""

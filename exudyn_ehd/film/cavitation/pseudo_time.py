@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 MOST_STEPS = 200
+# Rate of a storage that changes nothing but what nothing else determines, over that of the film.
+NONE = 1e-6
 # Rates of the storage over those of the film: of the first one, of one that no film comes out of, and of one that is
 # none.
 FIRST, HOPELESS, LAST = 100.0, 1e6, 1e-3
@@ -16,7 +18,9 @@ FIRST, HOPELESS, LAST = 100.0, 1e6, 1e-3
 FADES, GROWS = 0.3, 8.0
 
 
-def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float, first: float = FIRST) -> tuple[bool, int]:
+def pseudo_time(
+    attempt: Callable[[float], tuple[bool, int]], rate: float, first: float = FIRST, *, last: float = 0.0
+) -> tuple[bool, int]:
     """Follow a film in pseudo time; returns (found, Newton steps).
 
     Parameters
@@ -28,6 +32,8 @@ def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float, first
         Of the film itself, 1/s, > 0.
     first : float
         Rate of the first storage over ``rate``.
+    last : float
+        Rate over ``rate`` below which a film with a storage is the one that is asked for, where none without is found.
     """
     extra, total = first * rate, 0
     for _ in range(MOST_STEPS):
@@ -44,4 +50,7 @@ def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float, first
             total += steps
             if ok:
                 return True, total
+            if extra < last * rate:
+                ok, steps = attempt(extra)
+                return ok, total + steps
     return False, total

@@ -21,6 +21,8 @@ from exudyn_ehd.status import FilmError, Status
 # Largest change of temperature that counts as settled, as a share of the film's rise over its coldest source.
 SETTLED = 1e-11
 MAX_ROUNDS = 200
+# The same behind all rounds, where rounding of hot fields keeps changes from falling further.
+NEARLY = 1e-9
 # Differences of past rounds that the acceleration combines.
 DEPTH = 10
 # K, up to which a search goes on, far beyond what any oil bears: on its way a film is hotter than where it ends.
@@ -46,8 +48,8 @@ def settled_history(model: BearingModel, motion: np.ndarray, near: History | Non
     One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant
     method inside a bracket. A field: Anderson acceleration of ``T -> heat balance(film(T))``, started where plain
     rounds, damped as needed, have brought the change below 5 K, and anew from the best field when it makes no
-    progress. Both end when the temperature changes by less than 1e-11 of its rise, or at a film that has no solution,
-    which the caller then finds.
+    progress. Both end when the temperature changes by less than 1e-11 of its rise (a field behind 200 rounds 1e-9), or
+    at a film that has no solution, which the caller then finds.
 
     Parameters
     ----------
@@ -147,7 +149,9 @@ def _settle_field(
             step = step - foreseen(past, damping).reshape(T.shape)
             step = step * min(1.0, 4.0 * size / float(np.abs(step).max()))
         T = T + step
-    raise _unsettled(size)
+    if smallest <= NEARLY * max(float(np.ptp(best)), float(np.abs(best - cold).max())):
+        return History(temperature=best)
+    raise _unsettled(smallest)
 
 
 def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) -> np.ndarray:
