@@ -244,7 +244,7 @@ def plain_model(joint: Joint) -> BearingModel:
     """The model of a film whose stiffness and damping hold for motions of any frequency; `InputError` for others."""
     element, model = joint.element, joint.element.model
     if type(element) is not FilmElement or not isinstance(model, BearingModel):
-        what = "a flexible bush or journal, or a film of your own"
+        what = "a ball, a flexible bush or journal, or a film of your own"
     elif model.remembers:
         what = "a film that remembers (ElrodAdams, thermal, wear, liner), of which it knows no frequency response"
     elif not model.bearing.squeeze:
