@@ -58,6 +58,8 @@ SET_TOLERANCE = 1e-12
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.
 LARGEST_DEFICIT = 1e-6
+# Change of the oil, over the largest gap, of a film that stands still in pseudo time.
+STILL = 1e-6
 # Of the storage in pseudo time, over the largest flow into a vertex by the smallest vertex.
 FIRST_RATE = 0.01
 
@@ -208,7 +210,11 @@ class ElrodAdams:
             blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
             ok, steps = self._newton(s, work, inverse, blend)
             if ok:
-                np.multiply(s.fill, s.H, out=mass)
+                oil = s.fill * s.H
+                # a film that a storage of next to nothing holds back still is another one
+                still = not 0.0 < extra < NONE * rate or float(np.abs(oil - mass).max()) <= STILL * float(s.H.max())
+                mass[:] = oil
+                return still, steps
             return ok, steps
 
         return pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE, last=NONE)

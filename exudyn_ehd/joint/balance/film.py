@@ -151,7 +151,7 @@ def _settle_field(
         T = T + step
     if smallest <= NEARLY * max(float(np.ptp(best)), float(np.abs(best - cold).max())):
         return History(temperature=best)
-    raise _unsettled(smallest)
+    raise _unsettled(size)
 
 
 def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) -> np.ndarray:
