@@ -103,6 +103,11 @@ class FilmGrid:
         return np.outer(self.width_x, self.width_z)
 
     @cached_property
+    def flows_along_z(self) -> bool:
+        """Whether there are links in z, through which oil reaches the ends."""
+        return bool(self.link_z.any())
+
+    @cached_property
     def mesh(self) -> tuple[np.ndarray, ...]:
         """The metric for kernels, as in `Mesh`."""
         return self.width_x, self.width_z, self.link_x, self.link_z

@@ -39,8 +39,9 @@ import dataclasses
 import functools
 
 import numpy as np
+from numba import njit
 
-_RATES, _BORE = slice(4, 8), 10
+_BORE = 10
 # Of the misses of the last steps, the last one first, by how many there are.
 WEIGHTS = tuple(np.array(w) for w in ((), (1.0,), (0.5, 0.5), (1.5, 0.5, -1.0)))
 # Displacement by misses in a step, share of the clearance: less changes no film, and may be rounding of positions.
@@ -87,21 +88,31 @@ class StepStart:
         step, known = time - self.time, len(self.misses)
         if known == 0 or step > LARGEST_GROWTH * self.step:
             return motion
-        if step**3 * self._largest < SMALLEST_MISS * self.clearance:
+        if step * step * step * self._largest < SMALLEST_MISS * self.clearance:
             return motion
-        out, expected = motion.copy(), step**2 * self._expected
-        out[_RATES] += expected[:4]
-        if expected.size > 4:
-            out[motion.size - expected.size + 4 :] += expected[4:]
+        out = motion.copy()
+        _add_rates(self._expected, step * step, out)
         return out
 
 
-@functools.cache
-def _places(k: int) -> tuple[slice, slice] | tuple[np.ndarray, np.ndarray]:
-    """Where a motion with k bore coordinates holds places and their rates, (4 + k,) each."""
-    if k == 0:
-        return slice(4), _RATES
-    return np.r_[:4, _BORE : _BORE + k], np.r_[4:8, _BORE + k : _BORE + 2 * k]
+@njit(cache=True)
+def _add_rates(expected, factor, motion_out):
+    """Add what is expected (4 + k,), times a factor, to the rates of a motion (10 + 2 k,)."""
+    size = expected.size
+    for j in range(size):
+        motion_out[4 + j if j < 4 else 2 + size + j] += factor * expected[j]
+
+
+@njit(cache=True)
+def _misses(motion, old, step, known, misses_out):
+    """What velocities have missed in a step between two motions (10 + 2 k,), and the ``known`` of the steps before."""
+    size = misses_out.shape[1]
+    for j in range(size):
+        place, rate = (j, 4 + j) if j < 4 else (6 + j, 2 + size + j)
+        slope, mean = (motion[place] - old[place]) / step, 0.5 * (motion[rate] + old[rate])
+        misses_out[0, j] = (slope - mean) / (step * step)
+        for k in range(known.shape[0]):
+            misses_out[1 + k, j] = known[k, j]
 
 
 def next_start(before: StepStart | None, motion: np.ndarray, time: float, clearance: float) -> StepStart:
@@ -124,9 +135,7 @@ def next_start(before: StepStart | None, motion: np.ndarray, time: float, cleara
     if before.time == time:
         return dataclasses.replace(before, motion=motion)
     step, old = time - before.time, before.motion
-    place, rate = _places(k)
     known = before.misses[:2] if step <= LARGEST_GROWTH * before.step else before.misses[:0]
     misses = np.empty((1 + len(known), 4 + k))
-    misses[0] = ((motion[place] - old[place]) / step - 0.5 * (motion[rate] + old[rate])) / step**2
-    misses[1:] = known
+    _misses(motion, old, step, known, misses)
     return StepStart(time, motion, step, misses, clearance)

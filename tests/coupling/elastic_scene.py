@@ -7,7 +7,7 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.utilities import InertiaCylinder, RigidBodyInertia
-from scenes import new_system, rotation
+from scenes import marker_loads, new_system, rotation
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.kinematics.sides import detached
@@ -183,7 +183,7 @@ class Scene:
         """Force and moment of the film on journal, bush and housing together over those on the journal."""
         element = self.joint.element
         a, b = element.sides
-        loads = element._loads  # at the markers, global
+        loads = marker_loads(element, wrench)
         force, moment = loads[2].copy(), loads[3] + np.cross(b.frame[:, 3] - a.frame[:, 3], loads[2])
         if self.joint.bush is None:
             force += loads[0]

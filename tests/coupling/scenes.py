@@ -7,6 +7,7 @@ import toy
 from exudyn.utilities import InertiaCuboid, InertiaCylinder
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.kinematics import relative
 
 NODE_TYPES = {
     "EP": exu.NodeType.RotationEulerParameters,
@@ -23,6 +24,13 @@ def rotation(vector):
     n = np.asarray(vector) / angle
     k = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
     return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
+
+
+def marker_loads(element, wrench):
+    """Global force and moment at the two markers (4, 3) of a wrench (6,): F_H, M_H, F_J, M_J."""
+    loads = np.empty((4, 3))
+    relative.global_loads(*(side.frame for side in element.sides), wrench, loads)
+    return loads
 
 
 def new_system():

@@ -269,7 +269,8 @@ class AcceptedSteps:
 
     def _begin_of_next(self, time: float, trial: Trial) -> StepStart | None:
         """Where the step after the state at hand begins, under solvers whose formulas are known."""
-        if not solver_state.is_implicit(self.solver) or not np.isfinite(trial.bodies.sum()):
+        known = trial.status == Status.CONVERGED or np.isfinite(trial.bodies.sum())
+        if not (known and solver_state.is_implicit(self.solver)):
             return None
         return next_start(self.begin, trial.bodies, time, self.film.model.bearing.radial_clearance)
 

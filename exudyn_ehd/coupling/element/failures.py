@@ -53,7 +53,7 @@ class Failures:
 
     def __init__(self, name: str, bearing: JournalBearing) -> None:
         self.name, self.bearing = name, bearing
-        self.bore = BoreGap(bearing)
+        self.bore, self._per_force = BoreGap(bearing), mean_pressure(bearing, 1.0)
         self.largest_force, self.largest_pressure = math.inf, HIGHEST_PEAK
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
@@ -146,8 +146,7 @@ class Failures:
 
     def _mean(self, force: np.ndarray) -> float:
         """Mean pressure of a force (3,) on the projected area, Pa."""
-        x, y, z = force.tolist()
-        return mean_pressure(self.bearing, math.sqrt(x * x + y * y + z * z))
+        return math.hypot(*force.tolist()) * self._per_force
 
     def thrown(self, time: float, trial: Trial, force: float, mean: float) -> FilmError:
         """A run that rings with forces many times as large as their ``mean``, N, over three steps."""
@@ -183,7 +182,8 @@ class Failures:
         FilmError
             Where the film is no oil.
         """
-        film, T = getattr(trial.evaluation, "film", None), getattr(memory, "temperature", None)
+        T = getattr(memory, "temperature", None)
+        film = None if T is None else getattr(trial.evaluation, "film", None)
         if T is None or film is None or not is_above(limit, T):
             return limit
         if is_above(HOTTEST, T):

@@ -8,6 +8,7 @@ force user function alone; what can't be evaluated is explained by `failures`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import ModuleType
 from typing import TypeAlias
@@ -21,7 +22,7 @@ from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.side_by_side import SideBySide
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, read_state
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between, read_state
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
@@ -81,7 +82,6 @@ class FilmElement:
         self.presence: Presence
         self.faces: Faces | None = None
         self._bound = False
-        self._loads = np.zeros((4, 3))
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
@@ -189,7 +189,7 @@ class FilmElement:
     def evaluate(self, trial: Trial) -> None:
         """Evaluate the film at a new trial, to which the sides' arrays belong."""
         # a sum is finite only if all its terms are
-        if np.isfinite(trial.motion.sum()):
+        if math.isfinite(trial.motion.dot(trial.motion)):
             spin = self._spin() if self.model.needs_spin else 0.0
             if self.faces is None:
                 trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
@@ -224,12 +224,7 @@ class FilmElement:
     ) -> np.ndarray:
         if not self._bound:
             self._bind(mbs)
-        housing, journal = self.sides
-        n = housing.size
-        housing.update(mbs, q[:n], q_t[:n], configuration)
-        journal.update(mbs, q[n:], q_t[n:], configuration)
-        motion: np.ndarray = self.kinematics.motion_of(housing.frame, journal.frame)
-        return motion
+        return motion_between(mbs, self.sides, q, q_t, configuration, self.kinematics)
 
     def _spin(self) -> float:
         """Angle of the journal [rad], see `relative.angle_of`."""
@@ -254,8 +249,7 @@ class FilmElement:
     def _rigid_force(self, wrench: np.ndarray, force_out: np.ndarray) -> None:
         """Generalized force (n,) of a wrench on housing and journal."""
         housing, journal = self.sides
-        relative.global_loads(housing.frame, journal.frame, wrench, self._loads)
-        relative.generalized_force(housing.jac, journal.jac, self._loads, force_out)
+        relative.wrench_force(housing.frame, journal.frame, housing.jac, journal.jac, wrench, force_out)
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""

@@ -66,15 +66,14 @@ class ThrustElement:
         self.sides, self.offset = sides, offset
         self._gap = np.nan  # smallest one at the start of the step, m
         self._last: tuple[list[float], list[float], ThrustEvaluation] | None = None
-        self._loads, self._bound = np.zeros((4, 3)), False
+        self._bound = False
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
         found, out = self._evaluate(mbs, t, q, q_t), np.full(len(q), np.nan)
         if self._has_film(t, found) and not self._goes_too_far(t, found):
             frames, jacobians = self._arrays()
-            relative.global_loads(*frames, found.wrench, self._loads)
-            relative.generalized_force(*jacobians, self._loads, out)
+            relative.wrench_force(*frames, *jacobians, found.wrench, out)
         return out
 
     def jacobian(

@@ -186,6 +186,14 @@ def generalized_force(jac_h, jac_j, loads, force_out):
 
 
 @njit(cache=True)
+def wrench_force(frame_h, frame_j, jac_h, jac_j, wrench, force_out):
+    """Generalized force (n,) of both sides for a wrench (6,), as in `global_loads` and `generalized_force`."""
+    loads = np.empty((4, 3))
+    global_loads(frame_h, frame_j, wrench, loads)
+    generalized_force(jac_h, jac_j, loads, force_out)
+
+
+@njit(cache=True)
 def wrench_map(frame_h, frame_j, jac_h, jac_j):
     """Map (n, 6) from the wrench on the journal, joint frame, to the generalized forces of `generalized_force`."""
     n_h = jac_h.shape[2]

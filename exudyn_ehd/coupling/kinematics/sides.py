@@ -16,7 +16,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
-from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics import node_pair, relative, rigid_nodes
 
 _NONE, _UNITS = np.zeros(3), np.eye(3)
 SideType = TypeVar("SideType", bound=Side)
@@ -52,6 +52,11 @@ class NodeSide:
         self.frame[:, :3] = self.rotation
         self.frame[:, 3] = self.rho
         self.jac = np.zeros((4, 3, self.size))
+
+    @property
+    def arrays(self) -> tuple[int | np.ndarray, ...]:
+        """The side as the kernels of `node_pair` take it."""
+        return self.kind, self.reference, self.rho, self.rotation, self.frame, self.jac
 
     def update(
         self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
@@ -252,9 +257,34 @@ def read_state(
     q_t: list[float] = []
     for side in sides:
         for node in side.nodes:
-            q += np.atleast_1d(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates, configuration)).tolist()
-            q_t += np.atleast_1d(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates_t, configuration)).tolist()
+            q += _listed(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates, configuration))
+            q_t += _listed(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates_t, configuration))
     return q, q_t
+
+
+def _listed(values: list[float] | float) -> list[float]:
+    """Output of a node, of which Exudyn gives a single one as a number."""
+    return [values] if isinstance(values, float) else np.asarray(values).tolist()
+
+
+def motion_between(
+    mbs: exu.MainSystem,
+    sides: tuple[Side, Side],
+    q: np.ndarray,
+    q_t: np.ndarray,
+    configuration: exu.ConfigurationType,
+    kinematics: ModuleType = relative,
+) -> np.ndarray:
+    """Bring two sides to q and q_t (n,), housing's first; the motion as `relative`, or another one, has it."""
+    housing, journal = sides
+    if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
+        motion = np.empty(10)
+        node_pair.move_nodes(housing.arrays, journal.arrays, q, q_t, motion)
+        return motion
+    n = housing.size
+    housing.update(mbs, q[:n], q_t[:n], configuration)
+    journal.update(mbs, q[n:], q_t[n:], configuration)
+    return np.asarray(kinematics.motion_of(housing.frame, journal.frame))
 
 
 def derivatives_between(
@@ -284,6 +314,10 @@ def derivatives_between(
         Derivatives of the motion.
     """
     (housing, journal), (q, q_t), n_h, loads = sides, state, sides[0].size, np.empty((4, 3))
+    if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
+        found: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+        found = node_pair.derive_nodes(housing.arrays, journal.arrays, q, q_t, wrench, tangent)
+        return found
     frames, jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
     relative.global_loads(*frames, wrench, loads)
     housing.vary(mbs, q[:n_h], q_t[:n_h])

@@ -355,12 +355,7 @@ def make_row(
 ) -> np.ndarray:
     """One row of the record; estimates of step errors need the ``tangent`` (6, 10)."""
     row = np.empty(WIDTH)
-    row[TIME] = time
-    row[_MOTION : _MOTION + 10] = motion
-    row[_ECCENTRICITY : _ECCENTRICITY + 2] = motion[:2]
-    row[_RATIO], row[_RATIO_MAX] = ratios
-    row[_WRENCH : _WRENCH + 6] = wrench
-    for i, name in enumerate(_SCALARS):
-        row[_FIRST_SCALAR + i] = quantities.get(name, np.nan)
+    scalars = [quantities.get(name, math.nan) for name in _SCALARS]
+    row[:FIRST_BLOCK] = [time, *motion.tolist(), *motion[:2].tolist(), *ratios, *wrench.tolist(), *scalars]
     row[FIRST_BLOCK:] = np.nan if tangent is None else tangent.take(_BLOCKS)
     return row

@@ -41,13 +41,13 @@ from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
+from numba import njit
 
 from exudyn_ehd.coupling.bush.equations import BushFunctions
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, ObjectIndex, Trial
 from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
-from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import Status
 
@@ -124,7 +124,15 @@ class GapLimit:
         return 1.0
 
 
-def allowed_part(before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
+@njit(cache=True)
+def _at_end(motion, z):
+    """Square of the eccentricity at z."""
+    x, y = motion[0] + z * motion[2], motion[1] + z * motion[3]
+    return x * x + y * y
+
+
+@njit(cache=True)
+def allowed_part(before, after, clearance, length):
     """Part of a step between two motions that closes the film of the rigid surfaces by `SHARE`, 1 if none does.
 
     Parameters
@@ -134,17 +142,17 @@ def allowed_part(before: np.ndarray, after: np.ndarray, clearance: float, length
     clearance, length : float
         m.
     """
-    gap = clearance * (1.0 - eccentricity_ratios(before, clearance, length)[1])
+    half, part = 0.5 * length, 1.0
+    gap = clearance - math.sqrt(max(_at_end(before, -half), _at_end(before, half)))
     farthest = clearance - SHARE * gap
+    reached = max(_at_end(after, -half), _at_end(after, half))
     # not true for what is not finite
-    if not gap > SMALLEST_GAP_SHARE * clearance:
-        return 1.0
-    if not clearance * eccentricity_ratios(after, clearance, length)[1] > farthest:
-        return 1.0
-    part = 1.0
-    for z in (-0.5 * length, 0.5 * length):
-        p, d = before[:2] + z * before[2:4], after[:2] - before[:2] + z * (after[2:4] - before[2:4])
-        along, square, rest = float(p @ d), float(d @ d), farthest * farthest - float(p @ p)
+    if not (gap > SMALLEST_GAP_SHARE * clearance and reached > farthest * farthest):
+        return part
+    for z in (-half, half):
+        px, py = before[0] + z * before[2], before[1] + z * before[3]
+        dx, dy = after[0] + z * after[2] - px, after[1] + z * after[3] - py
+        along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest * farthest - _at_end(before, z)
         if 2.0 * along + square > rest:
             part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
     return part

@@ -56,7 +56,7 @@ class SupplyMap:
         self.grid = grid if whole else dataclasses.replace(grid, cuts=np.ones((2, *grid.shape)))
         # without axial flow grooves have no ends
         length = (grid.z[-1] - grid.z[0]) * grid.reference_length
-        self.supply = placed(supply, length) if grid.link_z.any() else supply
+        self.supply = placed(supply, length) if grid.flows_along_z else supply
         self.rotating = any(area.rotating for area in supply)
         self.ends, self.plain_weight = grid.fixed.copy(), grid.weight.copy()
         self.masks = [np.zeros(grid.shape, dtype=np.bool_) for _ in supply]

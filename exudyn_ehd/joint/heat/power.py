@@ -6,6 +6,7 @@ Oil that a film takes in, holds and gives off, and the heat of its motion: what 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,23 +14,43 @@ from exudyn_ehd.film.heat.energy import content_rate, film_flows, outside_flows
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 
-def power_loss(film: SolvedFilm) -> float:
-    """Mechanical power that stays in film and contacts, W; see `exudyn_ehd.joint.model.quantities.quantities`.
+class Powers(NamedTuple):
+    """Friction on the journal about its own axis, Nm, and powers, W, of film and contacts.
 
-    What the film does to a flexible bore leaves it.
+    friction_torque, contact_torque : of all, and of the contacts
+    sliding, contact_loss : what spin and axial speed put in, and the part that contact friction takes
+    stored : what a liner and touching surfaces take up
+    loss : what stays, without what the film does to a flexible bore
+
+    See `exudyn_ehd.joint.model.quantities.quantities`.
     """
-    x_t, y_t, bx_t, by_t = film.journal.motion[4:8].tolist()
-    fx, fy, _, mx, my, _ = film.loads.wrench.tolist()
-    power = sliding_power(film) - (fx * x_t + fy * y_t - mx * by_t + my * bx_t) - stored_power(film)
-    return power if film.bore is None else power - float(film.bore.load @ film.bore.rates)
+
+    friction_torque: float
+    contact_torque: float
+    sliding: float
+    contact_loss: float
+    stored: float
+    loss: float
 
 
-def sliding_power(film: SolvedFilm) -> float:
-    """Power that spin and axial speed put into film and contacts, W."""
-    bx, by = film.journal.motion[2:4].tolist()
-    fx, fy, fz = film.loads.wrench[:3].tolist()
+def powers(film: SolvedFilm) -> Powers:
+    """Friction and powers of a solved film."""
+    x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w = film.journal.motion[:10].tolist()
+    loads = film.loads
+    fx, fy, fz, mx, my, _ = loads.wrench.tolist()
+    contact, contact_loss = 0.0, 0.0
+    if film.pressing is not None:
+        cx, cy, cz, c_mx, c_my, c_mz = loads.contact.tolist()
+        contact = c_mz - (x * cy - y * cx - bx * c_mx - by * c_my)
+        contact_loss = 0.0 - contact * omega - cz * w
+    torque_scale = film.scales.shear * film.grid.reference_length**2
+    friction = -torque_scale * (omega * loads.couette - 6.0 * loads.s_theta) + contact
     along = fz + bx * fx + by * fy  # a tilted journal slides along its own axis, not along z
-    return -(friction_torque(film) * film.journal.omega + along * film.journal.axial_speed)
+    sliding, stored = -(friction * omega + along * w), stored_power(film)
+    loss = sliding - (fx * x_t + fy * y_t - mx * by_t + my * bx_t) - stored
+    if film.bore is not None:
+        loss -= float(film.bore.load @ film.bore.rates)
+    return Powers(friction, contact, sliding, contact_loss, stored, loss)
 
 
 def stored_power(film: SolvedFilm) -> float:
@@ -49,28 +70,6 @@ def stored_power(film: SolvedFilm) -> float:
 def _by_touching(film: SolvedFilm, slope: np.ndarray, rate: np.ndarray, contact: np.ndarray) -> float:
     """``-sum (p_c + (1 - slope) p) dh/dt`` with the slope of the film's gap to the true gap h and h's rate, scaled."""
     return -float(np.sum(film.grid.weight * (contact + (1.0 - slope) * film.oil.P) * rate))
-
-
-def friction_torque(film: SolvedFilm) -> float:
-    """Friction of film and contacts on the journal about its own axis, Nm."""
-    torque_scale = film.scales.shear * film.grid.reference_length**2
-    couette, poiseuille = film.loads.couette, 6.0 * film.loads.s_theta
-    return -torque_scale * (film.journal.omega * couette - poiseuille) + contact_torque(film)
-
-
-def contact_power_loss(film: SolvedFilm) -> float:
-    """Part of `sliding_power` that contact friction takes, W."""
-    w = film.journal
-    return 0.0 - contact_torque(film) * w.omega - float(film.loads.contact[2]) * w.axial_speed
-
-
-def contact_torque(film: SolvedFilm) -> float:
-    """Contact friction on the journal about its own axis, Nm."""
-    if film.pressing is None:
-        return 0.0
-    x, y, bx, by = film.journal.motion[:4].tolist()
-    fx, fy, _, mx, my, mz = film.loads.contact.tolist()
-    return mz - (x * fy - y * fx - bx * mx - by * my)
 
 
 class Exchange:
@@ -141,7 +140,7 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
 
         heat = sliding power + sum (p - pc) (S - A dm/dt),
 
-    which holds none of the powers that store and give back: where nothing changes in time it is `power_loss` plus the
+    which holds none of the powers that store and give back: where nothing changes in time it is `Powers.loss` plus the
     work on the oil, to rounding. Oil that cavities find or lose has their pressure and does no work, also where a
     rupture line crosses a cell. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows and
     content are masses. The flow that leaves is that of `Exchange`.
@@ -151,7 +150,7 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     pressure = P - cavity if oil is None else oil.flow_work(P) - oil.flow_work(cavity)
     work = float(np.sum(pressure * (flows.outside - film.solver.area * flows.rate)))
     power = film.scales.pressure * film.parts.flow_scale
-    return sliding_power(film) + power * (work + _end_work(film)), flows.leaving
+    return powers(film).sliding + power * (work + _end_work(film)), flows.leaving
 
 
 def _end_work(film: SolvedFilm) -> float:

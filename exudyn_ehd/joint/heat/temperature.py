@@ -18,7 +18,7 @@ from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.joint.heat.heat_balance import BandSolver, HeatBalance, temperature_of
-from exudyn_ehd.joint.heat.power import OilFlows, contact_power_loss, heat_and_leakage
+from exudyn_ehd.joint.heat.power import OilFlows, heat_and_leakage, powers
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Rounding of the flow through the ends, as a share of the largest flow over a link.
@@ -256,7 +256,7 @@ class FilmTemperature(_Temperature):
         heat = self.sheared(film)
         film_heat(self.dropped(film), s.pressure, s.system.kx, s.system.kz, heat)
         heat *= flow_power
-        rubbed = contact_power_loss(film)
+        rubbed = powers(film).contact_loss
         if film.pressing is not None and rubbed > 0.0:
             friction = np.zeros(film.grid.shape)
             for (coefficient, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):

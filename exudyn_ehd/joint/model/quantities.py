@@ -7,22 +7,17 @@ import math
 import numpy as np
 
 from exudyn_ehd.film import loads, peak
-from exudyn_ehd.film.reynolds.gap import largest_eccentricity
-from exudyn_ehd.joint.heat.power import (
-    contact_power_loss,
-    contact_torque,
-    friction_torque,
-    power_loss,
-    stored_power,
-)
+from exudyn_ehd.joint.heat.power import powers
 from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
 
 def eccentricities(parts: FilmParts, pose: np.ndarray) -> dict[str, float]:
     """``eccentricity_ratio`` and ``largest_eccentricity_ratio`` of a scaled pose (4,); see `quantities`."""
+    x, y, bx, by = pose.tolist()
+    a, b = parts.half_length * bx, parts.half_length * by
     return {
-        "eccentricity_ratio": math.hypot(pose[0], pose[1]),
-        "largest_eccentricity_ratio": float(largest_eccentricity(pose, parts.half_length)),
+        "eccentricity_ratio": math.hypot(x, y),
+        "largest_eccentricity_ratio": max(math.hypot(x + a, y + b), math.hypot(x - a, y - b)),
     }
 
 
@@ -74,11 +69,14 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     """
     p, w, area = film.parts, film.journal, film.grid.area
     R = p.grid.reference_length
-    torque_scale = film.scales.shear * R**2
     angle, z = minimum_place(film)
     lower, upper = leakages(film)
-    poiseuille = 6.0 * film.loads.s_theta
-    load = film.pressing.integrals.sum(axis=0) * R**2 if film.pressing is not None else np.zeros(5)
+    power = powers(film)
+    torque_scale, poiseuille = film.scales.shear * R**2, 6.0 * film.loads.s_theta
+    contact_load = peak_contact = 0.0
+    if film.pressing is not None:
+        contact_load = R**2 * math.hypot(*film.pressing.integrals[:, :2].sum(axis=0).tolist())
+        peak_contact = max(float(f.max()) for f in film.pressing.P)
     largest, peak_angle, _ = refined_peak(film)
     out = {
         "minimum_gap": film.minimum_gap,
@@ -87,18 +85,18 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         "minimum_gap_z": z,
         "peak_pressure": largest,
         "peak_angle": peak_angle % (2.0 * math.pi),
-        "friction_torque": friction_torque(film),
+        "friction_torque": power.friction_torque,
         "friction_torque_unbroken": -torque_scale * (w.omega * film.loads.couette_unbroken - poiseuille),
         "friction_torque_bush": -float(film.loads.wrench[5]),
-        "power_loss": power_loss(film),
-        "stored_power": stored_power(film),
+        "power_loss": power.loss,
+        "stored_power": power.stored,
         "leakage": p.flow_scale * (lower + upper),
         "leakage_lower": p.flow_scale * lower,
         "leakage_upper": p.flow_scale * upper,
-        "contact_load": math.hypot(load[0], load[1]),
-        "contact_torque": contact_torque(film),
-        "contact_power_loss": contact_power_loss(film),
-        "peak_contact_pressure": 0.0 if film.pressing is None else max(float(f.max()) for f in film.pressing.P),
+        "contact_load": contact_load,
+        "contact_torque": power.contact_torque,
+        "contact_power_loss": power.contact_loss,
+        "peak_contact_pressure": peak_contact,
     }
     if p.supply is not None:
         out["supply_flow"] = float(supply_flows(film).sum())
@@ -126,7 +124,7 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
 def leakages(film: SolvedFilm) -> tuple[float, float]:
     """Scaled flows out of the lower and the upper end; times ``flow_scale`` in m3/s."""
     s, g = film.solver, film.grid
-    if not g.link_z.any():
+    if not g.flows_along_z:
         return 0.0, 0.0
     if s.closure.conserves_mass:
         inflow = s.inflow()

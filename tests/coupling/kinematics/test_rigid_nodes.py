@@ -10,6 +10,7 @@ import scenes
 import toy
 
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics.sides import derivatives_between, detached, motion_between
 
 ALL = [pair for pair in itertools.product(("ground", "EP", "Rxyz", "RotVec"), repeat=2) if pair != ("ground",) * 2]
 
@@ -139,13 +140,43 @@ def test_force_and_moment_on_journal_and_housing_cancel(housing, journal):
     mbs, joint, q, q_t = scenes.pair(housing, journal, seed=4)
     element = joint.element
     element.force(mbs, 0.0, 0, q.tolist(), q_t.tolist())
-    force_h, moment_h, force_j, moment_j = element._loads
+    force_h, moment_h, force_j, moment_j = scenes.marker_loads(element, element.last.evaluation.wrench)
     p_h, p_j = (side.frame[:, 3] for side in element.sides)
     scale = np.abs(force_j).max()
     np.testing.assert_array_equal(force_h, -force_j)
     total = moment_h + moment_j + np.cross(p_h, force_h) + np.cross(p_j, force_j)
     # arms of order one: rounding of force times arm
     np.testing.assert_allclose(total, 0.0, rtol=0, atol=1e-15 * 10 * scale)
+
+
+@pytest.mark.parametrize(("housing", "journal"), ALL)
+def test_pair_of_nodes_in_one_call_is_what_its_kernels_are_one_by_one(housing, journal):
+    mbs, joint, q, q_t = scenes.pair(housing, journal, seed=5)
+    rng, sides = np.random.default_rng(2), joint.element.sides
+    motion = motion_between(mbs, sides, q, q_t, None)
+    wrench, tangent = rng.normal(size=6), rng.normal(size=(6, 10))
+    together = derivatives_between(mbs, sides, (q, q_t), wrench, tangent)
+    force = np.empty(q.size)
+    relative.wrench_force(*(s.frame for s in sides), *(s.jac for s in sides), wrench, force)
+    n, (a, b) = sides[0].size, (detached(side) for side in sides)
+    for side, part in ((a, slice(n)), (b, slice(n, None))):
+        if side.size:
+            side.frame[:] = side.jac[:] = np.nan
+        side.update(mbs, q[part], q_t[part], None)
+        side.vary(mbs, q[part], q_t[part])
+    loads, own = np.empty((4, 3)), np.empty(q.size)
+    relative.global_loads(a.frame, b.frame, wrench, loads)
+    relative.generalized_force(a.jac, b.jac, loads, own)
+    stiffness, damping = np.zeros((2, q.size, q.size))
+    a.geometric(mbs, q[:n], *loads[:2], stiffness[:n, :n])
+    b.geometric(mbs, q[n:], *loads[2:], stiffness[n:, n:])
+    by_q, by_qt = relative.variation_of(a.frame, b.frame, a.jac, b.jac)
+    relative.tangent_matrices(a.frame, b.frame, a.jac, b.jac, loads, tangent, by_q, by_qt, stiffness, damping)
+    # the same operations; compilers may contract them elsewhere
+    np.testing.assert_allclose(motion, relative.motion_of(a.frame, b.frame), rtol=1e-13, atol=1e-15)
+    np.testing.assert_allclose(force, own, rtol=1e-13, atol=1e-14)
+    for got, expected in zip(together, (stiffness, damping, by_q, by_qt), strict=True):
+        np.testing.assert_allclose(got, expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("node", ["EP", "Rxyz", "RotVec"])

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.heat.power import heat_and_leakage, power_loss
+from exudyn_ehd.joint.heat.power import heat_and_leakage, powers
 from exudyn_ehd.joint.model.build import build_model, build_study_model
 from exudyn_ehd.status import Status
 from tests.film.cavitation.test_rupture_line import _coefficients, _films, _random_film
@@ -302,7 +302,7 @@ def test_heat_is_the_power_of_the_motion():
         film = model.evaluate(np.array([e * np.cos(a), e * np.sin(a), 0, 0, 0, 0, 0, 0, 300.0, 0.0])).film
         pressed_out = -bearing.cavitation.cavity_pressure * film.parts.flow_scale * heat_and_leakage(film)[1]
         assert (model.solver.oil_line.fields.s < 1.0).any()
-        assert abs(heat_and_leakage(film)[0] / power_loss(film) - 1.0) < 1e-11 + abs(pressed_out / power_loss(film))
+        assert abs(heat_and_leakage(film)[0] / powers(film).loss - 1.0) < 1e-11 + abs(pressed_out / powers(film).loss)
 
 
 @pytest.mark.parametrize(

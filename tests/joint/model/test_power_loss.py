@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.heat.power import Exchange, heat_and_leakage, sliding_power
+from exudyn_ehd.joint.heat.power import Exchange, heat_and_leakage, powers
 from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 
@@ -175,7 +175,7 @@ def test_heat_of_a_film_is_what_sliding_puts_in_less_the_work_on_oil_and_ends(cl
     pc = pc if np.isfinite(pc) else 0.0
     work = np.sum((p - pc) * (oil.outside - s.area * oil.rate)) * C * R**2
     ends = np.sum(p[:, -1] * s.H[:, -1] - p[:, 0] * s.H[:, 0]) * C * film.grid.width_x[0] * R
-    assert heat == pytest.approx(sliding_power(film) + work + MOTION[9] * ends, rel=1e-9)
+    assert heat == pytest.approx(powers(film).sliding + work + MOTION[9] * ends, rel=1e-9)
     assert heat == pytest.approx(heat_and_work(film)[0], rel=0.011)
 
 
