@@ -78,8 +78,7 @@ class FilmResponse:
         rho = rho_P = None
         if isinstance(s, CompressibleFilmSolver | NonlinearFilmSolver):
             self.matrix = s.newton_matrix()
-            of = s.elements if isinstance(s, NonlinearFilmSolver) else s
-            rho, rho_P = of.rho, of.rho_P
+            rho, rho_P = (of := s.elements if isinstance(s, NonlinearFilmSolver) else s).rho, of.rho_P
         else:
             slopes, terms = np.zeros((5, w.order.size)), film_terms(s.system.coefficients, 0.0, s.system.mass_old)
             film_slopes(s.fill, w.active | film.grid.fixed, None, None, terms, slopes)
@@ -93,8 +92,8 @@ class FilmResponse:
         if s.oil_line is not None:
             store += (s.area * s.H * s.oil_line.rise).reshape(-1)
         if liner is not None:
-            kept = s.area * s.fill * (1.0 if rho is None else rho)
-            store += np.where(w.active, kept * liner.gap_slopes.H_P, 0.0).reshape(-1)
+            rise = s.area * s.fill * liner.gap_slopes.H_P * (1.0 if rho is None else rho)
+            store += np.where(w.active, rise, 0.0).reshape(-1)
             followed = 1.0 + liner.gap_slopes.D_r.reshape(-1)[order]
             rows = -liner_weights(film)[:2] @ rows / film.scales.force
         self.store = diags_array(store[order])
