@@ -22,7 +22,8 @@ class LumpedThermal:
     Costs 5 % of a step at most, a sixth with a density law.
 
     ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film
-    dissipates, Q flow out of the bearing's ends (replaced by supply oil), G conductance to the housing,
+    dissipates, Q flow out of the bearing's ends (replaced by supply oil; what a supply area takes back from the film it
+    gives to it again), G conductance to the housing,
     ``C = rho c_p 2 pi R L c + capacity`` (with a density law, too: the mass in it at ambient pressure). Backward Euler
     at every accepted step, first order; the force of a step sees the temperature at its start, and so does the heat P
     of steps that are short beside the exchange of the oil; in longer ones P follows the temperature. `steady` and

@@ -6,6 +6,7 @@ from __future__ import annotations
 import abc
 
 import numpy as np
+from scipy.sparse import csc_matrix, diags_array
 
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
@@ -52,6 +53,14 @@ class NewtonFilmSolver(FilmSolver, abc.ABC):
         w = self.work
         lower, upper = self._exact_factor()
         solve_lu(lower, upper, w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
+
+    def newton_matrix(self) -> csc_matrix:
+        """J (count, count)."""
+        (lower, upper), count = self._exact_factor(), self.work.count
+        bands = range(1, upper.shape[1])
+        L = diags_array([lower[: count - k, k] for k in bands], offsets=[-k for k in bands], shape=(count, count))
+        U = diags_array([upper[: count - k, k] for k in (0, *bands)], offsets=[0, *bands], shape=(count, count))
+        return csc_matrix(U + L @ U)
 
     @property
     def content(self) -> np.ndarray:

@@ -143,14 +143,17 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     which holds none of the powers that store and give back: where nothing changes in time it is `Powers.loss` plus the
     work on the oil, to rounding. Oil that cavities find or lose has their pressure and does no work, also where a
     rupture line crosses a cell. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows and
-    content are masses. The flow that leaves is that of `Exchange`.
+    content are masses. The flow that leaves is that of `Exchange`, less what a supply area takes back from the film and
+    gives to it again; in a long bearing, whose oil has no other way out, all of it.
     """
     flows, oil = Exchange(film), film.parts.compressible
     P, cavity = film.oil.P, np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
     pressure = P - cavity if oil is None else oil.flow_work(P) - oil.flow_work(cavity)
     work = float(np.sum(pressure * (flows.outside - film.solver.area * flows.rate)))
     power = film.scales.pressure * film.parts.flow_scale
-    return powers(film).sliding + power * (work + _end_work(film)), flows.leaving
+    areas = film.parts.supply.masks if film.parts.supply is not None and film.grid.flows_along_z else ()
+    back = sum(min(np.maximum(side * flows.outside[at], 0.0).sum() for side in (1.0, -1.0)) for at in areas)
+    return powers(film).sliding + power * (work + _end_work(film)), flows.leaving - float(back)
 
 
 def _end_work(film: SolvedFilm) -> float:

@@ -8,7 +8,8 @@ x, and the oil content ``C(u, x)`` of the vertices, a small motion ``x exp(i nu 
 
 at fixed sets of full and cavitated vertices. The force's amplitude is ``-Z x`` with the dynamic stiffness
 ``Z = K + i nu C``, from one adjoint solve of ``(A + i nu S)^T`` per component of the force. For nu = 0 it is the
-stiffness of the steady film; for nu without bounds C tends to that of a sudden velocity.
+stiffness of the steady film; for nu without bounds C tends to that of a sudden velocity. On a liner A and S count its
+deflection as well.
 
 The threshold of whirl: a rotor of mass M on the bearing neither grows nor decays where ``Z(i nu)`` has the real
 eigenvalue ``M nu^2``.
@@ -41,13 +42,11 @@ from scipy.optimize import brentq
 from scipy.sparse import coo_matrix, csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.banded.assemble import add_corners, add_tangents
 from exudyn_ehd.film.cavitation.oil_line.curve import add_curve
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_slopes, film_terms
+from exudyn_ehd.film.reynolds.balance import film_slopes, film_terms
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
@@ -61,7 +60,7 @@ LARGEST_SPACE, NOTHING_NEW = 60, 1e-10
 
 
 class FilmResponse:
-    """Dynamic stiffness of a film on a rigid bore that conserves mass.
+    """Dynamic stiffness of a film on a rigid bore or a liner that conserves mass.
 
     Parameters
     ----------
@@ -72,35 +71,33 @@ class FilmResponse:
     """
 
     def __init__(self, film: SolvedFilm, tangent: np.ndarray) -> None:
-        s, w, shape = film.solver, film.solver.work, film.grid.shape
-        order = w.order[: w.count].copy()
-        slopes, store = np.zeros((5, w.order.size)), (s.area * s.H).reshape(-1)
-        full = w.active | film.grid.fixed
-        terms = film_terms(s.system.coefficients, 0.0, s.system.mass_old)
+        s, w, liner = film.solver, film.solver.work, film.parts.liner
+        order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
+        number[order] = np.arange(order.size)
+        store, rows, followed = (s.area * s.H).reshape(-1), adjoint_rows(film), np.ones(order.size)
         rho = rho_P = None
-        if isinstance(s, CompressibleFilmSolver):
-            terms, rho, rho_P = s.film, s.rho, s.rho_P
-        elif isinstance(s, ThinningFilmSolver):
-            rho, rho_P = s.elements.rho, s.elements.rho_P
-        film_slopes(s.fill, full, rho, rho_P, terms, slopes)
+        if isinstance(s, CompressibleFilmSolver | NonlinearFilmSolver):
+            self.matrix = s.newton_matrix()
+            rho, rho_P = (of := s.elements if isinstance(s, NonlinearFilmSolver) else s).rho, of.rho_P
+        else:
+            slopes, terms = np.zeros((5, w.order.size)), film_terms(s.system.coefficients, 0.0, s.system.mass_old)
+            film_slopes(s.fill, w.active | film.grid.fixed, None, None, terms, slopes)
+            if s.oil_line is not None:
+                add_curve(s.oil_line.fields, terms, slopes)
+            self.matrix = _matrix(slopes, number, film.grid.shape[1])
         if rho is None or rho_P is None:
             store = np.where(w.active.reshape(-1), 0.0, store)
         else:
             store = store * np.where(w.active, rho_P, rho).reshape(-1)
-        number = np.full(w.order.size, -1)
-        number[order] = np.arange(order.size)
         if s.oil_line is not None:
-            add_curve(s.oil_line.fields, terms, slopes)
             store += (s.area * s.H * s.oil_line.rise).reshape(-1)
-        if isinstance(s, ThinningFilmSolver):
-            along, *across = s.response()
-            add_tangents(along, terms.kx, terms.kz, full, slopes)
-            corners = _corners(across, terms, full, number.reshape(shape), (w.count, w.width))
-            self.matrix = _matrix(slopes, number, shape[1]) + corners
-        else:
-            self.matrix = _matrix(slopes, number, shape[1])
+        if liner is not None:
+            rise = s.area * s.fill * liner.gap_slopes.H_P * (1.0 if rho is None else rho)
+            store += np.where(w.active, rise, 0.0).reshape(-1)
+            followed = 1.0 + liner.gap_slopes.D_r.reshape(-1)[order]
+            rows = -liner_weights(film)[:2] @ rows / film.scales.force
         self.store = diags_array(store[order])
-        self.rows = adjoint_rows(film)[:2].T.astype(complex)
+        self.rows = rows[:2].T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count))
         fills = true_fills(film)
@@ -110,6 +107,8 @@ class FilmResponse:
         self.by_pose, self.by_rate, self.by_sway = by_motion[:2].copy(), by_motion[4:6] + by_fill[:2], by_fill[4:6]
         pose, rate = self._gradients(0.0)
         self.rest = -tangent[:2, :2] - pose, -tangent[:2, 4:6] - rate
+        # the tangent knows no rate of a liner's deflection
+        self.by_rate = self.by_rate * followed
 
     def at(self, frequency: float) -> np.ndarray:
         """Z (2, 2), N/m, at a frequency, rad/s."""
@@ -136,17 +135,6 @@ def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:
     known = (rows >= 0) & (columns >= 0)
     count = int(number.max()) + 1
     return coo_matrix((values[known], (rows[known], columns[known])), shape=(count, count)).tocsc()
-
-
-def _corners(
-    across: list[np.ndarray], terms: FilmTerms, full: np.ndarray, number: np.ndarray, size: tuple[int, int]
-) -> csc_matrix:
-    """What `exudyn_ehd.film.banded.assemble.add_corners` adds to a matrix of ``size`` (count, half-bandwidth)."""
-    count, width = size
-    lower, upper = np.zeros((2, count, width + 1))
-    add_corners(across[0], tuple(across[1:]), terms.kx, terms.kz, full, number, lower, upper)
-    bands = [*(upper[: count - k, k] for k in range(width + 1)), *(lower[: count - k, k] for k in range(1, width + 1))]
-    return csc_matrix(diags_array(bands, offsets=[*range(width + 1), *range(-1, -width - 1, -1)], shape=(count, count)))
 
 
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:

@@ -52,8 +52,9 @@ class EquilibriumResult:
         the temperature is held: motions that are quick beside the exchange of the film's oil. A flexible bore or
         journal and a liner follow without inertia. See ``settled_stiffness`` for the other limit.
     frequency : float
-        rad/s, of the small motions for which K and C hold. 0 where they do not depend on it, and for the slow motions
-        of surfaces that yield; with `ElrodAdams` that of the whirl threshold, or half the spin if there is none.
+        rad/s, of the small motions for which K and C hold. 0 where they do not depend on it, for the slow motions of
+        surfaces that yield, and with `ElrodAdams` on a flexible bore; with `ElrodAdams` on others that of the whirl
+        threshold, or half the spin if there is none.
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
@@ -61,10 +62,10 @@ class EquilibriumResult:
         any.
     critical_mass_error : float
         Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
-        the grid does not tell whether the bearing is stable at any mass, and with `ElrodAdams` between surfaces that
-        yield, whose delays it leaves out. Of all results the critical mass feels the
-        grid most: on the default film within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture
-        line on the vertices within some 20 % and several times.
+        the grid does not tell whether the bearing is stable at any mass, and with `ElrodAdams` on a flexible bore or
+        journal, whose delays it leaves out. Of all results the critical mass feels the grid most: on the default film
+        within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture line on the vertices within some
+        20 % and several times.
     residual : float
         Largest component of film force + load in x and y, divided by the load there.
     iterations : int
@@ -176,9 +177,9 @@ def equilibrium(
     come from `EquilibriumResult.dynamic_stiffness`. With ``thermal`` they hold at the temperature of the equilibrium;
     `EquilibriumResult.settled_stiffness` lets it follow. On a liner, a flexible bore or journal the stiffness is that
     of the steady film and the damping that of a slow motion; they follow quick ones with a delay, which the threshold
-    and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` these do not, and the damping on a flexible bore
-    is that of a sudden velocity. An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its
-    deformed state.
+    and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` on a liner all of it holds at the threshold's
+    frequency; on a flexible bore delays are left out, and the damping is that of a sudden velocity. An `ANCFBush`
+    strains as in `steady`, and stiffness and damping are those about its deformed state.
 
     Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
     of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
@@ -281,7 +282,7 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
-    if model.remembers_mass and not yields:
+    if model.remembers_mass and not model.flexible:
         response = FilmResponse(film, tangent)
     else:
         K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
@@ -293,7 +294,7 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
     there = Z.real, Z.imag / frequency
-    error = math.inf if yields and model.remembers_mass else critical_mass_error(model.bearing, *there)
+    error = math.inf if model.flexible and model.remembers_mass else critical_mass_error(model.bearing, *there)
     if isinstance(response, FilmResponse):
         return _SmallMotions(*there, frequency, ratio, mass, error, response)
     return _SmallMotions(K, C, 0.0, ratio, mass, error, response)

@@ -184,7 +184,9 @@ def steady(
         Slopes (bx, by) of the journal axis, rad.
     velocity : (float, float)
         dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets
-        this velocity, so that full parts are squeezed at once and cavities keep their oil content.
+        this velocity, so that full parts are squeezed at once and cavities keep their oil content; an `ElasticLiner`
+        has not yielded yet, so that the velocity makes no pressure on it. `EquilibriumResult.dynamic_stiffness` tells
+        more.
     axial_speed : float
         w, m/s.
     axial_position : float

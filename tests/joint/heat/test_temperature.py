@@ -335,3 +335,17 @@ def test_long_steps_do_not_swing_and_short_ones_are_explicit(thermal):
     film = model.evaluate(at, start, 1e-5)
     balance = model.effects.thermal.balance(film.film, film.history().temperature)
     assert balance["heat_in"] == model.effects.thermal.balance(film.film, start.temperature)["heat_in"]
+
+
+@pytest.mark.parametrize("closure", [ehd.FullSommerfeld(), ehd.ElrodAdams()], ids=lambda c: type(c).__name__)
+def test_a_groove_that_takes_oil_back_carries_no_heat_away(closure):
+    """One temperature: friction and pumping heat the oil that leaves at the ends, for all that goes round in a groove.
+
+    Full films, of an eccentricity and a pressure at which no oil comes in at the ends.
+    """
+    groove = ehd.CircumferentialGroove(width=0.005, pressure=1e6)
+    made = bearing(ehd.LumpedThermal(supply_temperature=SUPPLY), supply=(groove,), cavitation=closure)
+    film = ehd.steady(made, speed=OMEGA, eccentricity_ratio=0.15)
+    assert film.leakage == pytest.approx(film.supply_flows[0], rel=1e-9)
+    heat = film.power_loss + groove.pressure * film.leakage
+    assert film.temperature - SUPPLY == pytest.approx(heat / (CAPACITY * film.leakage), rel=1e-7)

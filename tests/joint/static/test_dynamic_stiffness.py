@@ -84,6 +84,42 @@ def test_response_is_that_of_the_film_in_time(scene):
         assert np.abs(2 * fine - coarse - expected).max() < 3e-3 * np.abs(expected).max()
 
 
+LINERS = {
+    "plain": {},
+    "density": {"oil": {"density_law": ehd.DowsonHigginson(coefficient=5e-9)}},
+    "shear": {"oil": {"shear_law": ehd.CarreauShear(relaxation_time=2e-6, exponent=0.6)}},
+    "rough": {"asperity": ehd.GreenwoodTripp(composite_roughness=1.5e-6, composite_modulus=2e9)},
+}
+
+
+@pytest.mark.parametrize("scene", LINERS)
+def test_response_on_a_liner_is_that_of_the_film_in_time(scene):
+    """Slow: the steady film's stiffness; at half the spin: steps, extrapolated; the threshold is where Z has it."""
+    made = bearing(film=(48, 6), bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9), **LINERS[scene])
+    result = at_load(made, 0.35 if scene != "rough" else 0.9)
+    coarse, fine = (forced(made, result.position, 0.5 * SPEED, n) for n in (120, 240))
+    slow, half = result.dynamic_stiffness([0.0, 0.5 * SPEED])
+    assert np.abs(2 * fine - coarse - half).max() < 1e-3 * np.abs(half).max()
+    step, columns = 1e-4 * C, []
+    for shift in step * np.eye(2):
+        ends = [result.position + sign * shift for sign in (1.0, -1.0)]
+        places = [(math.hypot(*end) / C, math.atan2(end[1], end[0])) for end in ends]
+        force = [ehd.steady(made, speed=SPEED, eccentricity_ratio=e, direction=d).force[:2] for e, d in places]
+        columns.append((force[1] - force[0]) / (2.0 * step))
+    assert np.abs(np.transpose(columns) - slow).max() < 1e-3 * np.abs(slow).max()
+    assert result.frequency == result.whirl_ratio * SPEED
+    assert result.critical_mass_error < math.inf
+
+
+def test_on_a_hard_liner_as_on_a_rigid_bore():
+    hard = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e16)
+    rigid, lined = (at_load(bearing(film=(48, 6), bush=bush), 0.35) for bush in (None, hard))
+    nu = [1e-3, 0.5 * SPEED, 2.0 * SPEED]
+    np.testing.assert_allclose(lined.dynamic_stiffness(nu), rigid.dynamic_stiffness(nu), rtol=1e-5)
+    for name in ("stiffness", "damping", "frequency", "whirl_ratio", "critical_mass", "critical_mass_error"):
+        np.testing.assert_allclose(getattr(lined, name), getattr(rigid, name), rtol=1e-5, err_msg=name)
+
+
 @pytest.mark.parametrize("scene", SCENES)
 def test_slow_and_fast_limits(scene):
     """Slow: the steady film's stiffness, by differences of its force. Fast: the damping of a sudden velocity."""
