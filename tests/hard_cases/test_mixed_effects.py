@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.solved_film import History
 
 R, L, C = 0.02, 0.02, 25e-6
@@ -96,8 +97,8 @@ class Balances:
         return row
 
     def cancel(self, trial):
-        out, (a, b), loads = self.force(trial), self.element.sides, self.element._loads
-        wrench = trial.evaluation.wrench
+        out, (a, b), loads, wrench = self.force(trial), self.element.sides, np.empty((4, 3)), trial.evaluation.wrench
+        relative.global_loads(a.frame, b.frame, wrench, loads)
         errors = loads[0] + loads[2], loads[1] + loads[3] + np.cross(b.frame[:, 3] - a.frame[:, 3], loads[2])
         for error, size in zip(errors, (wrench[:3], wrench[3:]), strict=True):
             self.momentum = max(self.momentum, np.abs(error).max() / max(np.abs(size).max(), 1.0))

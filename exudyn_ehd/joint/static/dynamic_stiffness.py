@@ -78,7 +78,8 @@ class FilmResponse:
         rho = rho_P = None
         if isinstance(s, CompressibleFilmSolver | NonlinearFilmSolver):
             self.matrix = s.newton_matrix()
-            rho, rho_P = (of := s.elements if isinstance(s, NonlinearFilmSolver) else s).rho, of.rho_P
+            of = s.elements if isinstance(s, NonlinearFilmSolver) else s
+            rho, rho_P = of.rho, of.rho_P
         else:
             slopes, terms = np.zeros((5, w.order.size)), film_terms(s.system.coefficients, 0.0, s.system.mass_old)
             film_slopes(s.fill, w.active | film.grid.fixed, None, None, terms, slopes)
