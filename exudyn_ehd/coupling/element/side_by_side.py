@@ -14,8 +14,8 @@ kernels are compiled, too. An error of an evaluation is dropped, and met again i
 
 Python runs on one thread at a time: what goes side by side is the film's solution, a compiled call that does without
 Python's lock. It is 0.7 of an evaluation with its tangent on 48 x 6, 0.85 on 96 x 10, 0.9 on 192 x 16, and 0.3, 0.5 and
-0.7 of a step of a rotor on its film: on two cores no run can be more than 1.2, 1.3 and 1.6 times as fast. Runs of twelve
-rotors were 1.0, 1.1 and 1.5 times as fast; a thread waits for the lock some 20 us.
+0.7 of a step of a rotor on its film: on two cores no run can be more than 1.2, 1.3 and 1.6 times as fast. Runs of
+twelve rotors were 1.0, 1.1 and 1.5 times as fast; a thread waits for the lock some 20 us.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
+from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.balance.faces import FacesUnderLoad
@@ -34,6 +34,11 @@ SURE = 0.05
 ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
 # What is left inside the cells where nothing cancels.
 LEFT_IN_CELLS = 0.007
+LEFT_OUT = (
+    "equilibrium: with ElrodAdams on a flexible bore or journal damping, whirl_ratio and critical_mass leave out how "
+    "the cavity's oil follows: the damping is that of a sudden velocity, and a mass was 1.7 times too large on a ring "
+    "that hardly yields; position and stiffness hold. Take SwiftStieber(), a rigid bore or an ElasticLiner for the others."
+)
 LOADS = {"smallest": 1e-30, "largest": 1e15}
 
 
@@ -178,8 +183,9 @@ def equilibrium(
     `EquilibriumResult.settled_stiffness` lets it follow. On a liner, a flexible bore or journal the stiffness is that
     of the steady film and the damping that of a slow motion; they follow quick ones with a delay, which the threshold
     and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` on a liner all of it holds at the threshold's
-    frequency; on a flexible bore delays are left out, and the damping is that of a sudden velocity. An `ANCFBush`
-    strains as in `steady`, and stiffness and damping are those about its deformed state.
+    frequency; on a flexible bore the cavity's oil does not follow, the damping is that of a sudden velocity, and a
+    UserWarning says so. An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed
+    state.
 
     Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
     of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
@@ -282,9 +288,12 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
-    if model.remembers_mass and not model.flexible:
+    left_out = model.remembers_mass and model.flexible
+    if model.remembers_mass and not left_out:
         response = FilmResponse(film, tangent)
     else:
+        if left_out:
+            warn_user(LEFT_OUT, UserWarning)
         K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
         if found.faces is not None:
             K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
@@ -294,7 +303,7 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
     there = Z.real, Z.imag / frequency
-    error = math.inf if model.flexible and model.remembers_mass else critical_mass_error(model.bearing, *there)
+    error = math.inf if left_out else critical_mass_error(model.bearing, *there)
     if isinstance(response, FilmResponse):
         return _SmallMotions(*there, frequency, ratio, mass, error, response)
     return _SmallMotions(K, C, 0.0, ratio, mass, error, response)

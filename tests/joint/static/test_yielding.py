@@ -144,3 +144,11 @@ def _orbits(made, rest, load, mass):
     away = np.hypot(*(history.motion[:, :2] - rest.position).T)
     early, late = (away[(history.time > a * turn) & (history.time <= (a + 10) * turn)].max() for a in (10, 20))
     return late, early
+
+
+@pytest.mark.parametrize("surface", ["pin", pytest.param("bush", marks=pytest.mark.slow)])
+def test_what_flexible_bores_leave_out_of_cavities_is_said(surface):
+    made = bearing(surface, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    with pytest.warns(UserWarning, match="leave out how the cavity's oil follows"):
+        found = ehd.equilibrium(made, speed=SPEED, load=(2000.0, 0.0))
+    assert found.critical_mass_error == np.inf
