@@ -37,7 +37,7 @@ LEFT_IN_CELLS = 0.007
 LEFT_OUT = (
     "equilibrium: with ElrodAdams on a flexible bore or journal damping, whirl_ratio and critical_mass leave out how "
     "the cavity's oil follows: the damping is that of a sudden velocity, and a mass was 1.7 times too large on a ring "
-    "that hardly yields; position and stiffness hold. Take SwiftStieber(), a rigid bore or an ElasticLiner for the others."
+    "that hardly yields; position and stiffness hold. Take SwiftStieber(), a rigid bore or an ElasticLiner for these."
 )
 LOADS = {"smallest": 1e-30, "largest": 1e15}
 
