@@ -183,7 +183,7 @@ class Scene:
         """Force and moment of the film on journal, bush and housing together over those on the journal."""
         element = self.joint.element
         a, b = element.sides
-        loads = marker_loads(element, wrench)
+        loads = marker_loads(element, wrench, generalized)
         force, moment = loads[2].copy(), loads[3] + np.cross(b.frame[:, 3] - a.frame[:, 3], loads[2])
         if self.joint.bush is None:
             force += loads[0]

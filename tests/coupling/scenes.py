@@ -26,10 +26,17 @@ def rotation(vector):
     return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
 
 
-def marker_loads(element, wrench):
-    """Global force and moment at the two markers (4, 3) of a wrench (6,): F_H, M_H, F_J, M_J."""
-    loads = np.empty((4, 3))
-    relative.global_loads(*(side.frame for side in element.sides), wrench, loads)
+def marker_loads(element, wrench, generalized):
+    """Global force and moment at the two markers (4, 3) of a wrench (6,): F_H, M_H, F_J, M_J.
+
+    The journal gets these and no others by the generalized force (n,) that Exudyn is given.
+    """
+    loads, (housing, journal) = np.empty((4, 3)), element.sides
+    relative.global_loads(housing.frame, journal.frame, wrench, loads)
+    given = np.asarray(generalized)[housing.size : housing.size + journal.size]
+    own = journal.jac[0].T @ loads[2] + journal.jac[1].T @ loads[3]
+    # rounding
+    np.testing.assert_allclose(given, own, rtol=1e-10, atol=1e-12 * np.abs(loads).max())
     return loads
 
 

@@ -127,7 +127,7 @@ def test_force_and_moment_cancel_on_a_turning_housing():
 
     def watch(trial):
         force, (a, b), F = evaluate(trial), element.sides, trial.evaluation.wrench
-        loads = marker_loads(element, F)
+        loads = marker_loads(element, F, force)
         moment = loads[1] + loads[3] + np.cross(b.frame[:, 3] - a.frame[:, 3], loads[2])
         unbalanced.append(np.abs(loads[0] + loads[2]).max() / np.abs(F[:3]).max())
         unbalanced.append(np.abs(moment).max() / np.abs(F[3:]).max())

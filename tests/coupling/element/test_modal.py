@@ -151,7 +151,7 @@ def test_force_and_moment_on_journal_and_housing_cancel_on_a_turning_housing():
         force = original_bound(trial)
         a, b = joint.element.sides
         F = trial.evaluation.wrench
-        loads = marker_loads(joint.element, F)
+        loads = marker_loads(joint.element, F, force)
         records.append(
             (
                 np.abs(loads[0] + loads[2]).max() / np.abs(F[:3]).max(),

@@ -75,7 +75,7 @@ def test_force_and_moment_on_journal_and_bush_cancel(housing):
     force = np.array(element.force(mbs, 0.0, 0, q.tolist(), q_t.tolist()))
     a, b = element.sides
     nodal = force[element.rigid_size :].reshape(-1, 3)
-    _, _, on_journal, moment = marker_loads(element, element.last.evaluation.wrench)
+    _, _, on_journal, moment = marker_loads(element, element.last.evaluation.wrench, force)
     arm = b.frame[:, 3] - a.frame[:, 3]
     # rounding of sums over a hundred nodes
     assert np.abs(nodal.sum(axis=0) + on_journal).max() < 1e-12 * np.abs(on_journal).max()

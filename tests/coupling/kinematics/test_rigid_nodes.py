@@ -139,8 +139,8 @@ def test_force_and_moment_on_journal_and_housing_cancel(housing, journal):
     """Resultants about the global origin."""
     mbs, joint, q, q_t = scenes.pair(housing, journal, seed=4)
     element = joint.element
-    element.force(mbs, 0.0, 0, q.tolist(), q_t.tolist())
-    force_h, moment_h, force_j, moment_j = scenes.marker_loads(element, element.last.evaluation.wrench)
+    given = element.force(mbs, 0.0, 0, q.tolist(), q_t.tolist())
+    force_h, moment_h, force_j, moment_j = scenes.marker_loads(element, element.last.evaluation.wrench, given)
     p_h, p_j = (side.frame[:, 3] for side in element.sides)
     scale = np.abs(force_j).max()
     np.testing.assert_array_equal(force_h, -force_j)
