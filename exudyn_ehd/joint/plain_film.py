@@ -9,8 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.cavitation.active_set import solve_active_set
 from exudyn_ehd.film.cavitation.line_newton import find_line
+from exudyn_ehd.film.cavitation.rupture_line import line_of
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.reynolds.links import set_links
@@ -57,7 +59,7 @@ def solve_plain(
         g.weight,
         y.fields,
         (g.fixed, work.active),
-        None if line is None else line.fields,
+        None if line is None else line.blocks,
         work.factor,
         work.unknowns,
         out,
@@ -101,6 +103,8 @@ def _plain_film(motion, scale, known, sizes, last, at, mesh, weight, fields, set
     ``last``: whether there is a squeeze, whether pressures and factor are those of the film before, and that factor's
     size; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
+    motion, known, at, mesh, weight, fields = lend((motion, known, at, mesh, weight, fields))
+    sets, factor, x, out = lend((sets, factor, x, out))
     force, shear, radius, half_length, flow_x, cavity_shear = sizes
     squeeze, is_known, count, width = last
     pc = known[2]
@@ -127,7 +131,7 @@ def _plain_film(motion, scale, known, sizes, last, at, mesh, weight, fields, set
         forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
         last = (count, width) if is_known else (np.int64(0), np.int64(1))
         ok, steps, count, width, peak, own = find_line(
-            (kx, kz, b), fixed, pc, forth, is_known, line, active, factor, last, x, P
+            (kx, kz, b), fixed, pc, forth, is_known, line_of(line), active, factor, last, x, P
         )
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)

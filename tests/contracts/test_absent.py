@@ -150,6 +150,7 @@ EFFECTS = {
 SHARED = {
     "banded.lu",
     "banded.lanes",
+    "banded.lending",
     "cavitation.closures",
     "cavitation.active_set",
     "models",

@@ -28,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.grid import Directions, Mesh
 from exudyn_ehd.film.reynolds.links import LinkFlux
@@ -87,6 +88,8 @@ class RuptureLine:
     ----------
     fields : tuple
         The arrays of a `Line`.
+    blocks : (7, n m) array, (n m + 1,) array
+        The same for `line_of`.
     f, k, s, whole, places, share : arrays
         Of ``fields``, the first three (n, m).
     peak : float
@@ -97,8 +100,9 @@ class RuptureLine:
 
     def __init__(self, shape: tuple[int, int]) -> None:
         size = shape[0] * shape[1]
-        f, k, s, whole, limit, shift, share = np.zeros((7, size))
-        places = np.zeros(size + 1, dtype=np.int64)
+        block, places = np.zeros((7, size)), np.zeros(size + 1, dtype=np.int64)
+        f, k, s, whole, limit, shift, share = block
+        self.blocks = block, places
         # kernels are handed plain tuples, see `exudyn_ehd.film.grid.Mesh`
         self.fields: tuple[np.ndarray, ...] = tuple(Line(f, k, s, whole, limit, places, shift, share))
         self.f, self.k, self.s = (field.reshape(shape) for field in (f, k, s))
@@ -130,6 +134,13 @@ class RuptureLine:
         out = np.empty((2, places.size))
         line_weights(places, self.f, self.k, self.s, out)
         return out
+
+
+@njit(cache=True)
+def line_of(blocks):
+    """The arrays of a `Line` from two that hold them all, which are sooner handed to a kernel."""
+    block, places = lend(blocks)
+    return block[0], block[1], block[2], block[3], block[4], places, block[5], block[6]
 
 
 @njit(cache=True)

@@ -9,9 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.cavitation.line_newton import refine_line, solve_corrected
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_weights
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_of, line_weights
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
@@ -44,7 +45,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
     known = (0, 0.0, True) if line is None else (work.count if line.own_links else 0, line.peak, line.exact)
     exact = _plain_tangent(
         y.fields,
-        None if line is None else line.fields,
+        None if line is None else line.blocks,
         work.factor,
         (work.count, work.width),
         known,
@@ -69,6 +70,7 @@ def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, spee
 
     ``film``: ``FilmSystem.fields``.
     """
+    film, factor, fields, sets, at, mesh, out = lend((film, factor, fields, sets, at, mesh, out))
     order, _, number, band, inv_diag = factor
     (count, width), (first, peak, exact) = size, known
     kx, kz, b, H, HF, P = film[0], film[1], film[4], film[5], film[6], film[8]
@@ -77,20 +79,21 @@ def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, spee
     cos_x, sin_x, _, _, z = at
     vx, vz, flow_x, cavity_shear = speeds
     if line is not None and not exact:
-        exact = refine_line((kx, kz, b), line, factor, count, width, first, peak, 0.0)
+        exact = refine_line((kx, kz, b), line_of(line), factor, count, width, first, peak, 0.0)
     lam = np.empty((4, count))
     load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
     if line is None or exact:
         solve_ldl(band, inv_diag, count, width, lam)
     else:
-        solve_corrected(band, inv_diag, count, width, line[7], lam)
+        solve_corrected(band, inv_diag, count, width, line_of(line)[7], lam)
     link_derivatives(P, H, HF, None, None, None, None, None, vx, vz, flow_x, mesh, link_fields)
     columns = np.empty((10, count))
     motion_columns(order, count, link_fields, ones, by_rate, by_gap, at, columns)
     if line is not None:
-        places = line[5][: line[5][-1]]
+        f, k, s, _, _, places, _, _ = line_of(line)
+        places = places[: places[-1]]
         weights, by, rows = np.empty((2, places.size)), np.zeros((8, places.size)), number.reshape(-1)[places]
-        line_weights(places, line[0], line[1], line[2], weights)
+        line_weights(places, f, k, s, weights)
         line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
         add_line_columns((rows, places, by), at, columns)
     gradient, field = np.empty((4, 10)), np.empty((1, *H.shape))
