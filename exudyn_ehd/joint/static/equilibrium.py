@@ -16,7 +16,7 @@ from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import remembered
-from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
@@ -35,9 +35,9 @@ ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
 # What is left inside the cells where nothing cancels.
 LEFT_IN_CELLS = 0.007
 LEFT_OUT = (
-    "equilibrium: with ElrodAdams on a flexible bore or journal damping, whirl_ratio and critical_mass leave out how "
-    "the cavity's oil follows: the damping is that of a sudden velocity, and a mass was 1.7 times too large on a ring "
-    "that hardly yields; position and stiffness hold. Take SwiftStieber(), a rigid bore or an ElasticLiner for these."
+    "equilibrium: with ElrodAdams on a flexible bore or journal damping, whirl_ratio and critical_mass are nan: they "
+    "leave out how the cavity's oil follows; position and stiffness hold. Take SwiftStieber(), a rigid bore or an "
+    "ElasticLiner for them."
 )
 LOADS = {"smallest": 1e-30, "largest": 1e15}
 
@@ -58,19 +58,18 @@ class EquilibriumResult:
         journal and a liner follow without inertia. See ``settled_stiffness`` for the other limit.
     frequency : float
         rad/s, of the small motions for which K and C hold. 0 where they do not depend on it, for the slow motions of
-        surfaces that yield, and with `ElrodAdams` on a flexible bore; with `ElrodAdams` on others that of the whirl
-        threshold, or half the spin if there is none.
+        surfaces that yield; with `ElrodAdams` that of the whirl threshold, or half the spin if there is none.
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
         Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at
-        any.
+        any. With `ElrodAdams` on a flexible bore or journal it is nan, as are ``damping``, ``whirl_ratio`` and the
+        error: how the cavity's oil follows there is not known.
     critical_mass_error : float
         Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
-        the grid does not tell whether the bearing is stable at any mass, and with `ElrodAdams` on a flexible bore or
-        journal, whose delays it leaves out. Of all results the critical mass feels the grid most: on the default film
-        within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture line on the vertices within some
-        20 % and several times.
+        the grid does not tell whether the bearing is stable at any mass. Of all results the critical mass feels the
+        grid most: on the default film within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture
+        line on the vertices within some 20 % and several times.
     residual : float
         Largest component of film force + load in x and y, divided by the load there.
     iterations : int
@@ -183,9 +182,8 @@ def equilibrium(
     `EquilibriumResult.settled_stiffness` lets it follow. On a liner, a flexible bore or journal the stiffness is that
     of the steady film and the damping that of a slow motion; they follow quick ones with a delay, which the threshold
     and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` on a liner all of it holds at the threshold's
-    frequency; on a flexible bore the cavity's oil does not follow, the damping is that of a sudden velocity, and a
-    UserWarning says so. An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed
-    state.
+    frequency; on a flexible bore or journal damping and threshold are nan, and a UserWarning says why. An `ANCFBush`
+    strains as in `steady`, and stiffness and damping are those about its deformed state.
 
     Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
     of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
@@ -288,22 +286,25 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
-    left_out = model.remembers_mass and model.flexible
-    if model.remembers_mass and not left_out:
+    if model.remembers_mass and model.flexible:
+        warn_user(LEFT_OUT, UserWarning)
+        unknown = math.nan
+        return _SmallMotions(-tangent[:2, :2], np.full((2, 2), unknown), 0.0, unknown, unknown, unknown, None)
+    if model.remembers_mass:
         response = FilmResponse(film, tangent)
     else:
-        if left_out:
-            warn_user(LEFT_OUT, UserWarning)
-        K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
+        # on a liner the damping is that of a slow motion, which it follows
+        slow = evaluation.tangent(slow_motion=True) if model.parts.liner is not None else tangent
+        K, C = -tangent[:2, :2], -slow[:2, 4:6]
         if found.faces is not None:
             K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
-        if yields and not model.remembers_mass:
+        if yields:
             response = yielding_response(evaluation, K, C)
     ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
     there = Z.real, Z.imag / frequency
-    error = math.inf if left_out else critical_mass_error(model.bearing, *there)
+    error = critical_mass_error(model.bearing, *there)
     if isinstance(response, FilmResponse):
         return _SmallMotions(*there, frequency, ratio, mass, error, response)
     return _SmallMotions(K, C, 0.0, ratio, mass, error, response)
@@ -330,20 +331,6 @@ def _faces(model: BearingModel, position: float, load: float | None, across: flo
     if bearing.thrust is not None and bearing.thrust.feed is not None:
         return FedFacesUnderLoad(model, position, load, size, "equilibrium")
     return FacesUnderLoad(bearing, position, load, size, "equilibrium")
-
-
-def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:
-    """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner.
-
-    See `equilibrium`.
-    """
-    model = evaluation.model
-    if model.parts.liner is not None:
-        return evaluation.tangent(slow_motion=True)
-    if not model.remembers_mass:
-        return tangent
-    sudden = model.evaluate(evaluation.motion, evaluation.history())
-    return sudden.steady_tangent(sudden.steady_tangent())
 
 
 def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:
