@@ -57,7 +57,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
-from exudyn_ehd.film.thrust.options import JournalLeakage, StepLand, TaperLand, ThrustFaces
+from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
 from exudyn_ehd.joint.audit.audit import Audit, Finding
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
@@ -166,8 +166,11 @@ if TYPE_CHECKING:
     from exudyn_ehd.studies.recommend import Recommendation, recommend
     from exudyn_ehd.studies.steps import StepRecommendation, recommend_steps
 else:
+    _GONE = {"JournalLeakage": "give ThrustFaces(inner_pressures=...) the pressures at the inner edges"}
 
     def __getattr__(name):
+        if name in _GONE:
+            raise InputError(f"exudyn_ehd.{name} is not supported any more; {_GONE[name]}.")
         if name in _LAZY:
             return getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name)
         near = {known.lower(): known for known in __all__}
@@ -240,7 +243,6 @@ __all__ = [
     "JointHistory",
     "JointState",
     "JournalBearing",
-    "JournalLeakage",
     "LastCycle",
     "LineLoad",
     "LongBearing",

@@ -39,8 +39,7 @@ def SolveEquilibrium(
     ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes, their
     unbalance is left to `RotorResult.unbalance_response`. Loads with user functions count as they are at the start
     time. Bearings have rigid surfaces and films whose K and C hold at any frequency: no `ElrodAdams`, heat, wear,
-    liners, flexible bushes. Films on end faces take part, in all but the result's values of single films, those of
-    films that feed them with the pressures at their ends held.
+    liners, flexible bushes. Films on end faces take part, in all but the result's values of single films.
 
     Parameters
     ----------

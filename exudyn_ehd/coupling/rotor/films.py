@@ -119,10 +119,7 @@ class RotorFilm:
         found = self._on_faces
         if not np.all(np.isfinite(self.motion)) or (found is not None and found.status is not Status.CONVERGED):
             return None
-        if self.faces is None or found is None:
-            evaluation = self.model.evaluate(self.motion)
-        else:
-            evaluation = self.faces.beside(found, self.model)
+        evaluation = self.model.evaluate(self.motion)
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:

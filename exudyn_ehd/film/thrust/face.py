@@ -25,7 +25,6 @@ and y; E = -int h u . grad p for the turn and the shifts along x and y.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -73,19 +72,6 @@ class FaceState:
     inflow: float = np.nan
     outflow: float = np.nan
     contact_load: float = np.nan
-
-
-class FaceFeed(NamedTuple):
-    """Derivatives about the inner edge of a face, SI units.
-
-    wrench : (6,) array, of the wrench to the edge's pressure
-    flow : float, of the flow through the edge to that pressure
-    by_motion : (9,) array, of that flow to the motion
-    """
-
-    wrench: np.ndarray
-    flow: float
-    by_motion: np.ndarray
 
 
 class FaceFilm:
@@ -170,10 +156,6 @@ class FaceFilm:
     def gap(self) -> np.ndarray:
         """That the film of the last solution has (n, m), m."""
         return self.solver.H * self.scales.c
-
-    def set_inner_pressure(self, pressure: float) -> None:
-        """Pressure at the inner radius from the next evaluation on, Pa."""
-        self.known[0] = pressure / self.scales.pressure
 
     def _set_gap(self, motion: np.ndarray) -> float:
         """Gaps and the weighed rate into the solver's buffers; the smallest scaled gap of the surfaces."""
@@ -271,16 +253,11 @@ class FaceFilm:
             sens.cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
         return self._by_motion(sens)
 
-    def _adjoint(self, fields: np.ndarray, linear: bool = False) -> np.ndarray:
-        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m).
-
-        ``linear``: over the pressure of the film before it is cut off.
-        """
+    def _adjoint(self, fields: np.ndarray) -> np.ndarray:
+        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m)."""
         s, w, y = self.solver, self.solver.work, self.solver.system
         unknown = w.order[: w.count]
         rows = fields.reshape(len(fields), -1)[:, unknown]
-        if linear:
-            return s.adjoint(rows)
         rows *= w.active.reshape(-1)[unknown]
         if self.closure.clips and self.closure.line_in_cells:
             rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
@@ -305,28 +282,4 @@ class FaceFilm:
         scale = np.array([1.0, k.R, k.R]) / k.c
         return np.concatenate(
             (pose * scale, self.squeeze * through * scale, 0.5 * sens.speed[:, :1], shift / k.R), axis=1
-        )
-
-    def feed(self) -> FaceFeed:
-        """What the inner edge's pressure does in the last evaluation, and the motion to the flow through it."""
-        s, a, k = self.solver, self.annulus, self.scales
-        y, count = s.system, 7
-        # the flow is the sum of k_z (p_0 - p_1) + area dh/dt over the edge
-        links, fields = y.kz[:, 0], np.zeros((count, *a.grid.shape))
-        fields[:3], fields[3:6] = a.moments * a.weight, self.rows
-        edge = fields[:, :, 0].sum(axis=1)
-        fields[6, :, 1] = -links
-        edge[6] = links.sum()
-        P, pressed = s.flow_pressures()[0], self.closure.clips and self.known[0] > self.known[2]
-        lam = np.concatenate((self._adjoint(fields[:6]), self._adjoint(fields[6:], linear=pressed)))
-        by_pressure = (edge + lam[:, :, 1] @ links) / k.pressure
-        sens = s.sensitivities(lam[6:])
-        gap, slope = 0.5 * (s.H[:, 0] + s.H[:, 1]), None if s.flux is None else s.flux.gz_h[:, 0] / s.flux.gz[:, 0]
-        half = 0.5 * links * (P[:, 0] - P[:, 1]) * (3.0 / gap if slope is None else slope)
-        sens.cell[0, :, :2] += half[:, None]
-        sens.rate[0, :, 0] += s.squeeze * s.area[:, 0]
-        self._to_true_gap(sens)
-        flow = k.c * k.R**2
-        return FaceFeed(
-            self._weights() @ by_pressure[:6], flow * float(by_pressure[6]), flow * self._by_motion(sens)[0]
         )

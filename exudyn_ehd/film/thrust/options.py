@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.film.supply.areas import axial_span, placed
-from exudyn_ehd.film.supply.checks import SHORTEST_LAND
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.status import (
     InputError,
@@ -97,40 +95,6 @@ class StepLand(_Pads):
 
 
 @dataclass(frozen=True, kw_only=True)
-class JournalLeakage:
-    """``feed`` of `ThrustFaces`: the oil that leaves the journal's film at an end enters the face there.
-
-    Between the film's end and the inner edge of the face lies a channel around the journal, a chamfer, that evens out
-    the pressure: one pressure p_e for each end, at which the flows are the same, or at which the face takes more than
-    the film gives and the rest comes from around the channel::
-
-        p_e > p_0,  Q_film(p_e) = Q_face(p_e)    or    p_e = p_0,  Q_film(p_0) <= Q_face(p_0),
-
-    with p_0 of the bearing's ``end_pressures``. Pads that press oil inwards give it to the channel, and the journal's
-    film takes it: a negative flow of both. The channel holds no oil, what turns in it makes no pressure, and, as with
-    given pressures, what it presses on the collar is left out: p_e pi (r_i^2 - R^2) between the journal's radius and
-    the inner one. Leakage falls with p_e and the face's flow rises, so that there is one solution, which Newton's
-    method finds with both films in every evaluation.
-
-    Cavities without a memory find oil where a film begins anew: name the ``supply`` that brings it. A cavity that
-    reaches an end takes oil from the channel (`exudyn_ehd.film.loads`). With `SwiftStieber` on the default grid
-    the flow out of the journal's film is right to 2 % of what leaves into a cavity's pressure, or to 4 % beside an
-    axial groove. `Gumbel`, whose pressures end without a balance of the oil, is refused.
-
-    For a rigid bore and journal with ``film=FiniteLength(...)`` or ``ShortBearing(...)``, in joints, too.
-
-    Examples
-    --------
-    >>> groove = ehd.CircumferentialGroove(width=2e-3, pressure=2e5)
-    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
-    >>> faces = ehd.ThrustFaces(inner_radius=0.025, outer_radius=0.04, clearance=20e-6, feed=ehd.JournalLeakage())
-    >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(groove,), thrust=faces), speed=50.0, eccentricity_ratio=0.2)
-    >>> (1e-3 * film.faces.edge_pressures).round(1), (1e9 * film.faces.feed).round(1)  # kPa, mm3/s
-    (array([135.8, 135.8]), array([60.5, 60.5]))
-    """
-
-
-@dataclass(frozen=True, kw_only=True)
 class ThrustFaces:
     """Oil films between the end faces of a bush and collars of its journal: `JournalBearing.thrust`.
 
@@ -154,8 +118,6 @@ class ThrustFaces:
         What takes over before a gap vanishes; None: a gap that vanishes ends the run with an error.
     inner_pressures : (float, float) or None
         Gauge pressures at the inner radius of lower and upper face, Pa; None: the bearing's ``end_pressures``.
-    feed : JournalLeakage or None
-        What feeds the inner edges in place of given pressures; None: what is needed at those.
     outer_pressures : (float, float)
         Gauge pressures at the outer radius, Pa.
     lower, upper : bool
@@ -186,7 +148,6 @@ class ThrustFaces:
     contact: RegularisedWall | None = None
     inner_pressures: tuple[float, float] | None = None
     outer_pressures: tuple[float, float] = (0.0, 0.0)
-    feed: JournalLeakage | None = None
     lower: bool = True
     upper: bool = True
     n_theta: int = 96
@@ -201,12 +162,6 @@ class ThrustFaces:
             )
         require_type("ThrustFaces.profile", self.profile, TaperLand, StepLand, type(None))
         require_type("ThrustFaces.contact", self.contact, RegularisedWall, type(None))
-        require_type("ThrustFaces.feed", self.feed, JournalLeakage, type(None))
-        if self.feed is not None and self.inner_pressures is not None:
-            raise InputError(
-                f"ThrustFaces.inner_pressures must be None with feed=JournalLeakage(), got {self.inner_pressures!r} "
-                "Pa: the films' flows give the pressures; the lowest ones are JournalBearing.end_pressures."
-            )
         for name in ("inner_pressures", "outer_pressures"):
             if getattr(self, name) is not None:
                 pressures = require_vector(f"ThrustFaces.{name}", getattr(self, name), 2, "Pa")
@@ -261,30 +216,3 @@ def check_faces(bearing: Mapping[str, Any]) -> None:
             f"JournalBearing.cavitation: the cavity_pressure must not exceed the pressures at the edges of the thrust "
             f"faces, {lowest:g} Pa, got {cavity_pressure:g} Pa; all are gauge pressures, lower the cavity pressure."
         )
-    if faces.feed is not None:
-        _check_feed(bearing)
-
-
-def _check_feed(bearing: Mapping[str, Any]) -> None:
-    """Refuse what feeds faces whose film has no end, or one that deflects or is supplied itself."""
-    kind = type(bearing["film"]).__name__
-    others = [f"JournalBearing.{name}" for name in ("bush", "journal") if bearing[name] is not None]
-    others += [f"JournalBearing.film={kind}(...)"] if kind not in ("FiniteLength", "ShortBearing") else []
-    others += ["JournalBearing.cavitation=Gumbel(...)"] if bearing["cavitation"].clips else []
-    inlet = type(bearing["inlet"]).__name__
-    others += [f"JournalBearing.inlet={inlet}()"] if inlet != "Periodic" else []
-    if others:
-        raise InputError(
-            f"ThrustFaces.feed=JournalLeakage() does not go with {', '.join(others)}: it takes the flows of a "
-            "FiniteLength(...) or ShortBearing(...) film with SwiftStieber(...) or FullSommerfeld() between rigid "
-            "surfaces; leave one out, or give the pressures at the edges by ThrustFaces.inner_pressures and "
-            "JournalBearing.end_pressures."
-        )
-    half = 0.5 * bearing["length"]
-    for k, area in enumerate(placed(tuple(bearing["supply"]), 2.0 * half)):
-        if half - max(abs(z) for z in axial_span(area)) < 2.0 * SHORTEST_LAND * half:
-            raise InputError(
-                f"JournalBearing.supply[{k}]: between {area!r} and the bearing's ends there must be a land of at least "
-                f"{SHORTEST_LAND:g} of the bearing's length with ThrustFaces.feed=JournalLeakage(), whose edges would "
-                "have the supply's pressure; make it shorter, or give inner_pressures instead."
-            )

@@ -76,26 +76,16 @@ class RecordedSteps:
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record.
-
-    ``ends``: pressures (2,) at the film's ends, Pa; None: the bearing's.
-    """
+    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record."""
 
     motion: np.ndarray
     history: History | None = None
     step: float = 0.0
     spin: float = 0.0
     recorded: int | None = None
-    ends: np.ndarray | None = None
-
-    def hold(self, model: BearingModel) -> None:
-        """Give the film of a model the ends of this state."""
-        if self.ends is not None:
-            model.set_end_pressures(self.ends)
 
     def evaluate(self, model: BearingModel) -> Evaluation:
         """The film at this state."""
-        self.hold(model)
         return model.evaluate(self.motion, self.history, self.step, self.spin)
 
 

@@ -249,8 +249,6 @@ class LoadSearch:
     def at(self, motion: np.ndarray) -> Carried:
         """The steady film at a motion (10,), which is kept."""
         self.count += 1
-        if self.faces is not None:
-            self.faces.settle(motion)
         evaluation, film = evaluate_at(self.model, motion, self.where, self._history)
         self._history = film.history
         unbalance, tangent, share = evaluation.wrench[:2] + self.force, evaluation.steady_tangent(), None

@@ -159,11 +159,6 @@ class BearingModel:
         if p.nonlinear is not None:
             p.nonlinear.pressure_scale = pressure
 
-    def set_end_pressures(self, pressures: np.ndarray) -> None:
-        """Pressures (2,) at both ends from the next evaluation on, Pa, in place of the bearing's."""
-        self._known[:2] = pressures
-        self._set_viscosity(self.viscosity_ratio)
-
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""
         self.solver.forget()

@@ -256,7 +256,7 @@ def equilibrium(
     if found.faces is not None:
         from exudyn_ehd.joint.static.thrust import result_of
 
-        film = replace(film, faces=result_of(found.faces.evaluation, found.faces.own, found.faces.fed))
+        film = replace(film, faces=result_of(found.faces.evaluation, found.faces.tangent))
     return EquilibriumResult(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
@@ -318,7 +318,7 @@ def _faces(model: BearingModel, position: float, load: float | None, across: flo
     if bearing.thrust is None and position == 0.0 and not load:
         return None
     # imported here: a bearing without faces needs none of it
-    from exudyn_ehd.joint.balance.faces import FacesUnderLoad, FedFacesUnderLoad
+    from exudyn_ehd.joint.balance.faces import FacesUnderLoad
     from exudyn_ehd.joint.static.thrust import require_faces
 
     require_faces(bearing, "equilibrium", axial_position=position, axial_load=load)
@@ -328,8 +328,6 @@ def _faces(model: BearingModel, position: float, load: float | None, across: flo
             "is held along the axis, or finds its place under a load; leave one out."
         )
     size = math.hypot(across, load or 0.0)
-    if bearing.thrust is not None and bearing.thrust.feed is not None:
-        return FedFacesUnderLoad(model, position, load, size, "equilibrium")
     return FacesUnderLoad(bearing, position, load, size, "equilibrium")
 
 

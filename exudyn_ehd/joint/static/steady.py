@@ -145,8 +145,7 @@ class SteadyResult(Film, FilmPictures):
         """
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
-        ends = self.bearing.end_pressures if self.faces is None else self.faces.ends(self.bearing)
-        model = build_study_model(replace(self.bearing, thrust=None, end_pressures=ends), start)
+        model = build_study_model(replace(self.bearing, thrust=None), start)
         near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
@@ -233,7 +232,7 @@ def steady(
     from exudyn_ehd.joint.static.thrust import faces_at, require_faces
 
     require_faces(bearing, "steady", axial_position=place)
-    faces = faces_at(model, motion, place, "steady")
+    faces = faces_at(bearing, motion, place, "steady")
     return replace(result_at(model, motion, "steady"), faces=faces)
 
 

@@ -232,32 +232,6 @@ def test_tangent(closure, profile):
 
 
 @pytest.mark.parametrize("closure", CLOSURES)
-def test_inner_edge(closure):
-    """Flow through it and wrench: central differences of its pressure, and of the flow of the motion, wall included."""
-    rng = np.random.default_rng(3)
-    faces = _faces(profile=PROFILES["step"], contact=ehd.RegularisedWall(onset=15e-6, pressure=1e7), n_theta=40, n_r=6)
-    film = _film(faces, -1, CLOSURES[closure], (2e5, 0.0))
-    for zeta in (0.2, 0.9):
-        motion = rng.uniform(-1, 1, FACE_SIZE) * SCALE * np.array([0.5, 0.3, 0.3, *[1.0] * 6])
-        motion[0] = zeta * C
-        film.set_inner_pressure(2e5)
-        film.evaluate(motion)
-        feed = film.feed()
-        d = rng.normal(size=FACE_SIZE) * SCALE
-        plus, minus = (film.evaluate(motion + k * 1e-6 * d).inflow for k in (1, -1))
-        assert feed.by_motion @ d == pytest.approx(
-            (plus - minus) / 2e-6, abs=1e-6 * np.abs(feed.by_motion * SCALE).max()
-        )
-        states = []
-        for pressure in (2e5 + 1.0, 2e5 - 1.0):
-            film.set_inner_pressure(pressure)
-            states.append(film.evaluate(motion))
-        assert (states[0].inflow - states[1].inflow) / 2 == pytest.approx(feed.flow, rel=1e-6)
-        change = (states[0].wrench - states[1].wrench) / 2
-        assert change == pytest.approx(feed.wrench, abs=1e-6 * np.abs(feed.wrench).max())
-
-
-@pytest.mark.parametrize("closure", CLOSURES)
 def test_work_becomes_heat(closure):
     """What the collar's motion puts in is ``power_loss`` to rounding, and the heat of shear and flow to 1 %."""
     rng = np.random.default_rng(11)
