@@ -9,6 +9,9 @@ from typing import Protocol
 
 import numpy as np
 
+# Newton iterations for the gaps of elements, and the last step, over the clearance: then it is at round-off.
+MOST_STEPS, GAP_TOLERANCE = 60, 1e-9
+
 
 class GapLimiter(Protocol):
     """Keeps the gap that the film sees above zero where surfaces touch."""
@@ -58,3 +61,42 @@ class Contact(Protocol):
     @property
     def transition_speed(self) -> float:
         """Sliding speed over which Coulomb friction is regularised, m/s."""
+
+
+class LandContact:
+    """A contact outside of supply areas, where nothing touches: its pressure times the land's share of a vertex.
+
+    Parameters
+    ----------
+    contact : Contact
+    land : (n, m) array
+        As of `exudyn_ehd.film.supply.cuts.SupplyMap`; it may change.
+    """
+
+    def __init__(self, contact: Contact, land: np.ndarray) -> None:
+        self.contact, self.land = contact, land
+        self.presses_below = contact.presses_below
+        self.friction_coefficient, self.transition_speed = contact.friction_coefficient, contact.transition_speed
+
+    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
+        """Pressure and slope as of `Contact`."""
+        self.contact.pressure(H, P_out, slope_out)
+        P_out *= self.land
+        slope_out *= self.land
+
+    def solve_gap(
+        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
+    ) -> None:
+        """Gap, pressure and slope as of `Contact`.
+
+        The pressure falls and is convex, so that Newton's method rises to the root from its second iterate on.
+        """
+        np.maximum(G, X, out=G)
+        for _ in range(MOST_STEPS):
+            self.pressure(G, P_out, slope_out)
+            step = (X + compliance / scale * P_out - G) / (1.0 - compliance / scale * slope_out)
+            G += step
+            if np.abs(step).max() <= GAP_TOLERANCE:
+                break
+        P_out += slope_out * step
+        slope_out /= scale

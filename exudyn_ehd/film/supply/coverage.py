@@ -1,0 +1,67 @@
+"""Shares of the grid's control volumes that supply areas cover.
+
+The function that is one at a vertex and falls to zero at its neighbours in theta and z, integrated over an area, is the
+part of the area that belongs to the vertex; its integral over the whole surface is the control volume. So the parts add
+up to the area to rounding, what is linear between the vertices is integrated exactly, and nothing steps where an edge
+of a turning area passes a column.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.supply.areas import EDGE, CircumferentialGroove, Hole, SupplyArea, axial_span
+
+# Chords that a round hole is integrated over, by the rule of Gauss and Chebyshev: the area is exact with any number;
+# with 128 the shares of control volumes inside a hole over ten rows are within 1 % of one.
+CHORDS = 128
+
+
+def covered_share(area: SupplyArea, grid: FilmGrid, spin: float) -> np.ndarray:
+    """Shares (n, m) of the control volumes that an area covers with the journal at the angle ``spin``, rad."""
+    turned = spin if area.rotating else 0.0
+    if isinstance(area, Hole):
+        return np.clip(_disc(area, grid, turned), 0.0, 1.0)
+    z = grid.z * grid.reference_length
+    low, high = axial_span(area)
+    if grid.flows_along_z:
+        rows = vertex_parts(z, low, high) / (grid.width_z * grid.reference_length)
+    else:  # slices of their own
+        rows = (np.abs(z - 0.5 * (low + high)) <= 0.5 * (high - low) * (1.0 + EDGE)).astype(float)
+    if isinstance(area, CircumferentialGroove):
+        return np.outer(np.ones(grid.x.size), rows)
+    return np.outer(_columns(grid, area.angle + turned, 0.5 * area.width_angle), rows)
+
+
+def vertex_parts(places: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:
+    """Integrals (..., m) from low to high of the functions that are one at one of the ``places`` and linear between."""
+    step = np.diff(places)
+    first, last = (np.clip((np.asarray(edge)[..., None] - places[:-1]) / step, 0.0, 1.0) for edge in (low, high))
+    after = 0.5 * step * (last**2 - first**2)
+    out = np.zeros((*first.shape[:-1], places.size))
+    out[..., :-1] += step * (last - first) - after
+    out[..., 1:] += after
+    return out
+
+
+def _columns(grid: FilmGrid, center: float, half: float | np.ndarray) -> np.ndarray:
+    """Shares (..., n) of the columns' widths within ``half`` of an angle, rad."""
+    step, n = grid.width_x[0], grid.x.size
+    low, high = (center - half - grid.x[0]) / step, (center + half - grid.x[0]) / step
+    columns = np.arange(math.floor(np.min(low)), math.ceil(np.max(high)) + 1)
+    parts = vertex_parts(columns.astype(float), low, high)
+    out = np.zeros((*parts.shape[:-1], n))
+    np.add.at(out, (..., columns % n), parts)
+    return out
+
+
+def _disc(hole: Hole, grid: FilmGrid, spin: float) -> np.ndarray:
+    """Shares of a round hole, over chords in theta."""
+    radius = 0.5 * hole.diameter / grid.reference_length
+    angle = math.pi * np.arange(1, CHORDS + 1) / (CHORDS + 1)
+    z, half = hole.z / grid.reference_length + radius * np.cos(angle), radius * np.sin(angle)
+    rows = np.array([np.interp(z, grid.z, unit, left=0.0, right=0.0) for unit in np.eye(grid.z.size)])
+    return (rows * half @ _columns(grid, hole.angle + spin, half)).T * (math.pi / (CHORDS + 1)) / grid.width_z
