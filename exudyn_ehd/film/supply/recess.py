@@ -10,7 +10,7 @@ the recess's end walls by 6 mu U / d per area: together the side with the recess
 what the other one loses. This pressure rises by 6 mu U l / d^2 over the length l, which the supply's uniform pressure
 leaves out. The side walls brake in addition; the equation counts the end walls alone. A circumferential groove has none:
 if it were wide against its depth, its oil would turn with mu U / d, but at the usual widths of two to three depths the
-side walls make two to three times that of it. It has the same law.
+side walls make some three times that of it. It has the same law.
 
 Turbulent: by Hirs' bulk flow the stress on a wall is ``n rho u^2 / 2 (rho u d / mu)^m`` with the wall's speed u against
 the mean flow. In a recess the mean flow rests, so that u = U at the sliding surface,
