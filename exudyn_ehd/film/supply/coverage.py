@@ -3,7 +3,7 @@
 The function that is one at a vertex and falls to zero at its neighbours in theta and z, integrated over an area, is the
 part of the area that belongs to the vertex; its integral over the whole surface is the control volume. So the parts add
 up to the area to rounding, what is linear between the vertices is integrated exactly, and nothing steps where an edge
-of a turning area passes a column.
+of a turning area passes a column. Along z an area has the grid's finer integration weights on the rows inside.
 """
 
 from __future__ import annotations
@@ -20,20 +20,42 @@ from exudyn_ehd.film.supply.areas import EDGE, CircumferentialGroove, Hole, Supp
 CHORDS = 128
 
 
-def covered_share(area: SupplyArea, grid: FilmGrid, spin: float) -> np.ndarray:
-    """Shares (n, m) of the control volumes that an area covers with the journal at the angle ``spin``, rad."""
+def area_parts(area: SupplyArea, grid: FilmGrid, spin: float) -> tuple[np.ndarray, np.ndarray]:
+    """What an area covers with the journal at the angle ``spin``, rad.
+
+    Returns
+    -------
+    share, weight : (n, m) arrays
+        Of the control volumes, and of the integration weights.
+    """
     turned = spin if area.rotating else 0.0
     if isinstance(area, Hole):
-        return np.clip(_disc(area, grid, turned), 0.0, 1.0)
-    z = grid.z * grid.reference_length
-    low, high = axial_span(area)
-    if grid.flows_along_z:
-        rows = vertex_parts(z, low, high) / (grid.width_z * grid.reference_length)
-    else:  # slices of their own
-        rows = (np.abs(z - 0.5 * (low + high)) <= 0.5 * (high - low) * (1.0 + EDGE)).astype(float)
-    if isinstance(area, CircumferentialGroove):
-        return np.outer(np.ones(grid.x.size), rows)
-    return np.outer(_columns(grid, area.angle + turned, 0.5 * area.width_angle), rows)
+        share = np.clip(_disc(area, grid, turned), 0.0, 1.0)
+        return share, share * grid.area
+    columns = np.ones(grid.x.size)
+    if not isinstance(area, CircumferentialGroove):
+        columns = _columns(grid, area.angle + turned, 0.5 * area.width_angle)
+    rows, weight = _rows(grid, *axial_span(area))
+    return np.outer(columns, rows), np.outer(columns * grid.width_x, weight)
+
+
+def _rows(grid: FilmGrid, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+    """Shares (m,) of the rows' widths from low to high, m, and the part of their integration weights.
+
+    Rows inside have the grid's weights, as have the lands that the outermost rows belong to as well.
+    """
+    z, width = grid.z * grid.reference_length, grid.width_z
+    if not grid.flows_along_z:  # slices of their own
+        slack = EDGE * (z[-1] - z[0])
+        inside = (z >= low - slack) & (z <= high + slack)
+        return inside.astype(float), inside * width
+    parts = vertex_parts(z, low, high) / grid.reference_length
+    inside, weight = parts >= width * (1.0 - EDGE), parts.copy()
+    reached = np.flatnonzero(parts)
+    inside[reached[[0, -1]]] = False
+    weight[inside] = grid.weight_z[inside]
+    weight[reached[[0, -1]]] += 0.5 * (parts.sum() - weight.sum())
+    return parts / width, weight
 
 
 def vertex_parts(places: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:

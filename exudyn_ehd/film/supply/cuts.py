@@ -26,7 +26,7 @@ from exudyn_ehd.film.supply.areas import (
     axial_span,
     placed,
 )
-from exudyn_ehd.film.supply.coverage import covered_share
+from exudyn_ehd.film.supply.coverage import area_parts
 from exudyn_ehd.film.supply.holes import SHORTEST, Circle, circle, strength, strengths
 
 
@@ -98,12 +98,12 @@ class SupplyMap:
             cut_links(covered, share, self.plain_weight, g.cuts, g.weight)
             for hole, column, factor in holes:
                 self._cut_hole(hole, column, factor)
-        self.land[:] = 1.0
+        self.land[:], g.shear_weight[:] = 1.0, self.plain_weight
         for area, part in zip(self.supply, self.parts, strict=True):
-            part[:] = self.land * covered_share(area, g, self.spin)
-            self.land[:] -= part
-            part *= g.area
-        np.subtract(self.plain_weight, g.area * (1.0 - self.land), out=g.lands)
+            covers, weight = area_parts(area, g, self.spin)
+            part[:] = self.land * weight
+            self.land[:] *= 1.0 - covers
+            g.shear_weight[:] -= part
 
     def _hole(self, area: Hole) -> tuple[Circle, int, float]:
         """A hole on the grid at the present spin, the column next to its centre, and the factor of its links."""

@@ -8,9 +8,9 @@ comes back, as the lands beside let far less of it through. Laminar flow with no
 The bottom is pulled backwards by 2 mu U / d. The pressure that drives the flow back, dp/dx = 6 mu U / d^2, presses on
 the recess's end walls by 6 mu U / d per area: together the side with the recess gets 4 mu U / d in the direction of U,
 what the other one loses. This pressure rises by 6 mu U l / d^2 over the length l, which the supply's uniform pressure
-leaves out. The side walls brake in addition; the equation counts the end walls alone. A circumferential groove has none:
-if it were wide against its depth, its oil would turn with mu U / d, but at the usual widths of two to three depths the
-side walls make some three times that of it. It has the same law.
+leaves out. The side walls brake in addition, which the equation does not count. A circumferential groove has no end
+walls. If it were wide against its depth, its oil would turn with mu U / d; at the usual widths of two to three depths
+the side walls make some three times that of it. It has the same law.
 
 Turbulent: by Hirs' bulk flow the stress on a wall is ``n rho u^2 / 2 (rho u d / mu)^m`` with the wall's speed u against
 the mean flow. In a recess the mean flow rests, so that u = U at the sliding surface,
@@ -51,7 +51,11 @@ class RecessShear(NamedTuple):
 
 
 def recess_shear(
-    depths: list[float | None], parts: list[np.ndarray], clearance: float, spin: float, oil: tuple[np.ndarray, np.ndarray]
+    depths: list[float | None],
+    parts: list[np.ndarray],
+    clearance: float,
+    spin: float,
+    oil: tuple[np.ndarray, np.ndarray],
 ) -> RecessShear | None:
     """Shear in the areas that have a depth; None without any.
 

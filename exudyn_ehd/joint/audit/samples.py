@@ -358,9 +358,9 @@ def rate_of_squeeze(
     clearance : float
         m.
     time : (n,) array or None
-        s, of the steps of a run, whose means count: a is the difference of the velocities before and after a step, which
-        an alternation from step to step leaves alone. None: a single state, a = v^2 / e of a circular whirl about the
-        centre.
+        s, of the steps of a run, whose means count: a is the difference of the velocities before and after a step,
+        which an alternation from step to step leaves alone. None: a single state, a = v^2 / e of a circular whirl about
+        the centre.
     """
     sources = np.linalg.norm(velocity, axis=1) + wedge
     if time is not None and time.size > 2:
