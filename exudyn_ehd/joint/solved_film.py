@@ -102,6 +102,12 @@ class ContactFields:
         self.presses_below = max(f.presses_below for f in laws)
         self.acting = False
 
+    def press(self, H: np.ndarray) -> None:
+        """Pressures at the true gap H (n, m), scaled."""
+        self.acting = True
+        for law, P, slope in zip(self.laws, self.P, self.slope, strict=True):
+            law.pressure(H, P, slope)
+
     def clear(self) -> None:
         """No pressures."""
         for known in (*self.P, *self.slope, self.integrals):

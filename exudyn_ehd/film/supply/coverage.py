@@ -20,8 +20,10 @@ from exudyn_ehd.film.supply.areas import EDGE, CircumferentialGroove, Hole, Supp
 CHORDS = 128
 
 
-def area_parts(area: SupplyArea, grid: FilmGrid, spin: float) -> tuple[np.ndarray, np.ndarray]:
-    """What an area covers with the journal at the angle ``spin``, rad.
+def area_parts(
+    area: SupplyArea, grid: FilmGrid, rows: tuple[np.ndarray, np.ndarray], spin: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what an area with these `row_parts` covers with the journal at the angle ``spin``, rad.
 
     Returns
     -------
@@ -35,16 +37,15 @@ def area_parts(area: SupplyArea, grid: FilmGrid, spin: float) -> tuple[np.ndarra
     columns = np.ones(grid.x.size)
     if not isinstance(area, CircumferentialGroove):
         columns = _columns(grid, area.angle + turned, 0.5 * area.width_angle)
-    rows, weight = _rows(grid, *axial_span(area))
-    return np.outer(columns, rows), np.outer(columns * grid.width_x, weight)
+    return np.outer(columns, rows[0]), np.outer(columns * grid.width_x, rows[1])
 
 
-def _rows(grid: FilmGrid, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    """Shares (m,) of the rows' widths from low to high, m, and the part of their integration weights.
+def row_parts(area: SupplyArea, grid: FilmGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Return the shares (m,) of the rows' widths from end to end of an area, and the part of their weights.
 
     Rows inside have the grid's weights, as have the lands that the outermost rows belong to as well.
     """
-    z, width = grid.z * grid.reference_length, grid.width_z
+    (low, high), z, width = axial_span(area), grid.z * grid.reference_length, grid.width_z
     if not grid.flows_along_z:  # slices of their own
         slack = EDGE * (z[-1] - z[0])
         inside = (z >= low - slack) & (z <= high + slack)
@@ -76,7 +77,7 @@ def _columns(grid: FilmGrid, center: float, half: float | np.ndarray) -> np.ndar
     columns = np.arange(math.floor(np.min(low)), math.ceil(np.max(high)) + 1)
     parts = vertex_parts(columns.astype(float), low, high)
     out = np.zeros((*parts.shape[:-1], n))
-    np.add.at(out, (..., columns % n), parts)
+    out[..., columns % n] = parts  # never all around: there is a film beside every area
     return out
 
 

@@ -26,7 +26,7 @@ from exudyn_ehd.film.supply.areas import (
     axial_span,
     placed,
 )
-from exudyn_ehd.film.supply.coverage import area_parts
+from exudyn_ehd.film.supply.coverage import area_parts, row_parts
 from exudyn_ehd.film.supply.holes import SHORTEST, Circle, circle, strength, strengths
 
 
@@ -66,6 +66,7 @@ class SupplyMap:
         self.rotating = any(area.rotating for area in supply)
         self.ends, self.plain_weight = grid.fixed.copy(), grid.weight.copy()
         self.masks = [np.zeros(grid.shape, dtype=np.bool_) for _ in supply]
+        self.rows = [row_parts(area, self.grid) for area in self.supply]
         self.parts, self.land = [np.zeros(grid.shape) for _ in supply], np.ones(grid.shape)
         self.spin = 0.0
         self._place()
@@ -99,8 +100,8 @@ class SupplyMap:
             for hole, column, factor in holes:
                 self._cut_hole(hole, column, factor)
         self.land[:], g.shear_weight[:] = 1.0, self.plain_weight
-        for area, part in zip(self.supply, self.parts, strict=True):
-            covers, weight = area_parts(area, g, self.spin)
+        for area, rows, part in zip(self.supply, self.rows, self.parts, strict=True):
+            covers, weight = area_parts(area, g, rows, self.spin)
             part[:] = self.land * weight
             self.land[:] *= 1.0 - covers
             g.shear_weight[:] -= part

@@ -338,9 +338,7 @@ class BearingModel:
     def _press(self, f: ContactFields, smallest: float) -> ContactFields | None:
         """Pressures of the contacts at the true gap; None where the surfaces are too far apart for any."""
         if smallest < f.presses_below:
-            f.acting = True
-            for k, contact in enumerate(f.laws):
-                contact.pressure(self.solver.H, f.P[k], f.slope[k])
+            f.press(self.solver.H)
             return f
         if f.acting:
             f.clear()
