@@ -132,6 +132,10 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "CircumferentialGroove.width",
         "Hole.diameter",
         "Pocket.length",
+        "AxialGroove.depth",
+        "CircumferentialGroove.depth",
+        "Hole.depth",
+        "Pocket.depth",
         "EdgeRelief.relief_length",
     ),
     "place along z": (
