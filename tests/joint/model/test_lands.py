@@ -140,6 +140,20 @@ def test_shear_is_integrated_over_the_lands(kind, count, measured):
         assert g.lands.sum() + parts.sum() == pytest.approx(g.weight.sum(), rel=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["axial", "pocket", "hole"])
+def test_shear_of_turning_areas_has_no_steps(kind):
+    """Over two columns in 200 spins: no more than what their edges sweep, a hundredth of a column."""
+    area, at = (
+        dataclasses.replace(draw(np.random.default_rng(2), kind), rotating=True),
+        motion(np.random.default_rng(3)),
+    )
+    model = build_model(bearing(supply=(area,), cavitation=ehd.FullSommerfeld()))
+    step = 2.0 * math.pi / model.grid.x.size / 100
+    found = [model.evaluate(at, spin=k * step).film for k in range(200)]
+    swept = step * L / R / found[0].solver.H.min()
+    assert np.abs(np.diff([film.loads.couette for film in found])).max() < 1.01 * swept
+
+
 @pytest.mark.parametrize("kind", ["axial", "pocket", "hole", "circumferential"])
 def test_recesses_are_sheared_by_their_depth(kind):
     """Loss, torque and heat grow by the power of 4 mu U / d, or of Hirs' turbulent stress where that is larger."""
