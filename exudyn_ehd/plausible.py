@@ -132,10 +132,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "CircumferentialGroove.width",
         "Hole.diameter",
         "Pocket.length",
-        "AxialGroove.depth",
-        "CircumferentialGroove.depth",
-        "Hole.depth",
-        "Pocket.depth",
+        *(f"{area}.depth" for area in ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")),
         "EdgeRelief.relief_length",
     ),
     "place along z": (
