@@ -51,6 +51,7 @@ def row_parts(area: SupplyArea, grid: FilmGrid) -> tuple[np.ndarray, np.ndarray]
         inside = (z >= low - slack) & (z <= high + slack)
         return inside.astype(float), inside * width
     parts = vertex_parts(z, low, high) / grid.reference_length
+    parts[parts < EDGE * width] = 0.0  # rows beside one on the edge
     inside, weight = parts >= width * (1.0 - EDGE), parts.copy()
     reached = np.flatnonzero(parts)
     inside[reached[[0, -1]]] = False

@@ -61,6 +61,24 @@ def test_a_groove_takes_no_more_than_the_lands_that_it_makes(effect, measured):
             measured("contact", abs(one.contact_load / (2.0 * two.contact_load) - 1.0), 0.005)
 
 
+def test_lands_of_grooves_have_the_weights_of_bearings_of_their_own():
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        width, z = L * rng.uniform(0.02, 0.5), L * rng.uniform(-0.2, 0.2)
+        groove = ehd.CircumferentialGroove(width=width, z=z)
+        grid = build_model(bearing(supply=(groove,))).grid
+        # both end on a row
+        low, high = (int(np.argmin(np.abs(grid.z * R - edge))) for edge in (z - 0.5 * width, z + 0.5 * width))
+        assert np.all(np.abs(grid.lands[:, low + 1 : high]) < 1e-15)
+        for rows, length in (
+            (slice(low + 1), z - 0.5 * width + 0.5 * L),
+            (slice(high, None), 0.5 * L - z - 0.5 * width),
+        ):
+            weights = grid.lands[0, rows] / grid.width_x[0]
+            land = build_model(bearing(length=length, film=ehd.FiniteLength(n_z=weights.size - 1))).grid
+            np.testing.assert_allclose(weights, land.weight_z, rtol=1e-9)
+
+
 def draw(rng, kind, depth=None):
     """A random area of a kind, in the housing or the journal."""
     rotating, angle, at = bool(rng.integers(2)), rng.uniform(0.0, 2.0 * math.pi), {"depth": depth, "pressure": 1e5}
@@ -138,6 +156,7 @@ def test_shear_is_integrated_over_the_lands(kind, count, measured):
         parts, g = model.parts.supply.parts[0], model.grid
         assert parts.sum() * R**2 == pytest.approx(size(area), rel=RELATIVE[kind])
         assert g.lands.sum() + parts.sum() == pytest.approx(g.weight.sum(), rel=1e-12)
+        assert kind == "hole" or g.lands.min() > -1e-12
 
 
 @pytest.mark.parametrize("kind", ["axial", "pocket", "hole"])
@@ -212,16 +231,14 @@ def test_contacts_press_on_the_land_alone(law):
     contact.pressure(gap, P, slope)
     law.pressure(gap, plain, plain_slope)
     assert np.array_equal(P, land * plain) and np.array_equal(slope, land * plain_slope)
+    # on a liner the land deflects under the whole pressure
     scale, compliance = 1e7, 0.02
     G, own = gap.copy(), gap.copy()
     contact.solve_gap(gap, compliance, scale, G, P, slope)
-    law.pressure(G, plain, plain_slope)
-    np.testing.assert_allclose(G, gap + compliance / scale * land * plain, rtol=0.0, atol=1e-12)
-    np.testing.assert_allclose(P, land * plain, rtol=1e-9, atol=1e-9 * plain.max())
-    assert slope == pytest.approx(land * plain_slope / scale, rel=1e-6, abs=1e-9)
-    assert np.array_equal(G[:3], gap[:3]) and not P[:3].any()
     law.solve_gap(gap, compliance, scale, own, plain, plain_slope)
-    assert G[3:6] == pytest.approx(own[3:6], abs=1e-11) and P[3:6] == pytest.approx(plain[3:6], rel=1e-9)
+    assert np.array_equal(G[:3], gap[:3]) and not P[:3].any() and not slope[:3].any()
+    assert np.array_equal(G[3:], own[3:]) and np.array_equal(slope[3:], plain_slope[3:])
+    assert np.array_equal(P, land * plain)
 
 
 def test_wear_leaves_areas_alone():
