@@ -241,6 +241,24 @@ def test_contacts_press_on_the_land_alone(law):
     assert np.array_equal(P, land * plain)
 
 
+@pytest.mark.parametrize("liner", [None, ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e10)], ids=["rigid", "liner"])
+@pytest.mark.parametrize("contact", [{"asperity": ASPERITY}, {"contact": WALL}], ids=["asperity", "wall"])
+def test_tangent_where_contacts_meet_the_edge_of_a_recess(liner, contact):
+    """Against differences of second order, with edges between columns and rows under the contact."""
+    pocket = ehd.Pocket(angle=0.1, z=0.002, width_angle=0.4, length=0.02, pressure=1e6, depth=3e-4)
+    model = build_model(bearing(supply=(pocket,), cavitation=ehd.FullSommerfeld(), bush=liner, **contact))
+    where = np.array([0.97 * C, 0.1 * C, 1e-5, -2e-5, 1e-4, -2e-4, 1e-3, 2e-3, 150.0, 0.1])
+    unit = np.array([C, C, C / L, C / L, 1e-3, 1e-3, 0.02, 0.02, 100.0, 1.0])
+    evaluation = model.evaluate(where)
+    assert evaluation.quantities()["contact_load"] > 10.0
+    tangent, force = evaluation.tangent() * unit, np.abs(evaluation.wrench)
+    for k in range(10):
+        ends = [model.evaluate(where + sign * 1e-5 * unit * (np.arange(10) == k)).wrench for sign in (1.0, -1.0)]
+        numeric = (ends[0] - ends[1]) / 2e-5
+        scale = np.abs(tangent).max(axis=1) + force
+        assert np.all(np.abs(numeric - tangent[:, k]) < 1e-5 * scale), k
+
+
 def test_wear_leaves_areas_alone():
     pocket = ehd.Pocket(angle=0.0, width_angle=0.6, length=0.02, pressure=1e5)
     made = bearing(asperity=ASPERITY, wear=ehd.ArchardWear(wear_rate=1e-15), supply=(pocket,))
