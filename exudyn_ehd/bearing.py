@@ -26,7 +26,7 @@ from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
-from exudyn_ehd.film.supply.checks import check_supply
+from exudyn_ehd.film.supply.checks import check_depths, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
@@ -248,6 +248,7 @@ class JournalBearing:
                 "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its "
                 "grooves; use inlet=Periodic()."
             )
+        check_depths(self.supply, self.radial_clearance)
         lowest, pc = min(area.pressure for area in self.supply), self.cavitation.cavity_pressure
         if pc > lowest:
             raise InputError(

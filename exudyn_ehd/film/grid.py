@@ -70,6 +70,8 @@ class FilmGrid:
         Integration weights along z.
     weight : (n, m) array
         Integration weights (area), next to the edges of supply areas no product of those in theta and z.
+    lands : (n, m) array or None
+        Integration weights of what acts between the surfaces alone, outside of supply areas; None: ``weight``.
     fixed : (n, m) bool array
         Vertices with prescribed pressure.
     reference_length : float
@@ -91,6 +93,12 @@ class FilmGrid:
     fixed: np.ndarray
     reference_length: float
     cuts: np.ndarray | None = None
+    lands: np.ndarray | None = None
+
+    @property
+    def shear_weight(self) -> np.ndarray:
+        """Integration weights (n, m) of the shear between the surfaces."""
+        return self.weight if self.lands is None else self.lands
 
     @property
     def shape(self) -> tuple[int, int]:

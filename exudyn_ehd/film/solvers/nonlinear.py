@@ -66,7 +66,7 @@ from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
 from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
-from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter, LandContact
 from exudyn_ehd.status import Status
 
 # Share of an oil's largest pressure at which a film that was not found is on its way beyond.
@@ -127,6 +127,8 @@ class NonlinearFilmSolver(NewtonFilmSolver):
             e.links = self.flux
         self.delta_old: np.ndarray | None = None
         self.contact_slope, self.deflection_inverse = np.zeros(grid.shape), 0.0
+        # the part of a vertex that the contact presses on
+        self.touching = contact.land if isinstance(contact, LandContact) else 1.0
 
     @property
     def beta(self) -> float:
@@ -184,7 +186,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
     def contact_by_pressure(self) -> np.ndarray:
         """d(contact pressure)/dP, Pa, at the unknown pressures (n, m) of the last solution; zero elsewhere."""
         e = self.elements
-        return np.where(self.work.active, e.contact_G * e.scale * e.gap_slopes.D_P, 0.0)
+        return np.where(self.work.active, self.touching * e.contact_G * e.scale * e.gap_slopes.D_P, 0.0)
 
     def smallest_gap(self) -> float:
         """Smallest scaled gap of the deformed surfaces."""
@@ -303,7 +305,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += e.gap_slopes.rate_t * (e.gaps.D - e.deflection_old) * self.deflection_inverse
         if e.contact is not None:
-            np.multiply(e.contact_G * e.scale, 1.0 + e.gap_slopes.D_r, out=self.contact_slope)
+            np.multiply(self.touching * e.contact_G * e.scale, 1.0 + e.gap_slopes.D_r, out=self.contact_slope)
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)

@@ -13,6 +13,7 @@ from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
+from exudyn_ehd.joint.audit.samples import squeeze_rate
 from exudyn_ehd.joint.audit.switches import laminar, refined, turbulent
 from exudyn_ehd.joint.step_error import enough_steps
 
@@ -23,6 +24,7 @@ SURELY_FINE = 2.0
 # Film thicknesses across the last interval along z: the pressure there rises by int dz / h^3, which the vertices at
 # its ends know to 2 % of the film thickness on the end up to here.
 NARROWS = 1.6
+INERTIA = "rho w c^2 / mu, w of spin or squeeze"
 
 
 def _reynolds(case: Case) -> float:
@@ -58,11 +60,15 @@ def turbulence(case: Case) -> Finding:
 
 
 def inertia(case: Case) -> Finding:
-    """Reduced Reynolds number."""
+    """Reynolds number of the rate at which the flow changes: by the spin in the gap, or by the squeeze."""
+    b, r, samples = case.bearing, case.record, case.samples
+    run = None if r is None else squeeze_rate(b, r.motion, r.time)
+    rates = [max(s.speed / b.journal_radius, s.squeeze_rate if run is None else run) for s in samples]
+    oscillating = max(rate / s.viscosity for rate, s in zip(rates, samples, strict=True))
     return finding(
         "fluid inertia",
-        "Re c / R",
-        _reynolds(case) * case.bearing.clearance_ratio,
+        INERTIA,
+        b.lubricant.density * b.radial_clearance**2 * oscillating,
         None,
         mattering="the Reynolds equation leaves the fluid's inertia out: take forces as estimates.",
     )

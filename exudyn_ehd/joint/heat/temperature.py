@@ -277,7 +277,12 @@ class FilmTemperature(_Temperature):
         ratio = 1.0 if film.oil.ratio is None else film.oil.ratio
         speed2 = w.omega**2 + (w.axial_speed / R) ** 2
         flow_power = film.parts.flow_scale * film.scales.pressure
-        return film.scales.shear / flow_power * speed2 * s.area * R**2 * film.share() * ratio / s.H
+        density = s.area * film.share() * ratio / s.H
+        if film.parts.supply is not None:
+            density *= film.parts.supply.land
+        if film.loads.recess is not None:
+            density += film.loads.recess.density
+        return film.scales.shear / flow_power * speed2 * R**2 * density
 
     def _solve(
         self, film: SolvedFilm, step: float, known: np.ndarray | None = None

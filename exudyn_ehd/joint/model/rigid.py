@@ -20,7 +20,7 @@ from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
 from exudyn_ehd.joint.model.effects import worn_depth
-from exudyn_ehd.joint.model.loads import film_loads, oil_fields
+from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of
 from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
 from exudyn_ehd.joint.plain_film import is_plain, solve_plain
@@ -252,7 +252,8 @@ class BearingModel:
             smallest = p.liner.smallest_gap()
             if p.contacts is not None:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
-        loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited)
+        recess = recess_of(p, self.scales, journal, self.effects.thermal, temperature)
+        loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited, recess)
         film = SolvedFilm(
             p,
             self.grid,
@@ -332,9 +333,7 @@ class BearingModel:
     def _press(self, f: ContactFields, smallest: float) -> ContactFields | None:
         """Pressures of the contacts at the true gap; None where the surfaces are too far apart for any."""
         if smallest < f.presses_below:
-            f.acting = True
-            for k, contact in enumerate(self.effects.contacts):
-                contact.pressure(self.solver.H, f.P[k], f.slope[k])
+            f.press(self.solver.H)
             return f
         if f.acting:
             f.clear()

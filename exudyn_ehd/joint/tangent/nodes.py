@@ -127,7 +127,8 @@ class TractionChange:
         active = w.active.ravel()[self.places]
         # of pressure and of the density of Couette shear to the unknown at their vertex
         self.pressure = np.where(active, 1.0 if oil.P_q is None else oil.P_q.ravel()[self.places], 0.0)
-        couette = self._share_slope(film, active) * (scale * W / H)[self.places]
+        sheared = scale * g.shear_weight.ravel() / H
+        couette = self._share_slope(film, active) * sheared[self.places]
         self.couette = speeds[:, None] * couette
         self.load = load_weights(film) * film.scales.force
         self.by_slope = -6.0 * scale * W * H
@@ -142,13 +143,15 @@ class TractionChange:
         self.speed[2, :, 1] = density / R
         if oil.ratio_v is not None:
             # the shear factor knows the scaled speed omega / 2
-            thinning = 0.5 * scale * W / H * (film.share() * oil.ratio_v).ravel()
+            thinning = 0.5 * sheared * (film.share() * oil.ratio_v).ravel()
             self.speed[1:, :, 0] += speeds[:, None] * thinning
+        if film.loads.recess is not None:
+            self.speed[1:, :, 0] += speeds[:, None] * (scale * film.loads.recess.by_spin.ravel())
         # of the density of Couette shear to the unknowns at all vertices, (n m, count)
         self.thins: list[csr_matrix] | None = None
         by_others = film.shear_by_unknowns()
         if by_others is not None:
-            density = diags((scale * W / H) * film.share().ravel()) @ by_others[:, self.places]
+            density = diags(sheared * film.share().ravel()) @ by_others[:, self.places]
             self.thins = [csr_matrix(speed * density) for speed in speeds]
         if film.pressing is not None:
             self._add_contacts(film, film.pressing)
@@ -209,9 +212,10 @@ class TractionChange:
 
 
 def _density(film: SolvedFilm) -> np.ndarray:
-    """W share ratio / H (n m,)."""
-    field = film.grid.weight * film.share() / film.solver.H
-    return (field if film.oil.ratio is None else field * film.oil.ratio).ravel()
+    """W share ratio / H on the lands, and the shear in recesses (n m,)."""
+    field = film.grid.shear_weight * film.share() / film.solver.H
+    field = field if film.oil.ratio is None else field * film.oil.ratio
+    return (field if film.loads.recess is None else field + film.loads.recess.density).ravel()
 
 
 def _extra_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:

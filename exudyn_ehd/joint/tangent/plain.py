@@ -33,7 +33,7 @@ def is_plain(film: SolvedFilm) -> bool:
         and film.extra is None
         and film.limited is None
         and film.pressing is None
-        and s.grid.cuts is None
+        and p.supply is None
         and not p.uneven_drag
     )
 

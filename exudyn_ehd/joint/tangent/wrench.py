@@ -97,7 +97,7 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     couette = _couette_direct(film, dc)
     fills = true_fills(film)
     if fills is not None:
-        dc += by_fills(film, fills, _ratio(film) * film.grid.weight / film.solver.H)[:, 0]
+        dc += by_fills(film, fills, _ratio(film) * film.grid.shear_weight / film.solver.H)[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
     _contract_couette(film, couette, dc)
     if pulls_unevenly(film.parts, film.limited):
@@ -243,8 +243,8 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     if s.oil_line is not None:
         # at the line the fill follows the pressure
         by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
-    shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
-    by_others = film.gather_shear(g.weight * film.share() / s.H)
+    shear_adjoint_rhs(w.order, w.count, g.shear_weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
+    by_others = film.gather_shear(g.shear_weight * film.share() / s.H)
     if by_others is not None:
         row += by_others.reshape(-1)[w.order[: w.count]]
 
@@ -257,15 +257,17 @@ def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:
     """dC/d(film gap) (1, n, m) at fixed pressure and fill; adds the direct gradient to the speeds to ``dc`` (10,)."""
     s, g, oil = film.solver, film.grid, film.oil
     gradient = np.empty((1, *g.shape))
+    if film.loads.recess is not None:
+        dc[8] += 2.0 * film.loads.recess.by_spin.sum()  # vx = omega / 2
     if oil.ratio is not None and oil.ratio_h is not None and oil.ratio_v is not None:
         if s.closure.conserves_mass:
-            density = g.weight * film.share() / s.H
+            density = g.shear_weight * film.share() / s.H
             gradient[0] = density * (oil.ratio_h - oil.ratio / s.H)
             dc[8] += float(np.sum(density * oil.ratio_v))
         else:
             dc[8] += couette_gradient_ratio(
                 s.H,
-                g.weight,
+                g.shear_weight,
                 oil.ratio,
                 oil.ratio_h,
                 oil.ratio_v,
@@ -275,9 +277,9 @@ def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:
                 gradient[0],
             )
     elif s.closure.conserves_mass:
-        gradient[0] = -g.weight * s.fill / s.H**2
+        gradient[0] = -g.shear_weight * s.fill / s.H**2
     else:
-        couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
+        couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
     return gradient
 
 
