@@ -66,6 +66,25 @@ def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
         rhs_out[1, r] = w * z[at]
 
 
+@njit(cache=True, inline="always")
+def ends_cavity(active, fixed, i, end):
+    """Whether the end vertex (i, end) lies beside a cavity: its half control volume then holds what the cavity does."""
+    last = active.shape[1] - 1
+    beside = 1 if end == 0 else last - 1
+    return last > 1 and fixed[i, end] and not (active[i, beside] or fixed[i, beside])
+
+
+@njit(cache=True)
+def ends_of_cavity(H, weight, active, fixed, ratio):
+    """C over the ends' half control volumes beside a cavity, with a viscosity ratio (n, m) or None."""
+    out = 0.0
+    for i in range(H.shape[0]):
+        for end in (0, H.shape[1] - 1):
+            if ends_cavity(active, fixed, i, end):
+                out += weight[i, end] / H[i, end] * (1.0 if ratio is None else ratio[i, end])
+    return out
+
+
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def couette_integral(H, weight, active, fixed, cavity_share):
     """(C, C over the unbroken film, dC as -W share/H^2 is left to `couette_gradient`)."""
@@ -75,7 +94,8 @@ def couette_integral(H, weight, active, fixed, cavity_share):
         s = w[c] / h[c]
         unbroken += s if free[c] | known[c] else 0.0
         cavity += 0.0 if free[c] | known[c] else s
-    return unbroken + cavity_share * cavity, unbroken
+    ends = ends_of_cavity(H, weight, active, fixed, None)
+    return unbroken + cavity_share * cavity - (1.0 - cavity_share) * ends, unbroken - ends
 
 
 @njit(cache=True)
@@ -120,6 +140,8 @@ def couette_gradient(H, weight, active, fixed, cavity_share, out):
         for j in range(m):
             share = 1.0 if (active[i, j] or fixed[i, j]) else cavity_share
             out[i, j] = -share * weight[i, j] / (H[i, j] * H[i, j])
+        for end in (0, m - 1):
+            out[i, end] *= cavity_share if ends_cavity(active, fixed, i, end) else 1.0
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -337,10 +337,7 @@ class SolvedFilm(NamedTuple):
 
     def share(self) -> np.ndarray:
         """Share of a full film's shear that acts at each vertex (n, m)."""
-        s = self.solver
-        if s.closure.conserves_mass:
-            return s.fill
-        return np.where(s.work.active | self.grid.fixed, 1.0, s.closure.cavity_shear)
+        return self.solver.shear_share()
 
     def slip(self, transition_speed: float) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""

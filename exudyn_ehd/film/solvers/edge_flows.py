@@ -1,4 +1,4 @@
-"""Flows at prescribed vertices, where the film beside them ends within a link."""
+"""Flows at prescribed vertices, where the film beside them ends within a link; shear at the ends beside a cavity."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
+
+# Columns of both ends, and those beside them.
+ENDS = (0, 1), (-1, -2)
 
 
 def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -23,6 +26,20 @@ def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.n
         near |= links & np.roll(pressed, -1, axis) | np.roll(links & pressed, 1, axis)
     near &= ~s.fixed
     return np.where(near, s.linear_pressure, s.pressure), active | near
+
+
+def with_cavities_at_ends(share: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+    """Shares (n, m) of a full film, at the ends those of the vertices beside them.
+
+    An end's half control volume holds what the film beside it does; that its own pressure is prescribed would count it
+    as full beside a cavity too.
+    """
+    if share.shape[1] < 3:
+        return share
+    out = share.copy()
+    for end, beside in ENDS:
+        np.copyto(out[:, end], share[:, beside], where=fixed[:, end])
+    return out
 
 
 def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:

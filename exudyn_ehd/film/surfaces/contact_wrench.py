@@ -9,6 +9,8 @@ import math
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.loads import ends_cavity, ends_of_cavity
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -177,7 +179,8 @@ def couette_integral_law(H, weight, ratio, active, fixed, cavity_share):
         kept = s if a[k] | b[k] else 0.0
         unbroken += kept
         whole += s - kept
-    return unbroken + cavity_share * whole, unbroken
+    ends = ends_of_cavity(H, weight, active, fixed, ratio)
+    return unbroken + cavity_share * whole - (1.0 - cavity_share) * ends, unbroken - ends
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
@@ -192,4 +195,10 @@ def couette_gradient_ratio(H, weight, ratio, ratio_h, ratio_v, active, fixed, ca
         density = density if a[k] | b[k] else density * cavity_share
         gradient[k] = density * (r_h[k] - r[k] * inverse)
         speed += density * r_v[k]
+    n, m = H.shape
+    for i in range(n):
+        for end in (0, m - 1):
+            if ends_cavity(active, fixed, i, end):
+                out[i, end] *= cavity_share
+                speed -= (1.0 - cavity_share) * weight[i, end] / H[i, end] * ratio_v[i, end]
     return speed

@@ -205,7 +205,7 @@ class FaceFilm:
         self.loads = products(a.moments, pressed[None])[:, 0]
         self.rows = a.link_rows(s.H, s.HF)
         self.carried = products(self.rows, s.pressure[None])[:, 0]
-        share = np.where(s.work.active | a.grid.fixed, 1.0, self.closure.cavity_shear)
+        share = s.shear_share()
         # on the links, whose gaps lie on one side of a step
         self.sheared = a.weight * 0.5 * (share + np.roll(share, -1, axis=0)) / s.HF
         self.shear = self._shear_matrices(self.sheared[None])[0]

@@ -20,7 +20,7 @@ from exudyn_ehd.joint.solved_film import SolvedFilm
 STAGNANT = 1e-14
 # Exchange over every link within a supply area, in the film's largest flow. Smaller: areas are mixed less well, their
 # temperatures differ by up to a share n_theta / MIXED of their rise. Larger: more round-off, 1e-16 MIXED of that rise.
-MIXED = 1e6
+MIXED = 1e4
 
 
 class BandSolver:
@@ -89,7 +89,7 @@ class HeatBalance:
 
     def largest(self) -> float:
         """Largest of the flows and of the storage."""
-        return float(max(np.abs(self.flows.x).max(), np.abs(self.flows.z).max(), self.store.max()))
+        return max(self.flows.largest, float(self.store.max()))
 
     def stirred(self) -> np.ndarray:
         """Exchange (2, n, m) over the links in theta and z that mixes the supply areas."""
@@ -97,7 +97,7 @@ class HeatBalance:
         for area in self.flows.areas:
             links[0] += area & np.roll(area, -1, axis=0)
             links[1, :, :-1] += area[:, :-1] & area[:, 1:]
-        return MIXED * self.largest() * links
+        return MIXED * self.flows.largest * links
 
     def factor(self, walls: np.ndarray) -> None:
         """Factor the system with heat transfer ``walls`` to the surfaces, in units of ``scale``."""

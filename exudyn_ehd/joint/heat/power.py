@@ -11,11 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, outside_flows
+from exudyn_ehd.film.solvers.edge_flows import ENDS
 from exudyn_ehd.joint.solved_film import SolvedFilm
-
-
-# Columns of both ends, and those beside them.
-ENDS = (0, 1), (-1, -2)
 
 
 class Powers(NamedTuple):
@@ -156,6 +153,11 @@ class OilFlows:
     def exchanged(self) -> float:
         """Flow that leaves a film of one temperature, and is replaced by oil of the supply temperature."""
         return float(self.leaving.sum()) + self.total_lost - self.back * self.total_found
+
+    @property
+    def largest(self) -> float:
+        """Largest flow over a link."""
+        return float(max(np.abs(self.x).max(), np.abs(self.z).max()))
 
     def _void_the_ends(self, film: SolvedFilm, stepped: bool) -> None:
         """Give the ends' control volumes the void of the vertices beside them."""

@@ -127,9 +127,10 @@ def _couette(parts: FilmParts, ratio: np.ndarray | None) -> tuple[float, float]:
     """Integrals of the Couette shear: of all of the film, and of its unbroken part."""
     s, g = parts.solver, parts.grid
     if s.closure.conserves_mass:
+        share = s.shear_share()
         if ratio is None:
-            return couette_integral_fill(s.H, g.weight, s.fill)
-        return couette_integral_ratio(s.H, g.weight, ratio, s.fill, s.fill >= 1.0)
+            return couette_integral_fill(s.H, g.weight, share)
+        return couette_integral_ratio(s.H, g.weight, ratio, share, share >= 1.0)
     if ratio is None:
         return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
     return couette_integral_law(s.H, g.weight, ratio, s.work.active, g.fixed, s.closure.cavity_shear)

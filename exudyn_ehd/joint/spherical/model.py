@@ -249,8 +249,7 @@ class SphericalModel:
 
     def _share(self) -> np.ndarray:
         """Share (n m,) of a full film's Couette shear."""
-        s = self.solver
-        return np.where(s.work.active | self.grid.fixed, 1.0, self.bearing.cavitation.cavity_shear).ravel()
+        return self.solver.shear_share().ravel()
 
     def _oil(self) -> tuple[np.ndarray, np.ndarray | float, np.ndarray | float] | None:
         """Scaled pressure, viscosity ratio and its derivative to the unknown; None where no pressure is high enough."""

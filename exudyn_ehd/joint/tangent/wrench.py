@@ -15,6 +15,7 @@ from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjo
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
+from exudyn_ehd.film.solvers.edge_flows import ENDS
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
     chain_links,
@@ -97,7 +98,7 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     couette = _couette_direct(film, dc)
     fills = true_fills(film)
     if fills is not None:
-        dc += by_fills(film, fills, _ratio(film) * film.grid.weight / film.solver.H)[:, 0]
+        dc += by_fills(film, fills, _ratio(film) * film.grid.weight / film.solver.H + shear_of_ends(film))[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
     _contract_couette(film, couette, dc)
     if pulls_unevenly(film.parts, film.limited):
@@ -247,6 +248,18 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     by_others = film.gather_shear(g.weight * film.share() / s.H)
     if by_others is not None:
         row += by_others.reshape(-1)[w.order[: w.count]]
+    if s.closure.conserves_mass:
+        rise = 0.0 if s.oil_line is None else s.oil_line.rise
+        row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
+
+
+def shear_of_ends(film: SolvedFilm) -> np.ndarray:
+    """Density of the ends' shear at the vertices beside them (n, m), whose fill they share."""
+    density, out = _ratio(film) * film.grid.weight / film.solver.H, np.zeros(film.grid.shape)
+    if out.shape[1] > 2:
+        for end, beside in ENDS:
+            out[:, beside] += np.where(film.grid.fixed[:, end], density[:, end], 0.0)
+    return out
 
 
 def _ratio(film: SolvedFilm) -> np.ndarray:
@@ -275,7 +288,7 @@ def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:
                 gradient[0],
             )
     elif s.closure.conserves_mass:
-        gradient[0] = -g.weight * s.fill / s.H**2
+        gradient[0] = -g.weight * film.share() / s.H**2
     else:
         couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
     return gradient
