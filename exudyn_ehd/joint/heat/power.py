@@ -137,12 +137,16 @@ class OilFlows:
         self.outside = outside_flows(self.z, balance, fixed, unbroken)
         if conserves and film.grid.flows_along_z:
             self._flow_around(film, fx)
+        self.areas = supply.parted() if supply is not None and film.grid.flows_along_z else []
+        if self.areas and not conserves:
+            # films that end within a link of an area; what this leaves of the balance is the cavity's
+            inside = np.logical_or.reduce(self.areas)
+            np.copyto(self.outside, s.inflow(ended=not supply.rotating), where=inside)
         found = s.nothing if conserves else balance - self.outside
         self.found, self.lost = np.maximum(found, 0.0), np.maximum(-found, 0.0)
         self.total_found, self.total_lost = float(self.found.sum()), float(self.lost.sum())
         self.back = carry_over * min(1.0, self.total_lost / self.total_found) if self.total_found > 0.0 else 0.0
         self.entering = np.maximum(self.outside, 0.0)
-        self.areas = supply.parted() if supply is not None and film.grid.flows_along_z else []
         for area in self.areas:
             self.entering[area] = max(0.0, float(self.outside[area].mean()))
         if carry_over < 1.0 and supply is not None:
@@ -175,17 +179,17 @@ class OilFlows:
                 self.content[:, end] = np.maximum(self.content[:, end] - lacked, 0.0)
 
     def _flow_around(self, film: SolvedFilm, fx: np.ndarray) -> None:
-        """Let nothing enter or leave by what flows round in the ends' control volumes."""
+        """Let nothing enter by what flows round in the ends' control volumes."""
         s = film.solver
         for (end, beside), sign in zip(ENDS, (1.0, -1.0), strict=True):
             if not film.grid.fixed[:, end].all():
                 continue
+            pressed = np.ascontiguousarray(sign * self.z[:, min(end, beside)])
             stored, squeezed = (s.area[:, end] * rate[:, end] for rate in (self.rate, s.H_t))
             full = (s.fill[:, beside] >= 1.0) & (s.pressure[:, end] > s.system.cavity_pressure)
-            flow, entering = np.empty((2, stored.size))
-            pressed = np.ascontiguousarray(sign * self.z[:, min(end, beside)])
-            end_flows_around(fx[:, end].copy(), pressed, stored, squeezed, full, flow, entering)
-            self.x[:, end], self.outside[:, end] = flow, entering
+            flow = np.empty_like(pressed)
+            end_flows_around(fx[:, end].copy(), pressed, stored, squeezed, full, flow, self.outside[:, end])
+            self.x[:, end] = flow
 
     def _arriving(self, inside: np.ndarray) -> np.ndarray:
         """Flow from the film into the vertices ``inside`` supply areas (n, m)."""
@@ -214,7 +218,10 @@ def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float
     flows, oil = OilFlows(film, carry_over), film.parts.compressible
     P, cavity = film.oil.P, np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
     pressure = P - cavity if oil is None else oil.flow_work(P) - oil.flow_work(cavity)
-    work = float(np.sum(pressure * (flows.outside - film.solver.area * flows.rate)))
+    entering = flows.outside - film.solver.area * flows.rate
+    for area in flows.areas:
+        entering[area] += flows.found[area] - flows.lost[area]
+    work = float(np.sum(pressure * entering))
     power = film.scales.pressure * film.parts.flow_scale
     return powers(film).sliding + power * (work + _end_work(film)), flows.exchanged
 
