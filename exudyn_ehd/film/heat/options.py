@@ -142,15 +142,19 @@ class FilmEnergy:
 
     ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``: m film content, q flow per width (pressure
     and Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, backward Euler, upwind in theta
-    (first order), of second order in z without new extrema. Oil enters through the ends with the supply
-    temperature. A supply area is a well-mixed volume: what the film presses into it and the net feed, which is fresh,
-    leave it with one temperature, ``T_mix = (Q T + N T_supply) / (Q + N)`` with the flow Q from the film and its mean
-    temperature T, and the net feed N (H. Heshmat and O. Pinkus, J. Tribology 108 (1986) 231); `LumpedThermal` has the
-    same law, with ``T`` of all the film. Films without axial flow exchange all oil in their areas. Cavitation models that do not conserve mass lose oil at the end of the film and find it again at its
-    beginning: it returns fully mixed, the leakage replaced by supply oil. The viscosity of a step follows from the
-    temperatures at its start: the coupling is explicit, of first order; in steps that are long beside the exchange of
-    the oil the heat follows the temperature, or the film would swing from step to step. `steady` and `equilibrium`
-    take the steady field; a static solution of a multibody model takes the initial temperature.
+    (first order), of second order in z without new extrema. Oil enters through the ends with the supply temperature.
+
+    A supply area is a well-mixed volume: all that flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with
+    the flow Q that the film presses into it, Q's mean temperature T, and the net feed N, which alone is fresh (H.
+    Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). `LumpedThermal` has the same law. Flush or cool a groove by
+    ``carry_over``. In films without axial flow, oil that pressure drives into an area leaves, and that from an area is
+    fresh.
+
+    Cavitation models that do not conserve mass lose oil at the end of the film and find it again at its beginning: it
+    returns fully mixed, the leakage replaced by supply oil. The viscosity of a step follows from the temperatures at
+    its start: the coupling is explicit, of first order; in steps that are long beside the exchange of the oil the heat
+    follows the temperature, or the film would swing from step to step. `steady` and `equilibrium` take the steady
+    field; a static solution of a multibody model takes the initial temperature.
 
     Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K
     (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4

@@ -88,7 +88,8 @@ class OilFlows:
 
     the heat balance of a groove with hot oil carried over (H. Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). An
     area that takes oil, N < 0, mixes Q and X alone, and what it takes leaves with T_mix. In a film without axial flow,
-    whose oil has no other way out, all of Q leaves and is replaced by fresh oil.
+    whose oil has no other way out, areas do not mix: oil that pressure drives into one leaves, and that from one is
+    fresh.
 
     Of a compressible film, flows and contents are masses over the density at ambient pressure.
 

@@ -218,7 +218,7 @@ def _ends_by_fills(film: SolvedFilm) -> csr_matrix:
     at, ratio = np.arange(g.fixed.size).reshape(g.shape), film.solver.ones if film.oil.ratio is None else film.oil.ratio
     rows, columns, values = [], [], []
     for end, beside in ENDS:
-        free = g.fixed[:, end] & ~g.fixed[:, beside] & ~w.active[:, beside]
+        free = g.fixed[:, end] & (w.number[:, beside] >= 0) & ~w.active[:, beside]
         rows.append(at[free, end])
         columns.append(w.number[free, beside])
         values.append(ratio[free, end])
