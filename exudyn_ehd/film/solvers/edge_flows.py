@@ -8,9 +8,6 @@ from numba import njit
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 
-# Columns of both ends, and those beside them.
-ENDS = (0, 1), (-1, -2)
-
 
 def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.ndarray, np.ndarray]:
     """Pressures (n, m) whose differences drive the flows at prescribed vertices, and where the film is full.
@@ -28,17 +25,19 @@ def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.n
     return np.where(near, s.linear_pressure, s.pressure), active | near
 
 
-def with_cavities_at_ends(share: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """Shares (n, m) of a full film, at the ends those of the vertices beside them.
+def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int, np.ndarray]]:
+    """Columns of the ends and of the vertices beside them, and where (n,) an end holds what the film beside it does.
 
-    An end's half control volume holds what the film beside it does; that its own pressure is prescribed would count it
-    as full beside a cavity too.
+    An end's half control volume is as empty as the cavity beside it, though its pressure is prescribed. Where a film
+    conserves mass under an end pressure above the cavity's, a full band lies along the end.
     """
-    if share.shape[1] < 3:
-        return share
-    out = share.copy()
-    for end, beside in ENDS:
-        np.copyto(out[:, end], share[:, beside], where=fixed[:, end])
+    m = s.fixed.shape[1]
+    out = []
+    for end, beside in ((0, 1), (m - 1, m - 2)) if m > 2 else ():
+        at = s.fixed[:, end] & ~s.fixed[:, beside]
+        if conserves_mass:
+            at &= s.pressure[:, end] <= s.cavity_pressure
+        out.append((end, beside, at))
     return out
 
 

@@ -19,7 +19,7 @@ from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import FluxEffect, link_flux, set_links, vertex_balance
-from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas, flow_pressures, with_cavities_at_ends
+from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas, ends_of_cavities, flow_pressures
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing time step where only the rates at one instant are asked for, share of the time in which the
@@ -120,10 +120,11 @@ class FilmSolver:
 
     def shear_share(self) -> np.ndarray:
         """Share of a full film's shear that acts at each vertex (n, m)."""
-        fixed, share = self.grid.fixed, self.system.fill
-        if not self.closure.conserves_mass:
-            share = np.where(self.work.active | fixed, 1.0, self.closure.cavity_shear)
-        return with_cavities_at_ends(share, fixed)
+        s, conserves = self.system, self.closure.conserves_mass
+        share = s.fill.copy() if conserves else np.where(self.work.active | s.fixed, 1.0, self.closure.cavity_shear)
+        for end, beside, at in ends_of_cavities(s, conserves):
+            np.copyto(share[:, end], share[:, beside], where=at)
+        return share
 
     @property
     def content(self) -> np.ndarray:

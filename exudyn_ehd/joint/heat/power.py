@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, outside_flows
-from exudyn_ehd.film.solvers.edge_flows import ENDS
+from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 
@@ -166,10 +166,9 @@ class OilFlows:
 
     def _void_the_ends(self, film: SolvedFilm, stepped: bool) -> None:
         """Give the ends' control volumes the void of the vertices beside them."""
-        s, fixed = film.solver, film.grid.fixed
+        s = film.solver
         old = film.history.void if stepped and film.history is not None else None
-        for end, beside in ENDS:
-            at = fixed[:, end] & ~fixed[:, beside]
+        for end, beside, at in ends_of_cavities(s.system, True):
             if old is None:
                 share = np.where(at, s.fill[:, beside], 1.0)
                 self.rate[:, end] *= share
@@ -182,10 +181,10 @@ class OilFlows:
     def _flow_around(self, film: SolvedFilm, fx: np.ndarray) -> None:
         """Let nothing enter by what flows round in the ends' control volumes."""
         s = film.solver
-        for (end, beside), sign in zip(ENDS, (1.0, -1.0), strict=True):
+        for end, beside, _ in ends_of_cavities(s.system, True):
             if not film.grid.fixed[:, end].all():
                 continue
-            pressed = np.ascontiguousarray(sign * self.z[:, min(end, beside)])
+            pressed = self.z[:, 0].copy() if end == 0 else -self.z[:, beside]
             stored, squeezed = (s.area[:, end] * rate[:, end] for rate in (self.rate, s.H_t))
             full = (s.fill[:, beside] >= 1.0) & (s.pressure[:, end] > s.system.cavity_pressure)
             flow = np.empty_like(pressed)

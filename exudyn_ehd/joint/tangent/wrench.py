@@ -15,7 +15,7 @@ from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjo
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
-from exudyn_ehd.film.solvers.edge_flows import ENDS
+from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
     chain_links,
@@ -254,11 +254,10 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
 
 
 def shear_of_ends(film: SolvedFilm) -> np.ndarray:
-    """Density of the ends' shear at the vertices beside them (n, m), whose fill they share."""
+    """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
     density, out = _ratio(film) * film.grid.weight / film.solver.H, np.zeros(film.grid.shape)
-    if out.shape[1] > 2:
-        for end, beside in ENDS:
-            out[:, beside] += np.where(film.grid.fixed[:, end], density[:, end], 0.0)
+    for end, beside, at in ends_of_cavities(film.solver.system, True):
+        out[at, beside] += density[at, end]
     return out
 
 

@@ -302,7 +302,8 @@ def test_heat_is_the_power_of_the_motion():
         film = model.evaluate(np.array([e * np.cos(a), e * np.sin(a), 0, 0, 0, 0, 0, 0, 300.0, 0.0])).film
         pressed_out = -bearing.cavitation.cavity_pressure * film.parts.flow_scale * heat_and_exchange(film, 1.0)[1]
         assert (model.solver.oil_line.fields.s < 1.0).any()
-        assert abs(heat_and_exchange(film, 1.0)[0] / powers(film).loss - 1.0) < 1e-11 + abs(pressed_out / powers(film).loss)
+        heat, loss = heat_and_exchange(film, 1.0)[0], powers(film).loss
+        assert abs(heat / loss - 1.0) < 1e-11 + abs(pressed_out / loss)
 
 
 @pytest.mark.parametrize(
