@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.grid import FilmGrid
 
 
@@ -39,6 +40,15 @@ def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int
             at &= s.pressure[:, end] <= s.cavity_pressure
         out.append((end, beside, at))
     return out
+
+
+def shear_share(s: FilmSystem, active: np.ndarray, closure: Closure) -> np.ndarray:
+    """Share of a full film's shear that acts at each vertex (n, m)."""
+    conserves = closure.conserves_mass
+    share = s.fill.copy() if conserves else np.where(active | s.fixed, 1.0, closure.cavity_shear)
+    for end, beside, at in ends_of_cavities(s, conserves):
+        np.copyto(share[:, end], share[:, beside], where=at)
+    return share
 
 
 def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:

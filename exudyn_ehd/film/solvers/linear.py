@@ -19,7 +19,7 @@ from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import FluxEffect, link_flux, set_links, vertex_balance
-from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas, ends_of_cavities, flow_pressures
+from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas, flow_pressures
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing time step where only the rates at one instant are asked for, share of the time in which the
@@ -117,14 +117,6 @@ class FilmSolver:
             return self.ones
         late = s.coefficients.late
         return s.prompt * s.fill + late if self.lagging or self.oil_line is not None else s.fill
-
-    def shear_share(self) -> np.ndarray:
-        """Share of a full film's shear that acts at each vertex (n, m)."""
-        s, conserves = self.system, self.closure.conserves_mass
-        share = s.fill.copy() if conserves else np.where(self.work.active | s.fixed, 1.0, self.closure.cavity_shear)
-        for end, beside, at in ends_of_cavities(s, conserves):
-            np.copyto(share[:, end], share[:, beside], where=at)
-        return share
 
     @property
     def content(self) -> np.ndarray:

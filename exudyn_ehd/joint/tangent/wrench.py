@@ -11,18 +11,19 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs
+from exudyn_ehd.film.loads import (
+    couette_gradient,
+    couette_gradient_ratio,
+    load_adjoint_rhs,
+    shear_adjoint_rhs,
+    slope_adjoint_rhs,
+)
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.surfaces.contact_wrench import (
-    chain_links,
-    contact_tangent,
-    contact_weights,
-    couette_gradient_ratio,
-)
+from exudyn_ehd.film.surfaces.contact_wrench import chain_links, contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import (
     add_drag_by_pose,
