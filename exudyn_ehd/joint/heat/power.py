@@ -139,7 +139,7 @@ class OilFlows:
         if conserves and film.grid.flows_along_z:
             self._flow_around(film, fx)
         self.areas = supply.parted() if supply is not None and film.grid.flows_along_z else []
-        if self.areas and not conserves:
+        if supply is not None and self.areas and not conserves:
             # films that end within a link of an area; what this leaves of the balance is the cavity's
             inside = np.logical_or.reduce(self.areas)
             np.copyto(self.outside, s.inflow(ended=not supply.rotating), where=inside)
