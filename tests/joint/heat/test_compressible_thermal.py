@@ -113,15 +113,16 @@ def test_flows_are_the_mass_flows_of_the_solved_film(cavitation, step):
     size = np.abs(flows.x).max()
     assert np.abs(gain[inside]).max() < 1e-11 * size
     if cavitation.conserves_mass:
-        np.testing.assert_allclose(flows.outside, s.inflow(), atol=1e-12 * size)
-        out = evaluation.quantities()
-        lost = -flows.outside.sum(axis=0) * model.parts.flow_scale
-        assert out["leakage_lower"] == pytest.approx(lost[0], rel=1e-9)
-        assert out["leakage_upper"] == pytest.approx(lost[-1], rel=1e-9)
+        np.testing.assert_allclose(flows.outside[:, 1:-1], s.inflow()[:, 1:-1], atol=1e-12 * size)
+        # what goes round in an end neither enters nor leaves; reported flows count the ends as full in time as well
+        kept, ends = (s.area * flows.rate).sum(axis=0), flows.z.sum(axis=0)
+        assert np.abs(gain - flows.outside)[:, [0, -1]].max() < 1e-11 * size
+        assert flows.outside[:, 0].sum() == pytest.approx(ends[0] + kept[0], abs=1e-11 * size)
+        assert flows.outside[:, -1].sum() == pytest.approx(kept[-1] - ends[-2], abs=1e-11 * size)
         if step:
             # the rate is that of the mass which the history keeps
-            gain = (evaluation.history().mass - history.mass) / step
-            np.testing.assert_allclose(flows.rate, gain, atol=1e-15 * s.H.max() / step)
+            rate = (evaluation.history().mass - history.mass) / step
+            np.testing.assert_allclose(flows.rate[:, 1:-1], rate[:, 1:-1], atol=1e-15 * s.H.max() / step)
 
 
 def dissipation(film):
