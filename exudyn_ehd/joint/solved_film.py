@@ -29,6 +29,7 @@ from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply.cuts import SupplyMap
@@ -349,10 +350,7 @@ class SolvedFilm(NamedTuple):
 
     def share(self) -> np.ndarray:
         """Share of a full film's shear that acts at each vertex (n, m)."""
-        s = self.solver
-        if s.closure.conserves_mass:
-            return s.fill
-        return np.where(s.work.active | self.grid.fixed, 1.0, s.closure.cavity_shear)
+        return shear_share(self.solver.system, self.solver.work.active, self.solver.closure)
 
     def slip(self, transition_speed: float) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""

@@ -152,14 +152,14 @@ class SupplyMap:
             P[mask] = value
 
     def flows(self, inflow: np.ndarray) -> np.ndarray:
-        """What every area feeds into the film, in the unit of ``inflow`` (n, m).
+        """What every area feeds into the film, in the unit of ``inflow`` (n, m)."""
+        return np.array([float(np.sum(inflow[area])) for area in self.parted()])
 
-        A shared vertex counts for the first area.
-        """
-        left = np.ones(inflow.shape, dtype=np.bool_)
-        out = np.empty(len(self.masks))
-        for k, mask in enumerate(self.masks):
-            out[k] = float(np.sum(inflow[mask & left]))
+    def parted(self) -> list[np.ndarray]:
+        """Vertices of every area (n, m); a shared vertex counts for the first area."""
+        left, out = np.ones(self.grid.shape, dtype=np.bool_), []
+        for mask in self.masks:
+            out.append(mask & left)
             left &= ~mask
         return out
 

@@ -31,6 +31,7 @@ import numpy as np
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
+from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, products
@@ -187,7 +188,7 @@ class FaceFilm:
         self.loads = products(a.moments, pressed[None])[:, 0]
         self.rows = a.link_rows(s.H, s.HF)
         self.carried = products(self.rows, s.pressure[None])[:, 0]
-        share = np.where(s.work.active | a.grid.fixed, 1.0, self.closure.cavity_shear)
+        share = shear_share(s.system, s.work.active, self.closure)
         # on the links, whose gaps lie on one side of a step
         self.sheared = a.weight * 0.5 * (share + np.roll(share, -1, axis=0)) / s.HF
         self.shear = self._shear_matrices(self.sheared[None])[0]

@@ -9,14 +9,16 @@ import numpy as np
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
+    couette_integral_law,
     couette_integral_ratio,
     end_forces,
     journal_wrench,
     pressure_integrals,
     slope_integrals,
 )
+from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
-from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench, couette_integral_law
+from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench
 from exudyn_ehd.joint.seams import Effects, ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
@@ -150,9 +152,10 @@ def _couette(parts: FilmParts, ratio: np.ndarray | None) -> tuple[float, float]:
     """Integrals of the Couette shear: of all of the film, and of its unbroken part."""
     s, g = parts.solver, parts.grid
     if s.closure.conserves_mass:
+        share = shear_share(s.system, s.work.active, s.closure)
         if ratio is None:
-            return couette_integral_fill(s.H, g.shear_weight, s.fill)
-        return couette_integral_ratio(s.H, g.shear_weight, ratio, s.fill, s.fill >= 1.0)
+            return couette_integral_fill(s.H, g.shear_weight, share)
+        return couette_integral_ratio(s.H, g.shear_weight, ratio, share, share >= 1.0)
     if ratio is None:
         return couette_integral(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear)
     return couette_integral_law(s.H, g.shear_weight, ratio, s.work.active, g.fixed, s.closure.cavity_shear)

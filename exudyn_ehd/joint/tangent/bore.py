@@ -198,7 +198,7 @@ def couette_field(film: SolvedFilm) -> np.ndarray:
     if oil.ratio is not None and oil.ratio_h is not None:
         field = g.shear_weight * film.share() / s.H * (oil.ratio_h - oil.ratio / s.H)
     elif s.closure.conserves_mass:
-        field = -g.shear_weight * s.fill / s.H**2
+        field = -g.shear_weight * film.share() / s.H**2
     else:
         field = np.empty(g.shape)
         couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, field)

@@ -23,6 +23,7 @@ from scipy.sparse import csr_matrix, diags, vstack
 from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import balance_change
+from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.joint.bore.columns import column_forces, put_sparse
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
@@ -153,6 +154,9 @@ class TractionChange:
         if by_others is not None:
             density = diags(sheared * film.share().ravel()) @ by_others[:, self.places]
             self.thins = [csr_matrix(speed * density) for speed in speeds]
+        if film.solver.closure.conserves_mass:
+            ends = diags(sheared) @ _ends_by_fills(film)
+            self.thins = [s * ends + (0.0 if self.thins is None else self.thins[c]) for c, s in enumerate(speeds)]
         if film.pressing is not None:
             self._add_contacts(film, film.pressing)
 
@@ -209,6 +213,21 @@ class TractionChange:
                 out[1 + c] += self.thins[c] @ unknowns
         out[0, self.places] += self.load * unknowns
         return out
+
+
+def _ends_by_fills(film: SolvedFilm) -> csr_matrix:
+    """Derivatives (n m, count) of share times viscosity ratio at the ends to the fills of the vertices beside them."""
+    g, w = film.grid, film.solver.work
+    at, ratio = np.arange(g.fixed.size).reshape(g.shape), film.solver.ones if film.oil.ratio is None else film.oil.ratio
+    rows, columns, values, number = [], [], [], np.full(g.shape, -1)
+    number.reshape(-1)[w.order[: w.count]] = np.arange(w.count)
+    for end, beside, at_cavity in ends_of_cavities(film.solver.system, True):
+        free = at_cavity & (number[:, beside] >= 0) & ~w.active[:, beside]
+        rows.append(at[free, end])
+        columns.append(number[free, beside])
+        values.append(ratio[free, end])
+    place = np.concatenate(rows), np.concatenate(columns)
+    return csr_matrix((np.concatenate(values), place), shape=(at.size, w.count))
 
 
 def _density(film: SolvedFilm) -> np.ndarray:
