@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
@@ -19,7 +19,7 @@ from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
-from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
+from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
@@ -218,8 +218,8 @@ def equilibrium(
     Raises
     ------
     InputError
-        For a zero load or speed, an inlet that a moving journal can't have, an axial load without faces or at a given
-        axial position.
+        For a zero load or speed, an inlet that a moving journal can't have, supply areas that turn with the journal,
+        an axial load without faces or at a given axial position.
     FilmError
         If no equilibrium was found.
 
@@ -244,9 +244,7 @@ def equilibrium(
         raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
     require_size("equilibrium: load", size, "N", **LOADS)
-    if isinstance(bearing.inlet, MaximumGap):
-        raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
-    require_oil(bearing, "equilibrium")
+    require_rest(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
     faces = _faces(model, place, axial_load, size)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])

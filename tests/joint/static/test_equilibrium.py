@@ -167,6 +167,28 @@ class TestEquilibrium:
         with pytest.raises(ehd.InputError, match="Periodic"):
             ehd.equilibrium(make_bearing(1.0, inlet=ehd.MaximumGap()), speed=SPEED, load=(1.0, 0.0))
 
+    @pytest.mark.parametrize("closure", [*CLOSURES, ehd.ElrodAdams()])
+    def test_refuses_areas_that_turn_with_the_journal(self, make_bearing, closure):
+        """Of any kind, next to areas in the housing, in all that look for a position of rest."""
+        rng = np.random.default_rng(3)
+        still = ehd.CircumferentialGroove(z=-0.011, width=0.001, pressure=1e5)
+        for kind in (ehd.Hole, ehd.Pocket, ehd.AxialGroove):
+            size = {
+                ehd.Hole: {"diameter": 0.005},
+                ehd.Pocket: {"width_angle": 0.4, "length": 0.01},
+                ehd.AxialGroove: {"width_angle": 0.4, "length": 0.01},
+            }[kind]
+            area = kind(angle=rng.uniform(0.0, 6.0), pressure=2e5, rotating=True, **size)
+            bearing = make_bearing(1.0, cavitation=closure, supply=(still, area))
+            point = ehd.EquilibriumPoint(bearing=bearing, speed=SPEED, load=(0.0, -10.0))
+            for name, search in (
+                ("equilibrium", lambda b=bearing: ehd.equilibrium(b, speed=SPEED, load=(0.0, -10.0))),
+                ("equilibrium", lambda p=point: p({})),
+                ("stribeck", lambda b=bearing: ehd.stribeck(b, load=10.0, speeds=[SPEED])),
+            ):
+                with pytest.raises(ehd.InputError, match=rf"{name}: JournalBearing.supply\[1\] turns .*UntilPeriodic"):
+                    search()
+
     def test_a_hopeless_tilt_is_an_error(self, make_bearing):
         with pytest.raises(ehd.FilmError, match="equilibrium"):
             ehd.equilibrium(make_bearing(1.0), speed=SPEED, load=(1e3, 0.0), tilt=(2e-3, 0.0))
