@@ -247,10 +247,10 @@ def require_rest(bearing: JournalBearing, where: str) -> None:
     for k, area in enumerate(bearing.supply):
         if area.rotating:
             raise InputError(
-                f"{where}: JournalBearing.supply[{k}] turns with the journal (rotating=True): the film changes with the "
-                "angle, so that a journal under a constant load has no position of rest. Run a joint until its orbit "
-                "repeats: ehd.SolveDynamic(..., until_periodic=ehd.UntilPeriodic(period=...)) with the time of one "
-                "turn as period; or put the area into the housing (rotating=False)."
+                f"{where}: JournalBearing.supply[{k}] turns with the journal (rotating=True): the film changes with "
+                "the angle, so that a journal under a constant load has no position of rest. Run a joint until its "
+                "orbit repeats: ehd.SolveDynamic(..., until_periodic=ehd.UntilPeriodic(period=...)) with the time of "
+                "one turn as period; or put the area into the housing (rotating=False)."
             )
     require_oil(bearing, where)
 
