@@ -311,8 +311,8 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
         if not history.time.size:
             continue
         parts.append(
-            f"LubricatedJoint '{joint.name}': force {np.linalg.norm(history.force[-1]):.6g} N, minimum film thickness "
-            f"{history.minimum_gap[-1]:.6g} m, {joint.element.failures.place(history.motion[-1])}"
+            f"LubricatedJoint '{joint.name}': {joint.element.failures.place(history.motion[-1])}minimum film thickness "
+            f"{history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
         )
     if static:
         parts.append(f"{_unheld(mbs)[:-1]}; ")

@@ -174,8 +174,8 @@ def equilibrium(
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
-    the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a
-    falling resistance.
+    the bearing and costs nothing near the solution. Where it fails, damped steps of
+    Levenberg and Marquardt lead there, first from the same guess, then from inside the bearing.
 
     With `ElrodAdams` stiffness and damping depend on the frequency of the motion, because the cavity's oil follows
     with a delay. The threshold is solved for with both at its own frequency, and these are the ones returned; others
@@ -193,8 +193,11 @@ def equilibrium(
     along it are ``film.faces.axial_stiffness`` and ``axial_damping``. The tilt is given: a journal that moments tilt
     is one of a system, `SolveEquilibrium`.
 
-    Where asperities touch or the film heats, several positions may carry a load. The search starts where a full film
-    would and returns the one that it comes to; `stribeck` follows a branch over the speed.
+    Where asperities touch, the film heats, or supply areas, tilt and starved parts cut it, several positions may carry
+    a load. The search starts where a film with a cavity would carry it and returns the position that it comes to. Where
+    the stiffness is not positive definite there, it looks for others from the load's side, with supply areas, tilt and
+    `ElrodAdams`: a UserWarning names those that it knows, and the steadiest is returned. `stribeck` follows a branch
+    over the speed.
 
     Parameters
     ----------
@@ -250,7 +253,7 @@ def equilibrium(
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
     search = LoadSearch(model, force, "equilibrium", faces=faces)
-    found = search.find(motion)
+    found = search.rest(search.find(motion))
     small = _small_motions(model, found)
     film = result_at(model, found.motion, "equilibrium", found.film.history)
     if found.faces is not None:
