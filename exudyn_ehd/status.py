@@ -328,7 +328,7 @@ def hint_arguments(item: Item) -> Item:
             raise InputError(f"{item.__name__} has no argument {name!r}{hint} It takes {', '.join(names)}.")
         own(self, *args, **given)
 
-    item.__init__ = init
+    item.__init__ = init  # type: ignore[method-assign]
     return item
 
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.film import ACCELERATED, DEPTH, LARGEST_CHANGE, evaluate_at, foreseen, is_settled
-from exudyn_ehd.joint.balance.limits import HOTTEST, is_above
+from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.status import FilmError, Status, warn_user
+from exudyn_ehd.status import FilmError, Status
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.balance.faces import FacesShare, FacesUnderLoad
@@ -24,16 +24,9 @@ LARGEST_DAMPED_STEPS = 300
 # Steps that may pass without the unbalance falling to this share of what it was, of Newton's method and of a damped
 # one, which is slower where a film starves. More steps, and shares nearer to 1, give up later.
 PATIENCE, FALLS, FALLS_DAMPED = 25, 0.1, 0.9
-# Starts of damped steps in the direction of the load, eccentricity ratios: inside, where neither a gap is thin nor a
-# cavity large, and on the load's side, where the film is thinnest. Larger ones are nearer to the gap's end.
-INSIDE, LOADED = 0.3, 0.9
-# Distance over the clearance up to which two positions are one.
-SAME_PLACE = 1e-3
-STEADINESS = (
-    "has a negative determinant: a journal leaves it",
-    "is not positive definite: whether a journal stays is the damping's matter",
-    "is positive definite",
-)
+# Second start of damped steps, eccentricity ratio in the direction of the load: inside, where neither a gap is thin nor
+# a cavity large. Larger ones are nearer to both.
+INSIDE = 0.3
 # Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
 LARGEST_EFFORT = 6000
 STEP_HALVINGS = 8
@@ -150,7 +143,7 @@ class LoadSearch:
                 f"is off by {self.residual(found):.2g} of the load, at eccentricity ratio "
                 f"{np.hypot(*found.motion[:2]) / b.radial_clearance:.4f}. {self._remedy()} A supply area in the loaded "
                 "zone or a starved film may carry no such load at any position: look at ehd.steady(...) around "
-                f"there.{_hot(found, self.carried)}"
+                f"there.{too_hot(found.film.temperature, self.carried)}"
             )
         return found
 
@@ -160,43 +153,6 @@ class LoadSearch:
         room = max(1.0 - 0.5 * b.length * float(np.hypot(*motion[2:4])) / b.radial_clearance, 0.0)
         motion[:2] = ratio * room * b.radial_clearance * self.force / self.size
         return motion
-
-    def rest(self, found: Carried, tolerance: float = 1e-8) -> Carried:
-        """The position found, or a steadier one that carries the load too; a warning names all that are known.
-
-        A journal stays where the stiffness K is positive definite, and leaves a place where its determinant is
-        negative, whatever the damping. Others are looked for from the load's side and from inside: where K is not
-        positive definite, and supply areas, tilt or a memory of the oil may give the load several positions.
-
-        Parameters
-        ----------
-        found : Carried
-        tolerance : float
-            Of the unbalance of others, over the load.
-        """
-        b = self.model.bearing
-        several = bool(b.supply) or self.model.remembers_mass or bool(np.any(found.motion[2:4]))
-        steady = _steadiness(found)
-        if self.model.effects.thermal is not None or steady == 2 or (steady == 1 and not several):
-            return found
-        places = [found]
-        for ratio in (LOADED, INSIDE):
-            try:
-                other = self.damped(self.loaded(found.motion, ratio), tolerance)
-            except FilmError:
-                continue
-            away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)
-            if away > SAME_PLACE * b.radial_clearance and self.residual(other) <= tolerance:
-                places.append(other)
-        best = max(places, key=_steadiness)
-        if len(places) > 1 or _steadiness(best) == 0:
-            ratios = [f"{np.hypot(*place.motion[:2]) / b.radial_clearance:.4f}" for place in places]
-            warn_user(
-                f"{self.where}: the load is carried at the eccentricity ratios {', '.join(ratios)}; returned is "
-                f"{ratios[places.index(best)]}, where the stiffness matrix {STEADINESS[_steadiness(best)]}.",
-                UserWarning,
-            )
-        return self.at(best.motion)
 
     def damped(self, motion: np.ndarray, tolerance: float) -> Carried:
         """Where damped steps lead from a motion (10,); see `newton`."""
@@ -389,26 +345,6 @@ class LoadSearch:
             else:
                 place, resistance = reached, resistance / 5.0
         return place
-
-
-def _steadiness(place: Carried) -> int:
-    """Index in `STEADINESS` of a place."""
-    if np.all(np.linalg.eigvalsh(-place.slope - place.slope.T) > 0.0):
-        return 2
-    return int(np.linalg.det(place.slope) > 0.0)
-
-
-def _hot(place: Carried, carried: float) -> str:
-    """What the heat has to do with a load that no film carries, and how much it does."""
-    T = place.film.temperature
-    if T is None:
-        return ""
-    most = f" Followed from smaller loads, the film carries at least {carried:.4g} N." if carried else ""
-    return (
-        f"{most} The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film "
-        "thins faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
-        "supply of oil or a housing_conductance raises it."
-    )
 
 
 def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.steadiest import steadiest
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
@@ -253,7 +254,7 @@ def equilibrium(
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
     search = LoadSearch(model, force, "equilibrium", faces=faces)
-    found = search.rest(search.find(motion))
+    found = steadiest(search, search.find(motion))
     small = _small_motions(model, found)
     film = result_at(model, found.motion, "equilibrium", found.film.history)
     if found.faces is not None:
