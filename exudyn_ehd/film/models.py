@@ -26,7 +26,7 @@ from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
-from exudyn_ehd.status import InputError, Status, require_integer, require_number
+from exudyn_ehd.status import InputError, Status, require_count, require_number
 
 # Columns of a film that leaves them to the bearing.
 FEWEST_COLUMNS, MOST_COLUMNS = 96, 176
@@ -158,8 +158,8 @@ def _check_grid(film: FiniteLength | ShortBearing) -> None:
     name, columns = type(film).__name__, MOST_COLUMNS
     if film.n_theta is not None:
         columns = film.n_theta
-        require_integer(f"{name}.n_theta", columns, at_least=16, hint="96 is a good start.")
-    require_integer(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
+        require_count(f"{name}.n_theta", columns, at_least=16, hint="96 is a good start.")
+    require_count(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
     coupled = film.n_z if film.circumferential_pressure_flow else 1
     # Python's integers: neither numpy's nor floats hold any product
     if 16 * int(columns) * int(film.n_z) * int(coupled) > LARGEST_MATRIX:
@@ -202,8 +202,8 @@ class LongBearing:
     circumferential_pressure_flow = True
 
     def __post_init__(self) -> None:
-        require_integer("LongBearing.n_theta", self.n_theta, at_least=16, hint="192 is a good start.")
-        require_integer("LongBearing.n_z", self.n_z, at_least=2, hint="4 is a good start.")
+        require_count("LongBearing.n_theta", self.n_theta, at_least=16, hint="192 is a good start.")
+        require_count("LongBearing.n_z", self.n_z, at_least=2, hint="4 is a good start.")
 
 
 Film = FiniteLength | ShortBearing | ClassicSOR | LongBearing | ImpedanceMap
@@ -353,20 +353,10 @@ def film_solver(
     """Solver of a film model on its grid; ``density``: of a compressible film."""
     thins = any(isinstance(effect, ShearThinning) for effect in flux_effects)
     if density is not None:
-        if not isinstance(film, FiniteLength):
-            raise InputError(
-                f"Lubricant.density_law must be None with film={type(film).__name__}(...), which takes oil as "
-                f"incompressible; use film=FiniteLength(...)."
-            )
         if thins:
             return ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=flux_effects, density=density)
         return CompressibleFilmSolver(grid, closure, density, squeeze=squeeze, flux_effects=flux_effects)
     if isinstance(film, ClassicSOR):
-        if flux_effects:
-            raise InputError(
-                "JournalBearing.film=ClassicSOR(...) is the paper's plain film and takes no roughness, turbulence, "
-                "shear thinning or temperature field; use film=FiniteLength(...)."
-            )
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
     kinds = (FilmSolver, LongSolver, ThinningFilmSolver, LongThinningSolver)
     return kinds[isinstance(film, LongBearing) + 2 * thins](

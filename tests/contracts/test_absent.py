@@ -148,6 +148,7 @@ EFFECTS = {
 # Modules that every film uses, that describe a scene, or (the last line) whose
 # kernels only other kernels of their effect call.
 SHARED = {
+    "combinations",
     "banded.lu",
     "banded.lanes",
     "banded.lending",

@@ -310,7 +310,7 @@ class AcceptedSteps:
         failures = self.film.failures
         if (gap := row[MINIMUM_GAP]) < self._thin:
             self._thin = -np.inf
-            poor_films.warn_of_thin_film(failures.name, start, gap)
+            poor_films.warn_of_thin_film(failures.name, start, gap, failures.tilting(trial.motion))
         if not self._overloaded and failures.overload(row) > 1.0:
             self._overloaded = True
             warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)

@@ -55,12 +55,12 @@ def smooth_limit(bearing: JournalBearing) -> float:
     return min(GOOD_SURFACE, CLEARANCE_SHARE * bearing.radial_clearance)
 
 
-def warn_of_thin_film(name: str, time: float, gap: float) -> None:
-    """Warn that the film of the joint ``name`` is thinner than its surfaces are rough."""
+def warn_of_thin_film(name: str, time: float, gap: float, tilting: str) -> None:
+    """Warn that the film of the joint ``name`` is thinner than its surfaces are rough; ``tilting`` is advised first."""
     warnings.warn(
         f"LubricatedJoint '{name}': at t = {time:.9g} s the minimum film thickness is {1e6 * gap:.3g} um, less than "
         "the roughness of a good surface: real surfaces touch there, and pressure, friction and film are those of "
-        "perfectly smooth ones; give the bearing asperity=GreenwoodTripp(...) and roughness=PatirCheng(...), "
+        f"perfectly smooth ones; {tilting}give the bearing asperity=GreenwoodTripp(...) and roughness=PatirCheng(...), "
         "contact=RegularisedWall(onset=...) if surfaces only just touch, or check load, clearance and viscosity.",
         ThinFilmWarning,
         stacklevel=2,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -13,12 +13,16 @@ from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.status import (
     InputError,
     require_bool,
+    require_count,
     require_integer,
     require_number,
     require_numbers,
     require_type,
     require_vector,
 )
+
+# Attributes of a bearing by name.
+Options: TypeAlias = Mapping[str, Any]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,8 +170,8 @@ class ThrustFaces:
             if getattr(self, name) is not None:
                 pressures = require_vector(f"ThrustFaces.{name}", getattr(self, name), 2, "Pa")
                 object.__setattr__(self, name, tuple(pressures.tolist()))
-        require_integer("ThrustFaces.n_theta", self.n_theta, at_least=16)
-        require_integer("ThrustFaces.n_r", self.n_r, at_least=6)
+        require_count("ThrustFaces.n_theta", self.n_theta, at_least=16)
+        require_count("ThrustFaces.n_r", self.n_r, at_least=6)
         if not (require_bool("ThrustFaces.lower", self.lower) | require_bool("ThrustFaces.upper", self.upper)):
             raise InputError("ThrustFaces: lower and upper are both False, so that there is no face; drop the option.")
         if self.contact is not None and not self.contact.onset < self.clearance:
@@ -182,7 +186,7 @@ class ThrustFaces:
             )
 
 
-def check_faces(bearing: Mapping[str, Any]) -> None:
+def check_faces(bearing: Options) -> None:
     """Refuse faces that do not fit the bearing around them, and what their films would leave out.
 
     Parameters

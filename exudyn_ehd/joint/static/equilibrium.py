@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.steadiest import steadiest
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
-from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
+from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
@@ -173,8 +174,8 @@ def equilibrium(
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
-    the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a
-    falling resistance.
+    the bearing and costs nothing near the solution. Where it fails, damped steps of
+    Levenberg and Marquardt lead there, first from the same guess, then from inside the bearing.
 
     With `ElrodAdams` stiffness and damping depend on the frequency of the motion, because the cavity's oil follows
     with a delay. The threshold is solved for with both at its own frequency, and these are the ones returned; others
@@ -191,8 +192,11 @@ def equilibrium(
     along it are ``film.faces.axial_stiffness`` and ``axial_damping``. The tilt is given: a journal that moments tilt
     is one of a system, `SolveEquilibrium`.
 
-    Where asperities touch or the film heats, several positions may carry a load. The search starts where a full film
-    would and returns the one that it comes to; `stribeck` follows a branch over the speed.
+    Where asperities touch, the film heats, or supply areas, tilt and starved parts cut it, several positions may carry
+    a load. The search starts where a film with a cavity would carry it and returns the position that it comes to. Where
+    the stiffness is not positive definite there, it looks for others from the load's side, with supply areas, tilt and
+    `ElrodAdams`: a UserWarning names those that it knows, and the steadiest is returned. `stribeck` follows a branch
+    over the speed.
 
     Parameters
     ----------
@@ -216,8 +220,8 @@ def equilibrium(
     Raises
     ------
     InputError
-        For a zero load or speed, an inlet that a moving journal can't have, an axial load without faces or at a given
-        axial position.
+        For a zero load or speed, an inlet that a moving journal can't have, supply areas that turn with the journal,
+        an axial load without faces or at a given axial position.
     FilmError
         If no equilibrium was found.
 
@@ -242,15 +246,13 @@ def equilibrium(
         raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
     require_size("equilibrium: load", size, "N", **LOADS)
-    if isinstance(bearing.inlet, MaximumGap):
-        raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
-    require_oil(bearing, "equilibrium")
+    require_rest(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
     faces = _faces(model, place, axial_load, size)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
     search = LoadSearch(model, force, "equilibrium", faces=faces)
-    found = search.find(motion)
+    found = steadiest(search, search.find(motion))
     small = _small_motions(model, found)
     film = result_at(model, found.motion, "equilibrium", found.film.history)
     if found.faces is not None:

@@ -170,6 +170,9 @@ def steady(
     its bore yields by more than 1 % of the wall, a `StrainWarning` says so. Films with more than 3 GPa, or a
     mean of more than 1 GPa with their contact, which neither oil nor steel bears, give an `OverloadWarning`.
 
+    Supply areas in the journal (``rotating=True``) stand where they were described. The film is that of the instant at
+    which they pass there; oil content and temperature, and what follows with a delay, are those of standing areas.
+
     Parameters
     ----------
     bearing : JournalBearing
@@ -234,6 +237,21 @@ def steady(
     require_faces(bearing, "steady", axial_position=place)
     faces = faces_at(bearing, motion, place, "steady")
     return replace(result_at(model, motion, "steady"), faces=faces)
+
+
+def require_rest(bearing: JournalBearing, where: str) -> None:
+    """Raise `InputError` for a bearing in which a journal under a constant load has no position of rest."""
+    if isinstance(bearing.inlet, MaximumGap):
+        raise InputError(f"{where}: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
+    for k, area in enumerate(bearing.supply):
+        if area.rotating:
+            raise InputError(
+                f"{where}: JournalBearing.supply[{k}] turns with the journal (rotating=True): the film changes with "
+                "the angle, so that a journal under a constant load has no position of rest. Run a joint until its "
+                "orbit repeats: ehd.SolveDynamic(..., until_periodic=ehd.UntilPeriodic(period=...)) with the time of "
+                "one turn as period; or put the area into the housing (rotating=False)."
+            )
+    require_oil(bearing, where)
 
 
 def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:

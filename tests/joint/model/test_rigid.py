@@ -341,12 +341,36 @@ def test_place_of_the_smallest_gap_with_a_profile(make_bearing, make_motion):
     assert q["minimum_gap_angle"] == pytest.approx(theta[np.argmin(h)], abs=1e-12)
 
 
-@pytest.mark.parametrize("film", [ehd.FiniteLength, ehd.ShortBearing])
-def test_grids_beyond_any_memory(film):
-    with pytest.raises(
-        ehd.InputError, match=f"{film.__name__}: a grid of 10000000 x 1000000 takes .* 192 x 16 is fine"
-    ):
-        film(n_theta=10**7, n_z=10**6)
+@pytest.mark.parametrize(
+    ("film", "name"),
+    [
+        (ehd.FiniteLength, "n_theta"),
+        (ehd.FiniteLength, "n_z"),
+        (ehd.ShortBearing, "n_theta"),
+        (ehd.LongBearing, "n_theta"),
+        (ehd.ClassicSOR, "n_z"),
+        (ehd.ImpedanceMap, "n_theta"),
+        (ehd.ImpedanceMap, "n_direction"),
+        (lambda **n: ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.03, clearance=2e-5, **n), "n_theta"),
+        (lambda **n: ehd.bearing_grid(0.02, 0.02, **({"n_theta": 48, "n_z": 6} | n)), "n_theta"),
+        (
+            lambda **n: ehd.SphericalBearing(
+                ball_radius=0.01, radial_clearance=1e-5, lubricant=ehd.Lubricant(viscosity=0.02), **n
+            ),
+            "n_phi",
+        ),
+    ],
+)
+def test_grids_beyond_any_use_are_refused_when_described(film, name):
+    """Of a million vertices and of the first number that is too many, each named with its limit."""
+    for count in (20_001, 1_000_000, 10**30):
+        with pytest.raises(ehd.InputError, match=rf"{name} must be within \d+ and 20000, got {count}; "):
+            film(**{name: count})
+
+
+def test_grids_beyond_any_memory():
+    with pytest.raises(ehd.InputError, match=r"FiniteLength: a grid of 20000 x 20000 takes .* 192 x 16 is fine"):
+        ehd.FiniteLength(n_theta=20_000, n_z=20_000)
 
 
 def test_imported_bores_must_fit_the_film(make_bearing):
