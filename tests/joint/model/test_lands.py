@@ -14,7 +14,7 @@ from exudyn_ehd.film.supply.areas import axial_span, placed
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.contact import LandContact
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.joint.heat.power import heat_and_leakage
+from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.model.build import build_model
 
 R, L, C, MU = 0.04, 0.05, 40e-6, 0.012
@@ -194,7 +194,7 @@ def test_recesses_are_sheared_by_their_depth(kind):
         assert shallow.wrench[5] - deep.wrench[5] == pytest.approx(torque, **rel)
         assert shallow.wrench[:5] == pytest.approx(deep.wrench[:5], rel=1e-12, abs=1e-12 * abs(deep.wrench[:5]).max())
         assert b["power_loss"] - a["power_loss"] == pytest.approx(torque * -where[8], **near)
-        heats = [heat_and_leakage(e.film)[0] for e in (deep, shallow)]
+        heats = [heat_and_exchange(e.film, 1.0)[0] for e in (deep, shallow)]
         assert heats[1] - heats[0] == pytest.approx(torque * -where[8], **near)
 
 
@@ -211,14 +211,14 @@ def test_heat_of_recesses_has_the_viscosity_of_their_temperature(thermal):
         )
         evaluation = model.evaluate(where, history, 0.0)
         film = evaluation.film
-        heat = model.effects.thermal.heat(film).sum() if thermal is ehd.FilmEnergy else heat_and_leakage(film)[0]
+        heat = model.effects.thermal.heat(film).sum() if thermal is ehd.FilmEnergy else heat_and_exchange(film, 1.0)[0]
         found.append((evaluation.quantities()["power_loss"], heat))
     (loss, heat), (more_loss, more_heat) = found
     expected = 4.0 * MU * math.exp(-0.3) * (300.0 * R) ** 2 / 5e-4 * R * 0.03
     assert more_loss - loss == pytest.approx(expected, rel=1e-9)
     assert more_heat - heat == pytest.approx(expected, rel=1e-9)
     # the field's sum over control volumes: to the grid's error
-    assert heat == pytest.approx(loss + heat_and_leakage(film)[0] - more_loss, rel=0.01)
+    assert heat == pytest.approx(loss + heat_and_exchange(film, 1.0)[0] - more_loss, rel=0.01)
 
 
 @pytest.mark.parametrize("law", [AsperityContact(ASPERITY, C), WallContact(WALL, C)], ids=["asperity", "wall"])
