@@ -296,7 +296,7 @@ class FedFilms:
             np.zeros(self.ends.size, dtype=bool),
         )
         if journal.film is not None and faces.status is Status.CONVERGED:
-            taken = np.array([state.inflow for state in faces.states])
+            taken = np.array([face.fed for face in self.faces.faces])
             given = journal.film.parts.flow_scale * np.array(leakages(journal.film))[self.ends]
             balanced = (pressures > self.lowest)[self.ends] | (taken < given)
         return FedEvaluation(

@@ -51,9 +51,9 @@ class ThrustResult:
     After the example of `ThrustFaces`:
 
     >>> print(film.faces)
-    <ThrustResult: axial force -3.88 kN, minimum film thickness 20 µm, peak pressure 2.9 MPa, power loss 577 W>
+    <ThrustResult: axial force -3.93 kN, minimum film thickness 20 µm, peak pressure 2.93 MPa, power loss 578 W>
     >>> film.faces.pressure.shape  # faces, theta, r
-    (2, 96, 11)
+    (2, 136, 15)
     """
 
     axial_position: float
