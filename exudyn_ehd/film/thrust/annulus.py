@@ -12,6 +12,11 @@ solver with the weights ``square`` (m,), in place of r^2 at the vertices: of one
 
 with which pressures in proportion to r^2, ln r and 1, those of a squeezed washer, are exact at the vertices. Weights of
 integrals over s are corrected so that the loads of these three, and the torque of a plane film, are exact too.
+
+Columns lie on the edges of pads, where pressure has kinks. Pressure decays from there as exp(-pi theta / L), with the
+ring's width L = ln(r_o / r_i), and likewise from the radii over the length of a pad. Between two edges columns are
+stretched towards both. Integrals over theta are sums over the control volumes, as the balances are. The load of the
+pressure about a step then hardly depends on the distance of the columns.
 """
 
 from __future__ import annotations
@@ -21,10 +26,47 @@ from dataclasses import replace
 
 import numpy as np
 
-from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid
+from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid, rows_between
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
 
+# Columns and rows of plane faces.
+COLUMNS, ROWS = 96, 10
+# Columns on the ring's width, and columns of a pad. The error falls with their inverse square, and the time grows in
+# proportion: `ThrustFaces` states the errors of these numbers, measured in tests/film/thrust/test_annulus.py.
+ON_WIDTH, OF_PAD = 12.0, 16
+# Fewest columns between two edges, taken from the longer part of a pad. Fewer miss the slope of short tapers.
+LEAST = 6
+# Most columns, beyond which narrow rings have fewer than ON_WIDTH.
+MOST_COLUMNS = 320
+# Rows: ROWS_BESIDES, and 2 pi times the ring's width over the length of a pad, or of one whose recess has the share
+# SHORT; at most MOST_ROWS. More lower the error of the flows at the radii.
+ROWS_BESIDES, SHORT, MOST_ROWS = 8.0, 0.45, 40
+# Stretch of rows, and of columns between two edges, as in `exudyn_ehd.film.grid.axial_vertices`.
 STRETCH = 0.75
+
+
+def face_grid(faces: ThrustFaces) -> tuple[int, int, np.ndarray | None]:
+    """Return ``n_theta``, ``n_r`` and ``columns`` of the `Annulus` of faces."""
+    profile, n_theta, n_r = faces.profile, faces.n_theta, faces.n_r
+    if profile is None:
+        return n_theta or COLUMNS, n_r or ROWS, None
+    width, turn = math.log(faces.outer_radius / faces.inner_radius), 2.0 * math.pi
+    wanted = max(OF_PAD * profile.pads, min(ON_WIDTH * turn / width, MOST_COLUMNS)) if n_theta is None else n_theta
+    layers = profile.pads * width * max(1.0, SHORT / profile.share)
+    rows = min(max(ROWS, 2 * math.ceil(0.5 * (ROWS_BESIDES + layers))), MOST_ROWS)
+    columns = pad_columns(profile, math.ceil(wanted / profile.pads))
+    return columns.size, n_r or rows, columns
+
+
+def pad_columns(profile: TaperLand | StepLand, count: int) -> np.ndarray:
+    """Angles (n,), rad, of ``count`` columns a pad with one on every edge."""
+    edges, pitch = profile.edges, 2.0 * math.pi / profile.pads
+    least = min(LEAST, count // 2)
+    first = min(max(round(count * edges[1]), least), count - least)
+    counts = [count] if len(edges) == 2 else [first, count - first]
+    theta, _ = rows_between([pitch * edge for edge in edges], counts, STRETCH)
+    return (pitch * np.arange(profile.pads)[:, None] + theta[:-1]).ravel()
 
 
 class Annulus:

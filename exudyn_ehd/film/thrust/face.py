@@ -35,8 +35,7 @@ from exudyn_ehd.film.loads import end_flows
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, products
-from exudyn_ehd.film.thrust.columns import face_grid
+from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, face_grid, products
 from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.status import Status
 

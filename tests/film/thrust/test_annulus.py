@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.thrust.columns import face_grid, pad_columns
+from exudyn_ehd.film.thrust.annulus import face_grid, pad_columns
 from exudyn_ehd.film.thrust.face import FaceFilm
 
 MU, SPEED = 0.02, 300.0
