@@ -161,8 +161,9 @@ class ThrustFaces:
     plane   0.4 %  0.6 %      2 %                            0.1 %          1 %
     ======  =====  =========  =============================  =============  ===============
 
-    Narrower rings have fewer columns on their width, and larger errors. Faces with pads have their rupture line on
-    vertices, whatever `SwiftStieber.line_in_cells` says, as their films end on edges.
+    Flows are within 2 % with pressures at the radii, and of narrower rings, which have fewer columns on their width.
+    Faces with pads have their rupture line on vertices, whatever `SwiftStieber.line_in_cells` says: their films end on
+    edges.
 
     Parameters
     ----------
