@@ -41,7 +41,7 @@ class ThrustResult:
     theta, r : (n,), (m,) arrays
         Grid, rad and m.
     pressure, gap : (k, n, m) arrays
-        Of every face, Pa (gauge) and m; the lower one first.
+        Of every face, Pa (gauge) and m; the lower one first. On edges of pads the gap is the mean of both sides.
     tangent : (6, 11) array
         Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units;
         with ``feed`` the edges' pressures follow.
