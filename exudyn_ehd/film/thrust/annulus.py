@@ -35,8 +35,9 @@ COLUMNS, ROWS = 96, 10
 # Columns on the ring's width, and columns of a pad. The error falls with their inverse square, and the time grows in
 # proportion: `ThrustFaces` states the errors of these numbers, measured in tests/film/thrust/test_annulus.py.
 ON_WIDTH, OF_PAD = 12.0, 16
-# Fewest columns between two edges, taken from the longer part of a pad. Fewer miss the slope of short tapers.
-LEAST = 6
+# Fewest columns of a land or a step, and of a taper, but no more than 3/8 of the pad's. Fewer miss the slope of short
+# tapers and the damping of short lands, more leave too few to the rest of the pad.
+LEAST, OF_TAPER = 4, 6
 # Most columns, beyond which narrow rings have fewer than ON_WIDTH.
 MOST_COLUMNS = 320
 # Rows: ROWS_BESIDES, and 2 pi times the ring's width over the length of a pad, or of one whose recess has the share
@@ -62,9 +63,9 @@ def face_grid(faces: ThrustFaces) -> tuple[int, int, np.ndarray | None]:
 def pad_columns(profile: TaperLand | StepLand, count: int) -> np.ndarray:
     """Angles (n,), rad, of ``count`` columns a pad with one on every edge."""
     edges, pitch = profile.edges, 2.0 * math.pi / profile.pads
-    least = min(LEAST, count // 2)
-    first = min(max(round(count * edges[1]), least), count - least)
-    counts = [count] if len(edges) == 2 else [first, count - first]
+    least, land = (min(k, 3 * count // 8) for k in (OF_TAPER if isinstance(profile, TaperLand) else LEAST, LEAST))
+    recess = min(max(round(count * profile.share), least), count - land)
+    counts = [recess, count - recess][:: -1 if profile.reverse else 1] if len(edges) == 3 else [count]
     theta, _ = rows_between([pitch * edge for edge in edges], counts, STRETCH)
     return (pitch * np.arange(profile.pads)[:, None] + theta[:-1]).ravel()
 
