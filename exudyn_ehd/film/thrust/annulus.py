@@ -37,7 +37,7 @@ COLUMNS, ROWS = 96, 10
 ON_WIDTH, OF_PAD = 12.0, 16
 # Fewest columns of a land or a step, and of a taper, but no more than 3/8 of the pad's. Fewer miss the slope of short
 # tapers and the damping of short lands, more leave too few to the rest of the pad.
-LEAST, OF_TAPER = 4, 6
+LEAST, OF_TAPER = 5, 6
 # Most columns, beyond which narrow rings have fewer than ON_WIDTH.
 MOST_COLUMNS = 320
 # Rows: ROWS_BESIDES, and 2 pi times the ring's width over the length of a pad, or of one whose recess has the share
