@@ -200,7 +200,7 @@ class ThrustFaces:
     >>> bearing = ehd.JournalBearing(**b, thrust=faces)
     >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8, axial_position=20e-6)
     >>> round(film.faces.axial_force)  # N
-    -3930
+    -3929
     """
 
     inner_radius: float

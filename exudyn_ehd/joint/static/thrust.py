@@ -51,7 +51,7 @@ class ThrustResult:
     After the example of `ThrustFaces`:
 
     >>> print(film.faces)
-    <ThrustResult: axial force -3.93 kN, minimum film thickness 20 µm, peak pressure 2.94 MPa, power loss 578 W>
+    <ThrustResult: axial force -3.93 kN, minimum film thickness 20 µm, peak pressure 2.93 MPa, power loss 578 W>
     >>> film.faces.pressure.shape  # faces, theta, r
     (2, 136, 15)
     """
