@@ -35,7 +35,7 @@ class ThrustResult:
     theta, r : (n,), (m,) arrays
         Grid, rad and m.
     pressure, gap : (k, n, m) arrays
-        Of every face, Pa (gauge) and m; the lower one first.
+        Of every face, Pa (gauge) and m; the lower one first. On edges of pads the gap is the mean of both sides.
     tangent : (6, 11) array
         Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units.
 
@@ -44,9 +44,9 @@ class ThrustResult:
     After the example of `ThrustFaces`:
 
     >>> print(film.faces)
-    <ThrustResult: axial force -3.88 kN, minimum film thickness 20 µm, peak pressure 2.9 MPa, power loss 577 W>
+    <ThrustResult: axial force -3.93 kN, minimum film thickness 20 µm, peak pressure 2.93 MPa, power loss 578 W>
     >>> film.faces.pressure.shape  # faces, theta, r
-    (2, 96, 11)
+    (2, 136, 15)
     """
 
     axial_position: float

@@ -196,6 +196,28 @@ def test_pads(shape, error):
     assert errors[0][0] > 3 * errors[1][0]
 
 
+@pytest.mark.parametrize("shape", (ehd.TaperLand, ehd.StepLand))
+def test_edges_between_equal_columns(shape):
+    """Force, damping and torque of pads that fit into no equal columns against an independent film on their edges."""
+    profile, omega, speed = shape(pads=7, depth=25e-6, share=0.7), 250.0, 1e-4
+
+    def gap(theta, r):
+        return C + profile.depth_at(theta) + 0 * r
+
+    def independent(k, rate):
+        return reference_film(
+            gap, lambda theta, r: rate + 0 * theta + 0 * r, omega, 20 * k, 16 * k, ri=RO / 2, clips=True, parts=7
+        )
+
+    # of order one, as in `test_pads`
+    still, up, down = (2 * independent(2, rate) - independent(1, rate) for rate in (0.0, speed, -speed))
+    film = _film(_faces(profile=profile), closure=ehd.SwiftStieber())
+    found = film.evaluate(_motion(omega=omega)).wrench
+    assert found[[2, 5]] == pytest.approx(still[[0, 3]], rel=5e-3)
+    # the grid is 0.8 % off, and the extrapolation 0.2 %
+    assert film.tangent()[2, 3] == pytest.approx((up[0] - down[0]) / (2 * speed), rel=0.01)
+
+
 CLOSURES = {
     "full": ehd.FullSommerfeld(),
     "gumbel": ehd.Gumbel(cavity_pressure=-2e4),
