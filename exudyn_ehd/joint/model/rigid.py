@@ -19,6 +19,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
+from exudyn_ehd.joint.model.centre import is_central, motions_beside
 from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields
 from exudyn_ehd.joint.model.parts import film_parts
@@ -72,10 +73,37 @@ class Evaluation:
         """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
 
         ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes
-        nothing.
+        nothing. At the exact centre the mean of films beside it (`exudyn_ehd.joint.model.centre`).
         """
         film = self._current()
+        if film is not None and self.is_central:
+            return self.tangents_beside(slow_motion).mean(axis=0)
         return np.full((6, MOTION_SIZE), np.nan) if film is None else wrench_tangent(film, slow_motion)
+
+    @property
+    def is_central(self) -> bool:
+        """Whether the film has one-sided derivatives only; see `exudyn_ehd.joint.model.centre`."""
+        return self.film is not None and not self.model.needs_spin and is_central(self.film)
+
+    def tangents_beside(self, slow_motion: bool = False) -> np.ndarray:
+        """Tangents (4, 6, 10) of steady motions beside the centre, where this film is."""
+        film = self.film
+        assert film is not None
+        tangents = [self.beside(motion)._tangent_beside(slow_motion) for motion in motions_beside(film)]
+        # the same film into the model's buffers again
+        self.beside(self.motion)
+        self.model.parts.evaluations.count = film.serial
+        return np.array(tangents)
+
+    def beside(self, motion: np.ndarray | None = None) -> Evaluation:
+        """Evaluation at another steady motion (10,) with this film's history, by default at one beside the centre."""
+        film = self.film
+        assert film is not None
+        motion = next(motions_beside(film)) if motion is None else motion[:MOTION_SIZE]
+        return self.model.evaluate_steady(motion, film.history, film.step)
+
+    def _tangent_beside(self, slow_motion: bool) -> np.ndarray:
+        return self.tangent(slow_motion)
 
     def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
         """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.

@@ -15,6 +15,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.centre import require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -40,6 +41,9 @@ LEFT_OUT = (
     "that hardly yields; position and stiffness hold. Take SwiftStieber(), a rigid bore or an ElasticLiner for these."
 )
 LOADS = {"smallest": 1e-30, "largest": 1e15}
+# Without a load, what counts as one for the residual: share of L D mu omega / psi^2. A smaller one asks for a more
+# exact position, which round-off ends at 1e-16 of that force.
+NO_LOAD = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +76,8 @@ class EquilibriumResult:
         within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture line on the vertices within some
         20 % and several times.
     residual : float
-        Largest component of film force + load in x and y, divided by the load there.
+        Largest component of film force + load in x and y, divided by the load there; without one by 1e-5 of
+        ``L D mu omega / psi^2``.
     iterations : int
         Positions tried, each with a film solve; with ``thermal`` temperatures are tried along with them. A flexible
         bore settles at each of them.
@@ -203,7 +208,9 @@ def equilibrium(
     speed : float
         Relative spin, rad/s, not 0.
     load : (float, float)
-        Force on the journal in x and y, N, not zero.
+        Force on the journal in x and y, N. Without one, (0, 0), the journal lies at the exact centre of a bearing that
+        is the same in all directions. A film that ruptures has one-sided derivatives there; stiffness and damping are
+        those a little off the centre, `exudyn_ehd.joint.model.centre`.
     tilt : (float, float)
         Slopes (bx, by), held fixed, rad.
     axial_position : float
@@ -218,10 +225,10 @@ def equilibrium(
     Raises
     ------
     InputError
-        For a zero load or speed, an inlet that a moving journal can't have, an axial load without faces or at a given
+        For zero speed, an inlet that a moving journal can't have, an axial load without faces or at a given
         axial position.
     FilmError
-        If no equilibrium was found.
+        If no equilibrium was found, or if it is the exact centre and stiffness and damping depend on the direction.
 
     Examples
     --------
@@ -239,11 +246,14 @@ def equilibrium(
     omega = require_number("equilibrium: speed", speed, "rad/s")
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
     place = require_number("equilibrium: axial_position", axial_position, "m")
-    size = float(np.hypot(*force))
-    if size == 0.0 or omega * bearing.journal_radius == 0.0:
-        raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
+    if omega * bearing.journal_radius == 0.0:
+        raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
-    require_size("equilibrium: load", size, "N", **LOADS)
+    size = float(np.hypot(*force))
+    if size == 0.0:
+        size = NO_LOAD * bearing.reference_force(omega)
+    else:
+        require_size("equilibrium: load", size, "N", **LOADS)
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
     require_oil(bearing, "equilibrium")
@@ -251,7 +261,7 @@ def equilibrium(
     faces = _faces(model, place, axial_load, size)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
-    search = LoadSearch(model, force, "equilibrium", faces=faces)
+    search = LoadSearch(model, force, "equilibrium", faces=faces, size=size)
     found = search.find(motion)
     small = _small_motions(model, found)
     film = result_at(model, found.motion, "equilibrium", found.film.history)
@@ -285,6 +295,8 @@ class _SmallMotions(NamedTuple):
 def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     """Of a position whose film is the model's last."""
     evaluation, omega = found.evaluation, abs(float(found.motion[8]))
+    if evaluation.is_central:
+        require_derivatives(evaluation.tangents_beside(slow_motion=True), model.grid.x.size, "equilibrium")
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
@@ -298,7 +310,7 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
         if found.faces is not None:
             K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
         if yields and not model.remembers_mass:
-            response = yielding_response(evaluation, K, C)
+            response = yielding_response(evaluation.beside() if evaluation.is_central else evaluation, K, C)
     ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
