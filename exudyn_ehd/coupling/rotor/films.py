@@ -16,7 +16,7 @@ from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.position import first_guess
-from exudyn_ehd.joint.model.centre import require_derivatives
+from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.status import InputError, Status
 
@@ -211,8 +211,8 @@ class RotorFilm:
         """What `RotorResult` has of a film at its equilibrium."""
         force, known = evaluation.wrench[:2], evaluation.quantities()
         where = f"{WHERE}, joint '{self.name}'"
-        if evaluation.is_central:
-            require_derivatives(evaluation.tangents_beside(), self.model.grid.x.size, where)
+        if is_central(evaluation):
+            require_derivatives(evaluation, where)
         refuse_pressed_through(self.bearing, known["minimum_gap"], where)
         warn_of_overload(self.bearing, known["peak_pressure"], float(np.hypot(*force)), where)
         angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])

@@ -27,6 +27,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent
 from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
+from exudyn_ehd.joint.model.centre import is_central, tangents_beside
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (
@@ -99,16 +100,13 @@ class ElasticEvaluation(Evaluation):
 
     def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
         """d wrench / d motion (6, 10) with the bore following slowly; as `Evaluation.steady_tangent`."""
-        if self.is_central:
-            return self.tangents_beside().mean(axis=0)
+        if is_central(self):
+            return tangents_beside(self).mean(axis=0)
         elasticity = self.model.elasticity
         tangent = elasticity.tangent(self) if rough is None else elasticity.refined_tangent(self)
         if tangent is None:
             return super().steady_tangent(rough)
         return condensed_tangent(tangent, elasticity, self.bore.coordinates)
-
-    def _tangent_beside(self, slow_motion: bool) -> np.ndarray:
-        return self.steady_tangent(self.steady_tangent())
 
     def nodal_forces(self) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.

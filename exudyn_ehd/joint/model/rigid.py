@@ -19,7 +19,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
-from exudyn_ehd.joint.model.centre import is_central, motions_beside
+from exudyn_ehd.joint.model.centre import is_central, tangents_beside
 from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields
 from exudyn_ehd.joint.model.parts import film_parts
@@ -75,35 +75,11 @@ class Evaluation:
         ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes
         nothing. At the exact centre the mean of films beside it (`exudyn_ehd.joint.model.centre`).
         """
-        film = self._current()
-        if film is not None and self.is_central:
-            return self.tangents_beside(slow_motion).mean(axis=0)
-        return np.full((6, MOTION_SIZE), np.nan) if film is None else wrench_tangent(film, slow_motion)
-
-    @property
-    def is_central(self) -> bool:
-        """Whether the film has one-sided derivatives only; see `exudyn_ehd.joint.model.centre`."""
-        return self.film is not None and not self.model.needs_spin and is_central(self.film)
-
-    def tangents_beside(self, slow_motion: bool = False) -> np.ndarray:
-        """Tangents (4, 6, 10) of steady motions beside the centre, where this film is."""
-        film = self.film
-        assert film is not None
-        tangents = [self.beside(motion)._tangent_beside(slow_motion) for motion in motions_beside(film)]
-        # the same film into the model's buffers again
-        self.beside(self.motion)
-        self.model.parts.evaluations.count = film.serial
-        return np.array(tangents)
-
-    def beside(self, motion: np.ndarray | None = None) -> Evaluation:
-        """Evaluation at another steady motion (10,) with this film's history, by default at one beside the centre."""
-        film = self.film
-        assert film is not None
-        motion = next(motions_beside(film)) if motion is None else motion[:MOTION_SIZE]
-        return self.model.evaluate_steady(motion, film.history, film.step)
-
-    def _tangent_beside(self, slow_motion: bool) -> np.ndarray:
-        return self.tangent(slow_motion)
+        if (film := self._current()) is None:
+            return np.full((6, MOTION_SIZE), np.nan)
+        return (
+            tangents_beside(self, slow_motion).mean(axis=0) if is_central(self) else wrench_tangent(film, slow_motion)
+        )
 
     def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
         """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.
@@ -114,11 +90,9 @@ class Evaluation:
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
-        film = self._current()
+        film, p = self._current(), self.model.parts
         if film is None:
-            return {"minimum_gap": self.minimum_gap} | eccentricities(
-                self.model.parts, self.motion[:4] * self.model.parts.pose_scale
-            )
+            return {"minimum_gap": self.minimum_gap} | eccentricities(p, self.motion[:4] * p.pose_scale)
         return quantities(film)
 
     def history(self) -> History | None:
@@ -129,8 +103,7 @@ class Evaluation:
         RuntimeError
             If there is no film.
         """
-        film = self._current()
-        if film is None:
+        if (film := self._current()) is None:
             raise RuntimeError(f"Evaluation.history: {self.status.name}, without a film there is no history to keep.")
         return self.model.next_history(film)
 
@@ -397,9 +370,7 @@ class BearingModel:
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
         if p.liner is not None:
             p.liner.delta_old = None if history is None else history.deflection
-        kept = None
-        if history is not None and history.void is not None:
-            kept = self.solver.keep(history.void, step)
+        kept = None if history is None or history.void is None else self.solver.keep(history.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
         self.solver.lag(None if history is None else history.outflow, step)
         status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)

@@ -15,7 +15,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.centre import require_derivatives
+from exudyn_ehd.joint.model.centre import evaluate_beside, is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -295,8 +295,9 @@ class _SmallMotions(NamedTuple):
 def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     """Of a position whose film is the model's last."""
     evaluation, omega = found.evaluation, abs(float(found.motion[8]))
-    if evaluation.is_central:
-        require_derivatives(evaluation.tangents_beside(slow_motion=True), model.grid.x.size, "equilibrium")
+    central = is_central(evaluation)
+    if central:
+        require_derivatives(evaluation, "equilibrium")
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
@@ -310,7 +311,7 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
         if found.faces is not None:
             K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
         if yields and not model.remembers_mass:
-            response = yielding_response(evaluation.beside() if evaluation.is_central else evaluation, K, C)
+            response = yielding_response(evaluate_beside(evaluation) if central else evaluation, K, C)
     ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
