@@ -68,6 +68,7 @@ from exudyn_ehd.progress import show_progress
 from exudyn_ehd.status import (
     EHDError,
     FilmError,
+    GridWarning,
     HotFilmWarning,
     InputError,
     MemoryWarning,
@@ -227,6 +228,7 @@ __all__ = [
     "FullSommerfeld",
     "Gravity",
     "GreenwoodTripp",
+    "GridWarning",
     "Gumbel",
     "Held",
     "HeldBands",

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
@@ -311,7 +311,8 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
         if found.faces is not None:
             K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
         if yields and not model.remembers_mass:
-            response = yielding_response(evaluate_beside(evaluation) if central else evaluation, K, C)
+            beside = cast("Evaluation", evaluate_beside(evaluation)) if central else evaluation
+            response = yielding_response(beside, K, C)
     ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
