@@ -171,8 +171,7 @@ else:
     def __getattr__(name):
         if name in _LAZY:
             return getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name)
-        near = {known.lower(): known for known in __all__}
-        found = difflib.get_close_matches(name.lower(), near, n=1)
+        found = difflib.get_close_matches(name.lower(), near := {known.lower(): known for known in __all__}, n=1)
         hint = f"; did you mean {near[found[0]]!r}?" if found else ""
         raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}{hint}")
 

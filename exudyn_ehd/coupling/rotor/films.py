@@ -16,8 +16,8 @@ from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.position import first_guess
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
-from exudyn_ehd.joint.model.resolution import warn_of_grid
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.status import InputError, Status
 

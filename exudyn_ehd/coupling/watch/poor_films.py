@@ -9,7 +9,7 @@ sinks.
 
 Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
 
-Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.model.resolution`), at the highest pressure.
+Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.resolution`), at the highest pressure.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.models import FiniteLength
-from exudyn_ehd.joint.model.resolution import Resolution, coarse_film, resolution
+from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
 from exudyn_ehd.status import GridWarning, StarvationWarning, ThinFilmWarning

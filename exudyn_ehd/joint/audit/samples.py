@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.model.resolution import Resolution, resolution
+from exudyn_ehd.joint.balance.resolution import Resolution, resolution
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import Status

@@ -6,4 +6,5 @@ film      film at a motion, its temperature and oil content settled; steady temp
 limits    temperatures and pressures that no oil or steel bears; what to do about films without a solution
 position  journal's position under a load
 faces     films on the end faces beside it
+resolution  whether the grid resolves the pressure peak
 """

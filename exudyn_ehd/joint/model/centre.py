@@ -30,7 +30,7 @@ from exudyn_ehd.status import FilmError
 # Shares of the clearance. Eccentricity up to which a journal is at the centre: larger than the round-off of a position
 # of 1 m in a clearance of 1 um. Eccentricity of the films beside it, by which K and C differ from their limits.
 CENTRE, BESIDE = 1e-9, 1e-6
-# Angle of the first of four directions, rad; along a column of the grid, Gumbel's linear pressure would be zero there,
+# Angle of the first of four directions, rad; along a column of the grid, Gümbel's linear pressure would be zero there,
 # and its set undecided.
 FIRST = 1.0
 # Largest difference of K or C between a direction and the mean of all, over the mean, up to which that is given; on few

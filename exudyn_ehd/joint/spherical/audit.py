@@ -33,7 +33,7 @@ from exudyn_ehd.joint.audit.switches import (
     Switch,
     swift_stieber,
 )
-from exudyn_ehd.joint.model.resolution import intervals_at_half
+from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.changes import BallComparison
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel

@@ -17,10 +17,10 @@ from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
-from exudyn_ehd.joint.model.resolution import warn_of_grid
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures

@@ -11,8 +11,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.balance.limits import warn_of_heat
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.resolution import warn_of_grid
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_oil
 from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible, require_type

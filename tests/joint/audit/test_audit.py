@@ -13,8 +13,8 @@ from exudyn_ehd.joint.audit import findings
 from exudyn_ehd.joint.audit.audit import audit_record
 from exudyn_ehd.joint.audit.samples import RecordedSteps, squeeze_share, tilt_loss
 from exudyn_ehd.joint.audit.switches import steel_ring
+from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.model.resolution import intervals_at_half
 from exudyn_ehd.joint.solved_film import History
 from tests.sampling import but_slow, sample
 
