@@ -20,8 +20,7 @@ import warnings
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.models import FiniteLength
-from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, resolution
+from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
 from exudyn_ehd.status import GridWarning, StarvationWarning, ThinFilmWarning
@@ -86,7 +85,7 @@ class GridWatch:
         """Take an accepted step's film of a peak pressure, Pa."""
         if not (peak > HIGHER * self._peak and isinstance(film, SolvedFilm)):
             return
-        if isinstance(film.parts.bearing.film, FiniteLength):
+        if is_judged(film):
             self._peak, found = peak, resolution(film)
             self._coarse = (time, found) if found.is_coarse else None
 

@@ -124,9 +124,16 @@ def coarse_film(found: Resolution, where: str) -> str:
     )
 
 
+def is_judged(film: SolvedFilm) -> bool:
+    """Return whether a film has a grid that a warning can name, and carries more than its contact does."""
+    contact = 0.0 if film.pressing is None else np.hypot(*film.pressing.integrals[:, :2].sum(axis=0))
+    carried = math.hypot(*film.loads.wrench[:2]) / film.grid.reference_length**2
+    return isinstance(film.parts.bearing.film, FiniteLength) and bool(contact <= 0.5 * carried)
+
+
 def warn_of_grid(film: SolvedFilm, where: str) -> bool:
     """Warn in the name of ``where`` of a film whose peak the grid does not resolve; return whether it is one."""
-    if not (isinstance(film.parts.bearing.film, FiniteLength) and (found := resolution(film)).is_coarse):
+    if not is_judged(film) or not (found := resolution(film)).is_coarse:
         return False
     warn_user(coarse_film(found, where), GridWarning)
     return True
