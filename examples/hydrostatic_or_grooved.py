@@ -253,7 +253,7 @@ def main(
         Folder for the picture; None writes none.
     """
     fine = ehd.FiniteLength(n_theta=200, n_z=26, stretch=0.0)
-    film = ehd.FiniteLength(n_theta=96, n_z=10) if quick else ehd.FiniteLength(n_theta=144, n_z=12)
+    film = ehd.FiniteLength(n_theta=120, n_z=10) if quick else ehd.FiniteLength(n_theta=144, n_z=12)
     print("films at one position ...", flush=True)
     films = at_a_position(fine)
     print("groove around the bearing ...", flush=True)

@@ -66,6 +66,7 @@ from exudyn_ehd.progress import show_progress
 from exudyn_ehd.status import (
     EHDError,
     FilmError,
+    GridWarning,
     HotFilmWarning,
     InputError,
     MemoryWarning,
@@ -228,6 +229,7 @@ __all__ = [
     "FullSommerfeld",
     "Gravity",
     "GreenwoodTripp",
+    "GridWarning",
     "Gumbel",
     "Held",
     "HeldBands",

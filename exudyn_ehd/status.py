@@ -155,6 +155,16 @@ class ThinFilmWarning(UserWarning):
     """
 
 
+class GridWarning(UserWarning):
+    """The grid of a film does not resolve its pressure peak.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.GridWarning)  # ends a run where it would warn
+    """
+
+
 class OverloadWarning(UserWarning):
     """The film of a joint presses with what neither oil nor steel bears: most likely the time integration's doing.
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.balance.resolution import Resolution, resolution
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import Status
@@ -185,10 +186,8 @@ class Sample:
         See the functions of these names.
     deflection, shape : float
         Largest deflection of a liner and largest departure of the surfaces from cylinders, m.
-    columns, rows : float
-        Intervals of the grid across the pressure peak at half its height.
-    narrowing : float
-        Film thickness one interval before an end over that on the end, where the pressure peaks.
+    resolution : Resolution
+        Of the pressure peak by the grid.
     """
 
     speed: float
@@ -209,9 +208,7 @@ class Sample:
     squeeze_rate: float
     deflection: float
     shape: float
-    columns: float
-    rows: float
-    narrowing: float
+    resolution: Resolution
 
 
 def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
@@ -224,7 +221,6 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
     pressure = film.oil.P * film.scales.pressure
     weight = g.weight / g.weight.sum()
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-    i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
     thermal = b.thermal
     to_bush, to_journal = _wall_shares(model, film)
     return Sample(
@@ -246,9 +242,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         squeeze_rate=squeeze_rate(b, w.motion[None]),
         deflection=q.get("bore_displacement", 0.0),
         shape=_shape(film),
-        columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
-        rows=intervals_at_half(pressure[i], int(j)),
-        narrowing=float(np.max(s.H[i, [1, -2]] / s.H[i, [0, -1]])),
+        resolution=resolution(film),
     )
 
 
@@ -360,22 +354,6 @@ def rate_of_squeeze(
     amplitude = np.maximum(np.linalg.norm(place, axis=1), AMPLITUDE * clearance)
     accelerations = np.sum(velocity**2, axis=1) / amplitude
     return float(np.max(accelerations / np.maximum(sources, 1e-300)))
-
-
-def intervals_at_half(values: np.ndarray, peak: int) -> float:
-    """Intervals between the points on both sides of ``peak`` where ``values`` (n,) fall to half of it, interpolated."""
-    half = 0.5 * float(values[peak])
-    if not half > 0.0:
-        return float(values.size)
-    width = 0.0
-    for side in (values[peak::-1], values[peak:]):
-        below = np.flatnonzero(side < half)
-        if below.size == 0:
-            width += side.size - 1.0
-            continue
-        k = int(below[0])
-        width += k - float((half - side[k]) / (side[k - 1] - side[k]))
-    return width
 
 
 def _shape(film: SolvedFilm) -> float:

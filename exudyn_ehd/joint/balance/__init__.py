@@ -7,4 +7,5 @@ limits    temperatures and pressures that no oil or steel bears; what to do abou
 position  journal's position under a load
 steadiest of several positions the one that a journal keeps
 faces     films on the end faces beside it
+resolution  whether the grid resolves the pressure peak
 """

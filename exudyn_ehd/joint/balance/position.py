@@ -94,6 +94,8 @@ class LoadSearch:
         Film solves after which it gives up.
     faces : FacesUnderLoad, optional
         Films on the end faces, which carry their part.
+    size : float, optional
+        Force that the residual is divided by, N; by default that of the load.
     """
 
     def __init__(
@@ -103,9 +105,10 @@ class LoadSearch:
         where: str,
         effort: int = LARGEST_EFFORT,
         faces: FacesUnderLoad | None = None,
+        size: float | None = None,
     ) -> None:
         self.model, self.force, self.where, self.effort, self.faces = model, force, where, effort, faces
-        self.size, self.carried = float(np.hypot(*force)), 0.0
+        self.size, self.carried = float(np.hypot(*force)) if size is None else size, 0.0
         self.count, self.first = 0, model.parts.evaluations.count
         self.strongest = (0.0, 0.0)
         self._history: History | None = None

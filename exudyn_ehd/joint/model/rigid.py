@@ -19,6 +19,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
+from exudyn_ehd.joint.model.centre import is_central, tangents_beside
 from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of
 from exudyn_ehd.joint.model.parts import film_parts
@@ -72,10 +73,13 @@ class Evaluation:
         """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
 
         ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes
-        nothing.
+        nothing. At the exact centre the mean of films beside it (`exudyn_ehd.joint.model.centre`).
         """
-        film = self._current()
-        return np.full((6, MOTION_SIZE), np.nan) if film is None else wrench_tangent(film, slow_motion)
+        if (film := self._current()) is None:
+            return np.full((6, MOTION_SIZE), np.nan)
+        return (
+            tangents_beside(self, slow_motion).mean(axis=0) if is_central(self) else wrench_tangent(film, slow_motion)
+        )
 
     def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
         """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.
@@ -86,11 +90,9 @@ class Evaluation:
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
-        film = self._current()
+        film, p = self._current(), self.model.parts
         if film is None:
-            return {"minimum_gap": self.minimum_gap} | eccentricities(
-                self.model.parts, self.motion[:4] * self.model.parts.pose_scale
-            )
+            return {"minimum_gap": self.minimum_gap} | eccentricities(p, self.motion[:4] * p.pose_scale)
         return quantities(film)
 
     def history(self) -> History | None:
@@ -101,8 +103,7 @@ class Evaluation:
         RuntimeError
             If there is no film.
         """
-        film = self._current()
-        if film is None:
+        if (film := self._current()) is None:
             raise RuntimeError(f"Evaluation.history: {self.status.name}, without a film there is no history to keep.")
         return self.model.next_history(film)
 
@@ -363,9 +364,7 @@ class BearingModel:
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
         if p.liner is not None:
             p.liner.delta_old = None if history is None else history.deflection
-        kept = None
-        if history is not None and history.void is not None:
-            kept = self.solver.keep(history.void, step)
+        kept = None if history is None or history.void is None else self.solver.keep(history.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
         self.solver.lag(None if history is None else history.outflow, step)
         status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)

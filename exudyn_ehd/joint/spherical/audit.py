@@ -21,10 +21,10 @@ from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.joint.audit.assumptions import INERTIA, SURELY_FINE
 from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.changes import MATTERS
-from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, finding, judged
+from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, Limit, finding, judged
 from exudyn_ehd.joint.audit.oil import piezoviscosity
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.samples import TENSION, intervals_at_half, rate_of_squeeze, time_mean
+from exudyn_ehd.joint.audit.samples import TENSION, rate_of_squeeze, time_mean
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
     TYPICAL_ROUGHNESS,
@@ -33,6 +33,7 @@ from exudyn_ehd.joint.audit.switches import (
     Switch,
     swift_stieber,
 )
+from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.changes import BallComparison
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
@@ -41,6 +42,8 @@ from exudyn_ehd.status import FilmError
 
 # Asperities carry from so many roughnesses on; a typical wall begins there, at most at this share of the clearance.
 TOUCHING, THIN = 4.0, 0.1
+# Intervals across a ball's pressure peak from which on its load is within 1 %.
+ACROSS = {"columns": Limit(4.0, "intervals", below=True), "rows": Limit(3.0, "intervals", below=True)}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -305,8 +308,8 @@ def _grid(case: _BallCase, name: str, count: str, effect: str) -> Finding:
     size, value = getattr(case.bearing, name), case.smallest(count)
     indicator = f"intervals across the peak at half its height, {name} = {size}"
     finer = partial(replace, **{name: 2 * size})
-    change = None if value > 2.0 * SURELY_FINE * LIMITS[effect].value else case.films.change(finer)
-    found = replace(finding(effect, indicator, value, None), change=change)
+    change = None if value > 2.0 * SURELY_FINE * ACROSS[count].value else case.films.change(finer)
+    found = replace(finding(effect, indicator, value, None, limit=ACROSS[count]), change=change)
     if change is not None and change.found:
         found = replace(found, matters=change.size > MATTERS)
     if not found.matters:

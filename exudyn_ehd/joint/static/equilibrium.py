@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
@@ -16,8 +16,9 @@ from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.balance.steadiest import steadiest
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.centre import evaluate_beside, is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
-from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
@@ -41,6 +42,9 @@ LEFT_OUT = (
     "ElasticLiner for them."
 )
 LOADS = {"smallest": 1e-30, "largest": 1e15}
+# Without a load, what counts as one for the residual: share of L D mu omega / psi^2. A smaller one asks for a more
+# exact position, which round-off ends at 1e-16 of that force.
+NO_LOAD = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +76,8 @@ class EquilibriumResult:
         grid most: on the default film within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture
         line on the vertices within some 20 % and several times.
     residual : float
-        Largest component of film force + load in x and y, divided by the load there.
+        Largest component of film force + load in x and y, divided by the load there; without one by 1e-5 of
+        ``L D mu omega / psi^2``.
     iterations : int
         Positions tried, each with a film solve; with ``thermal`` temperatures are tried along with them. A flexible
         bore settles at each of them.
@@ -205,7 +210,9 @@ def equilibrium(
     speed : float
         Relative spin, rad/s, not 0.
     load : (float, float)
-        Force on the journal in x and y, N, not zero.
+        Force on the journal in x and y, N. Without one, (0, 0), the journal lies at the exact centre of a bearing that
+        is the same in all directions. A film that ruptures has one-sided derivatives there; stiffness and damping are
+        those a little off the centre, `exudyn_ehd.joint.model.centre`.
     tilt : (float, float)
         Slopes (bx, by), held fixed, rad.
     axial_position : float
@@ -220,10 +227,10 @@ def equilibrium(
     Raises
     ------
     InputError
-        For a zero load or speed, an inlet that a moving journal can't have, supply areas that turn with the journal,
-        an axial load without faces or at a given axial position.
+        For zero speed, an inlet that a moving journal can't have, supply areas that turn with the journal, an axial
+        load without faces or at a given axial position.
     FilmError
-        If no equilibrium was found.
+        If no equilibrium was found, or if it is the exact centre and stiffness and damping depend on the direction.
 
     Examples
     --------
@@ -241,17 +248,20 @@ def equilibrium(
     omega = require_number("equilibrium: speed", speed, "rad/s")
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
     place = require_number("equilibrium: axial_position", axial_position, "m")
-    size = float(np.hypot(*force))
-    if size == 0.0 or omega * bearing.journal_radius == 0.0:
-        raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
+    if omega * bearing.journal_radius == 0.0:
+        raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
-    require_size("equilibrium: load", size, "N", **LOADS)
+    size = float(np.hypot(*force))
+    if size == 0.0:
+        size = NO_LOAD * bearing.reference_force(omega)
+    else:
+        require_size("equilibrium: load", size, "N", **LOADS)
     require_rest(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
     faces = _faces(model, place, axial_load, size)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
-    search = LoadSearch(model, force, "equilibrium", faces=faces)
+    search = LoadSearch(model, force, "equilibrium", faces=faces, size=size)
     found = steadiest(search, search.find(motion))
     small = _small_motions(model, found)
     film = result_at(model, found.motion, "equilibrium", found.film.history)
@@ -285,6 +295,9 @@ class _SmallMotions(NamedTuple):
 def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     """Of a position whose film is the model's last."""
     evaluation, omega = found.evaluation, abs(float(found.motion[8]))
+    central = is_central(evaluation)
+    if central:
+        require_derivatives(evaluation, "equilibrium")
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
@@ -301,7 +314,8 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
         if found.faces is not None:
             K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
         if yields:
-            response = yielding_response(evaluation, K, C)
+            beside = cast("Evaluation", evaluate_beside(evaluation)) if central else evaluation
+            response = yielding_response(beside, K, C)
     ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)

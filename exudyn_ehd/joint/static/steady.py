@@ -17,6 +17,7 @@ from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
@@ -168,7 +169,8 @@ def steady(
 
     An `ANCFBush` is in static equilibrium with the film, at any strain, as in a joint. A `ModalBush` is linear; where
     its bore yields by more than 1 % of the wall, a `StrainWarning` says so. Films with more than 3 GPa, or a
-    mean of more than 1 GPa with their contact, which neither oil nor steel bears, give an `OverloadWarning`.
+    mean of more than 1 GPa with their contact, which neither oil nor steel bears, give an `OverloadWarning`. Films
+    whose pressure peak the grid does not resolve to some 5 % give a `GridWarning` with a grid that does.
 
     Supply areas in the journal (``rotating=True``) stand where they were described. The film is that of the instant at
     which they pass there; oil content and temperature, and what follows with a delay, are those of standing areas.
@@ -300,6 +302,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     force = math.hypot(wrench[0], wrench[1])
     refuse_pressed_through(model.bearing, q["minimum_gap"], where)
     warn_of_overload(model.bearing, peak, force, where)
+    warn_of_grid(film, where)
     reference = model.bearing.reference_force(motion[8])
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:

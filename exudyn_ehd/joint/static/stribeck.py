@@ -11,6 +11,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import warn_of_heat
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_rest
@@ -146,7 +147,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     motion = np.zeros(10)
     motion[:2] = first_guess(bearing, last, search.force, np.zeros(2))
     rows: list[dict[str, float | np.ndarray]] = [{}] * values.size
-    told = False
+    told = coarse = False
     found: Carried | None = None
     for k in order:
         found = _follow(search, found, motion, last, float(values[k]))
@@ -154,6 +155,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
         film = found.evaluation.film
         assert film is not None
         told = told or warn_of_heat(film.temperature, film.grid, f"stribeck at {last:.4g} rad/s")
+        coarse = coarse or warn_of_grid(film, f"stribeck at {last:.4g} rad/s")
         rows[k] = _row(found.evaluation, last, size)
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return StribeckResult(speeds=values, **columns)

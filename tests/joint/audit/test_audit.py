@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.audit import findings
 from exudyn_ehd.joint.audit.audit import audit_record
-from exudyn_ehd.joint.audit.samples import RecordedSteps, intervals_at_half, squeeze_rate, squeeze_share, tilt_loss
+from exudyn_ehd.joint.audit.samples import RecordedSteps, squeeze_rate, squeeze_share, tilt_loss
 from exudyn_ehd.joint.audit.switches import steel_ring
+from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
 from tests.sampling import but_slow, sample
@@ -515,7 +517,7 @@ def load(made, eps):
 def test_advised_grids_carry_the_load(n_theta, eps, measured):
     """Both "too coarse" and "finer than needed" name a grid that is neither."""
     made = bearing(film=ehd.FiniteLength(n_theta=n_theta, n_z=12))
-    advised = int(audit(made, eps=eps)["grid around"].advice.split("n_theta=")[1].split(" ")[0].rstrip("."))
+    advised = int(re.search(r"n_theta=(\d+)", audit(made, eps=eps)["grid around"].advice)[1])
     followed = bearing(film=ehd.FiniteLength(n_theta=advised, n_z=12))
     finding = audit(followed, eps=eps)["grid around"]
     assert not finding.matters and not finding.unneeded

@@ -151,7 +151,6 @@ class TestEquilibrium:
     @pytest.mark.parametrize(
         "wrong",
         [
-            {"load": (0.0, 0.0)},
             {"speed": 0.0},
             {"load": (1.0,)},
             {"load": (math.nan, 1.0)},
