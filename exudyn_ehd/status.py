@@ -43,6 +43,7 @@ class Status(enum.IntEnum):
     NOT_FINITE = 3
     NO_PRESSURE = 4
     OUTSIDE_MAP = 5
+    NO_OIL = 6
 
     @property
     def advice(self) -> str:
@@ -61,6 +62,9 @@ _ADVICE = {
     Status.OUTSIDE_MAP: "the journal left the domain of its impedance map; give ImpedanceMap a larger "
     "largest_eccentricity_ratio, or use film=FiniteLength(...), with contact=RegularisedWall(onset=...) if surfaces "
     "may touch.",
+    Status.NO_OIL: "a steady film with ElrodAdams needs oil from somewhere: where it goes round at the cavity "
+    "pressure, time alone says how much there is; give the bearing a supply or end_pressures above the cavity "
+    "pressure, or take ElrodAdams(cavity_pressure=-1e5) below ambient pressure.",
     Status.NOT_FINITE: "the state handed to the film is not finite; reduce the step size and check the masses and "
     "loads of the model.",
 }

@@ -54,6 +54,7 @@ import numpy as np
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, contract_line
+from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
@@ -217,6 +218,9 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         s, g, e = self.system, self.grid, self.elements
         self.vx, self.vz, s.cavity_pressure = vx, vz, cavity_pressure
         e.take_rigid(self.squeeze)
+        if vx == vz == 0.0 and not e.rigid[2].any():
+            # a film at rest starts from nothing, not from what is left of the last one
+            self.work.warm = False
         self._set_times(mass_old, step)
         P = s.linear_pressure
         if self.closure.clips:
@@ -241,7 +245,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         if e.limiter is not None and e.contact is None and not e.true_gap.min() > 0.0:
             # the film between rough surfaces stays open where nothing holds them apart
             return Status.NO_FILM, steps
-        return Status.CONVERGED, steps
+        return status_of(self.system, Status.CONVERGED), steps
 
     def _start(self, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
         """Newton's method from no other film: (found, steps)."""
@@ -287,6 +291,8 @@ class NonlinearFilmSolver(NewtonFilmSolver):
             e.mass_old[:] = mass_old
         e.rates = Rates(mass, 0.0, 0.0, float(mass_old is None or self.instant))
         self.system.inverse_step = mass
+        self.system.see_motion(mass_old is None, e.rigid[2], self.vx, self.vz)
+        self.work.warm = self.work.warm and not self.system.closes
 
     def refresh_fixed(self) -> None:
         """Other prescribed vertices and cuts: the last factor is of no use."""
