@@ -296,7 +296,7 @@ def add_bore_modes(
     with announced("exudyn_ehd: computing the modes of a bore ..."):
         solutions = _solve_held(K, fixed, loads)
     shapes = surface.without_rigid(surface.weighted(solutions[coordinates]))
-    exact, scale = shapes[:, count:], surface.scale(shapes[:, count:])
+    exact, scale = shapes[:, count:], surface.scale(shapes[:, count:], tilted)
     coefficients, _ = film_modes(solutions[:, :count].T @ loads, shapes, scale, tilted, tolerance)
     modes = solutions[:, :count] @ coefficients.T
     modes /= np.abs(surface.radial @ modes[coordinates]).max(axis=0)

@@ -161,12 +161,14 @@ class _Reduction:
                 sizes.append(size)
                 owners += [(n, phase, row) for row in range(size.size)]
         order = np.argsort(-np.concatenate(sizes), kind="stable")
-        whole, local = (np.linalg.norm(np.concatenate(part), axis=0) for part in (exact, exact[5:]))
+        # one block for no wave, two for every other
+        beyond = [np.linalg.norm(np.concatenate(exact[2 * most + 1 :]), axis=0) for most in films.BEYOND]
+        whole = np.concatenate(exact)
         chosen, error = films.fewest_modes(
             block_diag(*shapes)[:, order],
             np.concatenate(amounts)[order],
-            np.concatenate(exact),
-            np.minimum(whole, films.HELD_SHAPE * local),
+            whole,
+            films.scale_of(np.array([np.linalg.norm(whole, axis=0), *beyond]), tilted),
             np.concatenate(sizes)[order],
             self.journal.tolerance,
         )

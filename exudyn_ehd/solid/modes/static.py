@@ -242,7 +242,7 @@ def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
     if not tilted and surface.odd_share(weighted[:, solutions.shape[1] :]) > ODD:
         tilted = True
         solutions, loads, weighted = answer(tilted)
-    scale = surface.scale(weighted[:, solutions.shape[1] :])
+    scale = surface.scale(weighted[:, solutions.shape[1] :], tilted)
     coefficients, error = film_modes(solutions.T @ loads, weighted, scale, tilted, bush.tolerance)
     coefficients = orthogonal_on(mesh.bore.radial((solutions @ coefficients.T).T)) @ coefficients
     modes = (solutions @ coefficients.T).T
