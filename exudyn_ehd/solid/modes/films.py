@@ -10,10 +10,12 @@ the set's covariance ``Q S S^T Q^T``, the modes are the left singular vectors of
 
 The films are those of bearings of finite length on the film's own length,
 
-    p ~ -(dh/dtheta) / h^3 (1 - cosh(a zeta) / cosh(a)),   h = 1 + (e + b zeta) . (cos theta, sin theta),
+    p ~ (dh/dtheta)^2 / h^4 (1 - cosh(a zeta) / cosh(a)) where dh/dtheta < 0,
 
-with zeta = 2 z / length, eccentricities e up to 0.95 in all directions, slopes b in all directions, and profiles along
-z from the short bearing's parabola (small a) to the nearly even pressure of a soft bush (large a). The candidates are
+with zeta = 2 z / length and the scaled gap h of `Film`: eccentricities in all directions, slopes, waves and crowns, as
+elastic bores make them, and profiles along z from the short bearing's parabola (small a) to the nearly even pressure of
+a soft bush (large a). The square, and the fourth power to place the peak as the third does, let the pressure end
+without a kink, as ruptured films do. The candidates are
 
     q = {1, cos(n theta), sin(n theta)} P_l(zeta) (1 - zeta^2),   n <= N, l <= L,
 
@@ -29,9 +31,9 @@ deformation lacks. The displacement v of a half space that moves alike beyond m 
 
 is what does not move as a whole, with |.|_m the root mean square of the waves beyond m, all of them for m = 0: the
 compliance of a half space falls with 1 / n (K. L. Johnson, Contact Mechanics, Cambridge 1985, chapter 13), that of a
-bent ring with 1 / n^4. The error counts over v^2 / |u|. The more of its displacement a bush moves as a whole, the
-farther is the gap from that of round surfaces, and its pressure from those of the set: over v alone, polymer bushes of
-thin walls on a narrow foot have the minimum film thickness within 4 % only.
+bent ring with 1 / n^4. The error counts over ``|v| max(|v| / |u|, LEAST_SHARE)``. The more of its displacement a bush
+moves as a whole, the farther is the gap from that of round surfaces, and its pressure from those of the set: over v
+alone, polymer bushes of thin walls on a narrow foot have the minimum film thickness within 4 % only.
 
 Source of the idea: L. Sirovich, Quarterly of Applied Mathematics 45 (1987) 561; derived here for pressures on a bore.
 """
@@ -51,7 +53,7 @@ from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.solid.unrolled import Unrolled
 from exudyn_ehd.status import InputError
 
-LARGEST_WAVE, LARGEST_AXIAL = 24, 10
+LARGEST_WAVE, LARGEST_AXIAL = 32, 10
 # Films of the set and those that measure the error: eccentricity ratios; slopes and waves of the gap (shares of the
 # gap left at the loaded side); phases of both (rad, from the direction of the eccentricity); numbers of waves; crowns
 # (such shares that the ends are wider by); decays towards the ends. A wider set takes more modes.
@@ -64,6 +66,9 @@ WAVY = 0.7
 DIRECTIONS = 0.2 + 2.0 * np.pi * np.arange(6) / 6.0
 # Waves m around beyond which displacements are compared with a half space's. Larger ones are beyond coarse meshes.
 BEYOND = (2, 4, 6, 8, 10)
+# Smallest share of a half space's displacement in the whole that makes the tolerance tighter. A smaller one takes more
+# modes of bushes on a narrow foot.
+LEAST_SHARE = 0.1
 # Share of the energy below which a combination of pressures adds nothing but round-off.
 DEPENDENT = 1e-11
 # Weight of uniform and linear pressures over that of all films: their modes leave no more than its inverse of them.
@@ -74,7 +79,20 @@ PAIR = 1e-3
 FIT = 256, 64
 # Least number of points around and along on the film's surface: beyond the orders of the pressures.
 AROUND, ALONG = 144, 16
-SETTINGS = (LARGEST_WAVE, LARGEST_AXIAL, SET, MEASURE, (*DIRECTIONS,), BEYOND, DEPENDENT, CERTAIN, PAIR, FIT)
+SETTINGS = (
+    LARGEST_WAVE,
+    LARGEST_AXIAL,
+    SET,
+    MEASURE,
+    (*DIRECTIONS,),
+    BEYOND,
+    LEAST_SHARE,
+    WAVY,
+    DEPENDENT,
+    CERTAIN,
+    PAIR,
+    FIT,
+)
 
 
 class FilmSurface:
@@ -188,10 +206,8 @@ class Film(NamedTuple):
         """Pressure at angles [rad] and zeta that broadcast."""
         local = (self.eccentricity + self.slope * zeta) * np.exp(-1j * theta)
         wave = self.amplitude * np.exp(-1j * self.waves * theta)
-        rise = (
-            np.maximum(-local.imag - self.waves * wave.imag, 0.0)
-            / (1.0 + local.real + wave.real + self.crown * zeta**2) ** 3
-        )
+        gap = 1.0 + local.real + wave.real + self.crown * zeta**2
+        rise = np.maximum(-local.imag - self.waves * wave.imag, 0.0) ** 2 / gap**4
         return np.asarray(rise * (1.0 - np.cosh(self.decay * zeta) / np.cosh(self.decay)))
 
 
@@ -214,7 +230,8 @@ def measuring_pressures(theta: np.ndarray, zeta: np.ndarray, tilted: bool) -> np
 
 def scale_of(beyond: np.ndarray, tilted: bool) -> np.ndarray:
     """Scale (t,) of an error under the measuring films; ``beyond`` (b, t): |u| as a whole and beyond `BEYOND` waves."""
-    return np.asarray((beyond * half_space(tilted)).min(axis=0) ** 2 / beyond[0])
+    local = (beyond * half_space(tilted)).min(axis=0)
+    return np.asarray(local * np.maximum(local / beyond[0], LEAST_SHARE))
 
 
 @lru_cache(maxsize=2)
