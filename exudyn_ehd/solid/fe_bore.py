@@ -199,9 +199,9 @@ class BoreModesReport:
         Modes added, and modes now in the basis.
     error_before, error : float
         Error of the bore's shape under sampled films, of the basis before and now. The shape is the radial displacement
-        without its rigid motion. The error counts over the shape, but over no more than 2.2 times the part of it beyond
-        two waves around, as in a bush whose outer surface is held: a slender eye gets oval by far more than the film is
-        thick, and over that every error would look small, while the film sees what the local deformation lacks.
+        without its rigid motion. The error counts over the part of the shape that is local
+        (`exudyn_ehd.solid.modes.films`): a slender eye gets oval by far more than the film is thick, and over that
+        every error would look small, while the film sees what the local deformation lacks.
 
     Examples
     --------

@@ -49,8 +49,8 @@ from numpy.polynomial.legendre import legval
 from scipy.linalg import block_diag, eigh
 from scipy.sparse import csr_matrix
 
+from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.mesh import Surface, directed
-from exudyn_ehd.solid.unrolled import Unrolled
 from exudyn_ehd.status import InputError
 
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
@@ -62,8 +62,9 @@ SET = (0.3, 0.6, 0.85), (0.5,), PHASES, (2, 3), (-0.5, 1.0), (0.5, 4.0, 12.0, 40
 MEASURE = (0.5, 0.75), (0.5,), (0.8, 2.4, 3.9, 5.5), (3,), (-0.4, 0.6), (2.0, 20.0)
 # Waves of the gap over its slope.
 WAVY = 0.7
-# Directions of the eccentricity in the films that measure the error, rad.
-DIRECTIONS = 0.2 + 2.0 * np.pi * np.arange(6) / 6.0
+# Directions of the eccentricity in the films that measure the error, rad: by the golden angle, so that none lies to
+# the elements around as another does.
+DIRECTIONS = 0.2 + np.pi * (3.0 - np.sqrt(5.0)) * np.arange(6)
 # Waves m around beyond which displacements are compared with a half space's. Larger ones are beyond coarse meshes.
 BEYOND = (2, 4, 6, 8, 10)
 # Smallest share of a half space's displacement in the whole that makes the tolerance tighter. A smaller one takes more
@@ -100,7 +101,7 @@ class FilmSurface:
 
     Parameters
     ----------
-    faces : Unrolled
+    faces : Surface or BoreFaces
     points : (p,) arrays
         Angle [rad], z [m] and weight, as `film_points` returns them.
     length : float
@@ -116,7 +117,11 @@ class FilmSurface:
     """
 
     def __init__(
-        self, faces: Unrolled, points: tuple[np.ndarray, np.ndarray, np.ndarray], length: float, frame: np.ndarray
+        self,
+        faces: Surface | BoreFaces,
+        points: tuple[np.ndarray, np.ndarray, np.ndarray],
+        length: float,
+        frame: np.ndarray,
     ) -> None:
         self.theta, z, self.weight = points
         self.zeta = 2.0 * z / length
@@ -166,7 +171,7 @@ class FilmSurface:
         return float((np.linalg.norm(odd.T @ weighted, axis=0) / np.linalg.norm(weighted, axis=0)).max())
 
 
-def film_points(faces: Unrolled, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def film_points(faces: Surface | BoreFaces, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Angles [rad], z [m] and weights of sum one (p,) of points on the surface of a film, parted where faces meet.
 
     Points of a `Surface` that lie in its holes are left out.
