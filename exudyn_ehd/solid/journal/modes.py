@@ -138,9 +138,9 @@ class _Reduction:
     def modes(self) -> dict[str, np.ndarray]:
         """Arrays of `JournalModes`."""
         tilted, measuring = self.journal.tilted, self._measuring()
-        t, parts = measuring.shape[1] // 2, films.wave_parts(tilted)
+        t, waves = measuring.shape[1] // 2, films.wave_parts(tilted)
         combinations, profiles, shapes, amounts, exact, sizes, owners = [], [], [], [], [], [], []
-        for n, (part, films_of_wave) in enumerate(zip(parts[: self.waves + 1], measuring, strict=True)):
+        for n, (part, films_of_wave) in enumerate(zip(waves[: self.waves + 1], measuring, strict=True)):
             candidates = self._candidates(n)
             c, load = len(candidates), self.body.load(n, np.concatenate((candidates, films_of_wave)))
             # pressed inwards, the journal is displaced by as much the other way
@@ -173,19 +173,23 @@ class _Reduction:
             self.journal.tolerance,
         )
         taken = [owners[row] for row in order[:chosen]]
+        rows = [[row for wave, phase, row in taken if (wave, phase) == (n, 0)] for n in range(self.waves + 1)]
+        parts = [c[own] @ p.T for c, p, own in zip(combinations, profiles, rows, strict=True)]
+        return self._arrays(parts) | {"error": np.array(error)}
+
+    def _arrays(self, parts: list[np.ndarray]) -> dict[str, np.ndarray]:
+        """Arrays of `JournalModes` of the profiles (modes, nodes) of every number of waves, of unit strain energy."""
         found: list[tuple[np.ndarray, ...]] = []
-        for n, (coefficients, profile) in enumerate(zip(combinations, profiles, strict=True)):
-            rows = [row for wave, phase, row in taken if (wave, phase) == (n, 0)]
-            if not rows:
+        for n, part in enumerate(parts):
+            if not len(part):
                 continue
-            moved = coefficients[rows] @ profile.T
-            moved = films.orthogonal_on(moved * self._root) @ moved
+            moved = films.orthogonal_on(part * self._root) @ part
             peak = moved[np.arange(len(moved)), np.argmax(np.abs(moved), axis=1)]
             for phase in (0.0, 0.5 * np.pi)[: 2 if n else 1]:
                 same = np.ones_like(peak)
                 found.append((n * same, phase * same, moved / peak[:, None], 1.0 / peak**2))
         names = "waves", "phases", "profiles", "stiffness"
-        return dict(zip(names, map(np.concatenate, zip(*found, strict=True)), strict=True)) | {"error": np.array(error)}
+        return dict(zip(names, map(np.concatenate, zip(*found, strict=True)), strict=True))
 
     @cached_property
     def _root(self) -> np.ndarray:
