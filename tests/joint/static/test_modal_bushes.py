@@ -124,3 +124,47 @@ def test_told_error_is_that_under_films_of_all_directions(seed):
     lack = H @ (exact - u.T @ (u @ loads / modes.stiffness[:, None]))[coordinates]
     true = np.linalg.norm(lack, axis=0) / np.linalg.norm(H @ exact[coordinates], axis=0)
     assert true.max() / 1.5 < modes.error < 1.5 * true.max()
+
+
+STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+CYLINDER = ehd.HollowCylinder(inner_radius=R + C, thickness=0.01, length=R, axial=2, radial=1, circumferential=12)
+BEARING = {
+    "journal_radius": R,
+    "length": R,
+    "radial_clearance": C,
+    "lubricant": ehd.Lubricant(viscosity=0.02),
+    "film": ehd.FiniteLength(n_theta=48, n_z=8),
+}
+
+
+def held_at_its_end():
+    mesh, low = CYLINDER.mesh(), -0.5 * R + 1e-9
+    return ehd.mesh_from_arrays(mesh.nodes, mesh.elements, bore_radius=R + C, held=lambda x: x[:, 2] < low)
+
+
+def test_a_journal_that_tilts_on_even_modes_is_warned_of():
+    bearing = ehd.JournalBearing(**BEARING, bush=ehd.ModalBush(mesh=CYLINDER, material=STEEL, tilted=False))
+    ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.8, tilt=(1e-5, 0.0))
+    with pytest.warns(UserWarning, match=r"ends tilt by 10% of the clearance, and ModalBush\(tilted=False\)"):
+        ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.8, tilt=(0.0, 2e-4))
+
+
+@IGNORED
+def test_a_bush_held_at_its_end_has_odd_modes_for_parallel_journals():
+    bush = ehd.ModalBush(mesh=held_at_its_end(), material=STEEL, tilted=False)
+    shape = bore_modes(bush).radial(np.linspace(-3.0, 3.0, 9), np.array([-0.4, 0.4]) * R)
+    assert np.abs(shape[:, 0] - shape[:, 1]).max() > 0.1
+
+
+def test_a_bush_that_moves_as_a_whole_does_not_strain(recwarn):
+    """Held at its end, its bore moves by more than 1 % of the clearance, which lies between bore and held nodes."""
+    bush = ehd.ModalBush(mesh=held_at_its_end(), material=STEEL)
+    film = ehd.steady(ehd.JournalBearing(**BEARING, bush=bush), speed=300.0, eccentricity_ratio=0.9)
+    assert np.abs(film.bore_displacement).max() > 0.01 * C
+    assert not [w for w in recwarn if w.category is ehd.StrainWarning]
+
+
+def test_meshes_of_few_elements_around_are_warned_of():
+    mesh = ehd.HollowCylinder(inner_radius=R + C, thickness=0.01, length=R, axial=1, radial=1, circumferential=8)
+    with pytest.warns(UserWarning, match="ModalBush.mesh: a bore of 8 elements around"):
+        bore_modes(ehd.ModalBush(mesh=mesh, material=STEEL, tolerance=0.1))
