@@ -20,26 +20,18 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
+from scipy.sparse import csr_matrix
 
 from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
 from exudyn_ehd.solid.linear.supernodal import sparse_factor
-from exudyn_ehd.solid.mesh import directed, frame_of
-from exudyn_ehd.solid.modes.static import (
-    candidate_pressures,
-    enough_modes,
-    orthogonal_modes,
-    sample_pressures,
-)
+from exudyn_ehd.solid.mesh import frame_of
+from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points
 from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
 
-# Vertices around and along of the quadrature over a bore: beyond the orders of the pressures.
+# Vertices around and along of the quadrature over a bore, for its mean rigid motion.
 AROUND, ALONG = 144, 16
-# Largest scale of a bore's error, in local parts of its shape: what the whole shape is in a bush whose outer surface is
-# held.
-HELD_SHAPE = 2.2
 # Share of its energy that a new mode must have beyond the modes before it.
 NEW_ENERGY = 1e-6
 
@@ -207,9 +199,9 @@ class BoreModesReport:
         Modes added, and modes now in the basis.
     error_before, error : float
         Error of the bore's shape under sampled films, of the basis before and now. The shape is the radial displacement
-        without its rigid motion. The error counts over the shape, but over no more than 2.2 times the part of it beyond
-        two waves around, as in a bush whose outer surface is held: a slender eye gets oval by far more than the film is
-        thick, and over that every error would look small, while the film sees what the local deformation lacks.
+        without its rigid motion. The error counts over the part of the shape that is local
+        (`exudyn_ehd.solid.modes.films`): a slender eye gets oval by far more than the film is thick, and over that
+        every error would look small, while the film sees what the local deformation lacks.
 
     Examples
     --------
@@ -295,29 +287,29 @@ def add_bore_modes(
             "mode basis."
         )
     faces, bore = bore_faces(where, fem, place, bore)
-    H, weight, theta, zeta = _radial_map(faces, length, rotation)
-    pressures, orders = candidate_pressures(tilted)
-    area = weight * (2.0 * np.pi * radius * length)
-    fields = np.stack([p(theta, zeta) * area for p in [*pressures, *sample_pressures(tilted)]], axis=1)
+    surface = FilmSurface(faces, film_points(faces, length), length, rotation)
     coordinates = (3 * bore[:, None] + np.arange(3)).ravel()
     K = csr_matrix(fem.stiffnessMatrix)
-    loads = np.zeros((K.shape[0], fields.shape[1]))
-    loads[coordinates] = H.T @ fields
+    pressures, count = surface.pressures(tilted)
+    loads = np.zeros((K.shape[0], pressures.shape[1]))
+    loads[coordinates] = surface.loads(pressures)
     with announced("exudyn_ehd: computing the modes of a bore ..."):
         solutions = _solve_held(K, fixed, loads)
-    observe = _Shape(H, weight, theta, zeta, coordinates)
-    radial = observe(solutions).T
-    samples = slice(len(orders), None)
-    scale = observe.scale(solutions[:, samples])
-    compliance = solutions.T @ loads
-    chosen, _ = enough_modes(compliance, radial, orders, tolerance, tilted, scale)
-    coefficients = orthogonal_modes(compliance[np.ix_(chosen, chosen)], radial[chosen])
-    modes = solutions[:, chosen] @ coefficients.T
-    modes /= np.abs(H @ modes[coordinates]).max(axis=0)
+    shapes = surface.without_rigid(surface.weighted(solutions[coordinates]))
+    exact, scale = shapes[:, count:], surface.scale(shapes[:, count:], tilted)
+    coefficients, _ = film_modes(solutions[:, :count].T @ loads, shapes, scale, tilted, tolerance)
+    modes = solutions[:, :count] @ coefficients.T
+    modes /= np.abs(surface.radial @ modes[coordinates]).max(axis=0)
     old = np.asarray(fem.modeBasis["matrix"], dtype=float) if len(fem.modeBasis) else np.zeros((K.shape[0], 0))
     modes = _beyond(K, old, modes)
     basis = np.hstack([old, modes])
-    error_before, error = (_error(K, B, loads[:, samples], observe, radial[samples].T, scale) for B in (old, basis))
+
+    def error_of(basis: np.ndarray) -> float:
+        q = np.linalg.lstsq(basis.T @ (K @ basis), basis.T @ loads[:, count:], rcond=None)[0]
+        reduced = surface.without_rigid(surface.weighted(basis[coordinates] @ q))
+        return float((np.linalg.norm(reduced - exact, axis=0) / scale).max())
+
+    error_before, error = error_of(old), error_of(basis)
     fem.modeBasis = {"matrix": basis, "type": fem.modeBasis.get("type", "HCBmodes")}
     return BoreModesReport(added=modes.shape[1], total=basis.shape[1], error_before=error_before, error=error)
 
@@ -329,15 +321,6 @@ def _any_frame(axis: np.ndarray) -> np.ndarray:
         raise InputError("add_bore_modes axis must be a direction, got a zero vector.")
     z = axis / size
     return frame_of(z, np.eye(3)[int(np.argmin(np.abs(z)))])
-
-
-def _radial_map(
-    faces: BoreFaces, length: float, rotation: np.ndarray
-) -> tuple[csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
-    """Map H (p, 3 n) from the bore nodes' displacements, body's frame, to radial ones; weights, theta, zeta."""
-    theta, z, weight = quadrature(length)
-    normal = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1) @ rotation.T
-    return directed(faces.interpolation(theta, z), normal), weight, theta, 2.0 * z / length
 
 
 def _solve_held(K: csr_matrix, fixed: np.ndarray, loads: np.ndarray) -> np.ndarray:
@@ -360,44 +343,3 @@ def _beyond(K: csr_matrix, old: np.ndarray, new: np.ndarray) -> np.ndarray:
     energy = np.einsum("ij,ij->j", new, K @ new)
     rest = new - old @ np.linalg.lstsq(old.T @ (K @ old), old.T @ (K @ new), rcond=None)[0]
     return rest[:, np.einsum("ij,ij->j", rest, K @ rest) > NEW_ENERGY * energy]
-
-
-class _Shape:
-    """Map from displacements (3 n, k) of the mesh to the shape (p, k) of its bore, in the mean square over the film.
-
-    The shape is the radial displacement less the rigid motions that fit it best, cos, sin, zeta cos and zeta sin; its
-    local part is what goes beyond two waves around, which every choice of modes has.
-    """
-
-    def __init__(
-        self, H: csr_matrix, weight: np.ndarray, theta: np.ndarray, zeta: np.ndarray, coordinates: np.ndarray
-    ) -> None:
-        root = np.sqrt(weight)
-        self.radial, self.coordinates = diags(root) @ H, coordinates
-        one, two = ([np.cos(n * theta), np.sin(n * theta)] for n in (1, 2))
-        self.rigid, self.round = (
-            np.linalg.qr(root[:, None] * np.stack([*waves, *(zeta * w for w in waves)], axis=1))[0]
-            for waves in (one, [np.ones_like(theta), *one, *two])
-        )
-
-    def __call__(self, displacements: np.ndarray) -> np.ndarray:
-        return self._less(self.rigid, displacements)
-
-    def scale(self, displacements: np.ndarray) -> np.ndarray:
-        """Size (k,) over which an error of the shape counts."""
-        whole, local = self(displacements), self._less(self.round, displacements)
-        return np.minimum(np.linalg.norm(whole, axis=0), HELD_SHAPE * np.linalg.norm(local, axis=0))
-
-    def _less(self, fields: np.ndarray, displacements: np.ndarray) -> np.ndarray:
-        u = self.radial @ displacements[self.coordinates]
-        return u - fields @ (fields.T @ u)
-
-
-def _error(
-    K: csr_matrix, basis: np.ndarray, loads: np.ndarray, observe: _Shape, exact: np.ndarray, scale: np.ndarray
-) -> float:
-    """Largest error of the bore's shape in a basis (3 n, k) under loads, over the scale."""
-    if basis.shape[1] == 0:
-        return float((np.linalg.norm(exact, axis=0) / scale).max())
-    q = np.linalg.lstsq(basis.T @ (K @ basis), basis.T @ loads, rcond=None)[0]
-    return float((np.linalg.norm(observe(basis @ q) - exact, axis=0) / scale).max())

@@ -18,6 +18,9 @@ from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
 from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces, wrapped
 from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
 
+# How far a point of a surface may lie beyond its faces, in natural coordinates: round-off.
+OUTSIDE = 1e-6
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Line:
@@ -92,26 +95,35 @@ class Surface(Unrolled):
         """
         theta = np.asarray(theta, dtype=float).ravel()
         z = np.asarray(z, dtype=float).ravel()
-        corner = self.positions[self.local_faces]
-        close = near_faces(corner, theta, z)
-        # a point off the surface is tried on any face, and refused there
-        close[~close.any(axis=1), 0] = True
-        point, face = np.nonzero(close)
-        natural = invert_faces(self.kind, corner[face], theta[point], z[point])
-        inside = self.kind.outside(natural)
-        best = np.full(len(theta), np.inf)
-        np.minimum.at(best, point, inside)
-        if np.any(best > 1e-6):
+        face, natural, best = self._nearest(theta, z)
+        if np.any(best > OUTSIDE):
             bad = int(np.argmax(best))
             raise InputError(
                 f"Surface.locate: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m must lie on the surface, "
                 f"which spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush, lengthen "
                 "the bush, or close the hole there."
             )
+        return face, natural
+
+    def covers(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return which points (n,) lie on the surface."""
+        return self._nearest(theta, z)[2] <= OUTSIDE
+
+    def _nearest(self, theta: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return face and natural coordinates of points (n,), and how far they lie beyond the face."""
+        corner = self.positions[self.local_faces]
+        close = near_faces(corner, theta, z)
+        # a point off the surface is tried on any face
+        close[~close.any(axis=1), 0] = True
+        point, face = np.nonzero(close)
+        natural = invert_faces(self.kind, corner[face], theta[point], z[point])
+        inside = self.kind.outside(natural)
+        best = np.full(len(theta), np.inf)
+        np.minimum.at(best, point, inside)
         chosen = np.full(len(theta), -1)
         hits = np.flatnonzero(inside <= best[point])
         chosen[point[hits[::-1]]] = hits[::-1]
-        return face[chosen], natural[chosen]
+        return face[chosen], natural[chosen], best
 
     def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
         """Return S, shape (n, k), so that S @ nodal values are the values at the points (theta, z) of the surface."""

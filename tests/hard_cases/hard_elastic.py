@@ -55,7 +55,7 @@ def very_soft():
     load = 20.0
     made = bearing(bush=ring(1e6))
     rigid = ehd.equilibrium(bearing(), speed=SPEED, load=(0.0, -load))
-    with pytest.warns(ehd.StrainWarning, match="equilibrium: the bore yields by"):
+    with pytest.warns(ehd.StrainWarning, match="equilibrium: the bush strains by"):
         eq = ehd.equilibrium(made, speed=SPEED, load=(0.0, -load))
     # carried where a rigid bore would be long passed, on an open gap
     assert eq.eccentricity_ratio > 1.5 > 50.0 * rigid.eccentricity_ratio

@@ -55,7 +55,7 @@ def _bore_and_elasticity(bearing: JournalBearing) -> tuple[Callable[[FilmGrid], 
     bush, pin = bearing.bush, bearing.journal
     if isinstance(bush, ModalBush | None):
         assert isinstance(pin, ElasticJournal | None)
-        modes = None if bush is None else bore_modes(bush)
+        modes = None if bush is None else bore_modes(bush, bearing.length)
         journal = None if pin is None else journal_modes(pin, bearing.journal_radius, bearing.length)
         stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
         return lambda grid: ModalBore(modes, grid, journal), Elasticity(lambda: np.diag(stiffness))

@@ -43,7 +43,10 @@ from exudyn_ehd.joint.solved_film import (
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
 from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
 from exudyn_ehd.joint.tangent.spread import complete
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import Status, warn_user
+
+# Travel of the journal's ends by tilt, over the clearance, from which modes that are even along the axis are no model.
+TILTED = 0.02
 
 
 class ClosingFilm(NamedTuple):
@@ -216,6 +219,7 @@ class ElasticBearingModel(BearingModel):
         self._term = term
         self.make_bore, self.bore = bore, bore(self.grid)
         self.elasticity = elasticity
+        self._parallel = not all(getattr(part, "tilted", True) for part in (bearing.bush, bearing.journal))
         self._coordinates = np.zeros(self.bore.size)
         self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
         self._end_load = end_load(self.bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
@@ -289,9 +293,23 @@ class ElasticBearingModel(BearingModel):
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
         """Evaluate the film; ``motion`` (10 + 2 k,) as in the module's docstring, the rest as in `BearingModel`."""
+        if self._parallel:
+            self._warn_of_tilt(motion)
         evaluation = super().evaluate(motion, history, step, spin)
         assert isinstance(evaluation, ElasticEvaluation)
         return evaluation
+
+    def _warn_of_tilt(self, motion: np.ndarray) -> None:
+        """Warn once if the journal tilts on modes that are even along the axis."""
+        travel = 0.5 * self.bearing.length * float(np.hypot(motion[2], motion[3]))
+        if travel > TILTED * self.bearing.radial_clearance:
+            self._parallel = False
+            warn_user(
+                f"the journal's ends tilt by {travel / self.bearing.radial_clearance:.0%} of the clearance, and "
+                f"{type(self.bearing.yielding).__name__}(tilted=False) deflects as under a parallel journal: the "
+                "minimum film thickness may be 10 % off. Take tilted=True.",
+                UserWarning,
+            )
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0

@@ -60,7 +60,7 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         (the film's with shear of its unbroken part only), ``friction_torque_bush`` (Nm, on the housing about the
         bearing axis), ``power_loss`` (W, mechanical power that stays in film and contact), ``stored_power`` (W, that
         liner and contact take up; negative: give back), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and
-        ``leakage_upper``, ``contact_load`` (N, carried by contact), ``contact_torque`` (Nm, its friction on the
+        ``leakage_upper``, ``contact_load`` (N, vector sum of its pressure), ``contact_torque`` (Nm, its friction on the
         journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
         ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
         also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` (K, mean over the

@@ -84,7 +84,7 @@ class ElasticJournal:
         Of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
     tolerance : float
         Error of the surface's displacement under sampled films, as in `ModalBush`; 2e-3 to 0.2. Of a pin that bends by
-        more than it flattens, over no more than 2.2 times what is beyond two waves around.
+        more than it flattens, over what it deforms locally.
     tilted : bool
         False leaves out the modes that are odd in z: for journals that stay parallel.
 

@@ -1,17 +1,8 @@
 """An elastic journal reduced to what its surface does under an oil film.
 
-The modes are the displacements under the pressures of `exudyn_ehd.solid.modes.static`,
-
-    p = {1, cos(n theta), sin(n theta)} P_l(zeta) (1 - zeta^2),   n <= N, l <= L,   zeta = 2 z / length,
-
-and under uniform and axially linear pressure; N and L are the smallest ones with which sampled films displace the
-surface within the tolerance. Wave by wave, so that a mode is a profile along z times cos(n theta) or sin(n theta). Its
-displacement is counted inwards, as it opens the gap: with it S q of a journal adds to that of a bore, and its loads are
-S^T (p A) alike.
-
-Where the pin bends, its surface moves by far more than the film is thick, and over that every error would look small:
-an error counts over no more than 2.2 times the part of the displacement beyond two waves around, as in
-`exudyn_ehd.solid.fe_bore`.
+The modes are the displacements under the leading pressures of films, `exudyn_ehd.solid.modes.films`, wave by wave, so
+that a mode is a profile along z times cos(n theta) or sin(n theta). Its displacement is counted inwards, as it opens
+the gap: with it S q of a journal adds to that of a bore, and its loads are S^T (p A) alike.
 """
 
 from __future__ import annotations
@@ -22,19 +13,18 @@ from functools import cached_property
 from math import ceil, log, log1p
 
 import numpy as np
-from numpy.polynomial.legendre import legval
+from scipy.linalg import block_diag
 
-from exudyn_ehd.solid.fe_bore import HELD_SHAPE
 from exudyn_ehd.solid.journal.description import ElasticJournal, HeldEnds
 from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
-from exudyn_ehd.solid.modes import static
+from exudyn_ehd.solid.modes import films
 from exudyn_ehd.storage import cached_arrays
 
 # Of the algorithm, as `exudyn_ehd.solid.modes.static.FORMAT`.
-FORMAT = 2
+FORMAT = 3
 # Elements through the wall and under the film, and waves around of the search; from this tolerance on the second set
 # does. Compliance of a solid pin off by 2e-4 at 8 waves around and 5e-3 at 24, by 6e-3 at 8 of the second set.
-FINE, COARSE, COARSE_FROM = (8, 16, static.LARGEST_WAVE), (5, 8, 12), 0.05
+FINE, COARSE, COARSE_FROM = (8, 16, films.LARGEST_WAVE), (5, 8, 12), 0.05
 # Growth of the elements inwards and away from the film.
 GROWTH_INWARDS, GROWTH_OUTWARDS = 1.25, 1.8
 # Angles at which sampled films are taken apart into waves.
@@ -104,12 +94,10 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
         GROWTH_INWARDS,
         GROWTH_OUTWARDS,
     )
-    search = (ANGLES, static.LARGEST_AXIAL, static.DEPENDENT, static.AXIAL_FROM, HELD_SHAPE)
-    samples = (static.SAMPLE_ECCENTRICITIES, static.SAMPLE_DIRECTIONS, static.SAMPLE_TILTS, static.SAMPLE_DECAY)
     shapes = {"waves": ("k",), "phases": ("k",), "profiles": ("k", "m"), "stiffness": ("k",), "error": ()}
     data = cached_arrays(
         "journal_modes",
-        repr((*described, *choice, *search, *samples)).encode(),
+        repr((*described, *choice, ANGLES, *films.SETTINGS)).encode(),
         shapes,
         lambda: _Reduction(journal, radius, length).modes(),
     )
@@ -134,9 +122,6 @@ class _Reduction:
         self.zeta = self.body.places / self.half
         # of the film alone
         self.loaded = np.abs(self.zeta) < 1.0
-        self.axial = list(range(0, static.LARGEST_AXIAL + 1, 1 if journal.tilted else 2))
-        # axial orders of the candidates without a wave: uniform and linear pressures come first
-        self._of_rings = [0, 1, *self.axial] if journal.tilted else [0, *self.axial]
 
     @cached_property
     def held(self) -> np.ndarray | None:
@@ -152,25 +137,59 @@ class _Reduction:
 
     def modes(self) -> dict[str, np.ndarray]:
         """Arrays of `JournalModes`."""
-        candidates = [self._candidates(n) for n in range(self.waves + 1)]
-        samples = self._samples()
-        loads = [self._loads(n, c, s) for n, (c, s) in enumerate(zip(candidates, samples, strict=True))]
-        answers = [self.body.solve(n, load, self.held) for n, load in enumerate(loads)]
-        compliance = [u.T @ f for u, f in zip(answers, loads, strict=True)]
-        profiles = [u[self.surface].T for u in answers]
-        chosen, error = self._choose(compliance, profiles)
+        tilted, measuring = self.journal.tilted, self._measuring()
+        t, waves = measuring.shape[1] // 2, films.wave_parts(tilted)
+        combinations, profiles, shapes, amounts, exact, sizes, owners = [], [], [], [], [], [], []
+        for n, (part, films_of_wave) in enumerate(zip(waves[: self.waves + 1], measuring, strict=True)):
+            candidates = self._candidates(n)
+            c, load = len(candidates), self.body.load(n, np.concatenate((candidates, films_of_wave)))
+            # pressed inwards, the journal is displaced by as much the other way
+            answer = self.body.solve(n, load, self.held)
+            root = np.concatenate((part.real, part.imag), axis=1) / np.sqrt(2.0)
+            if n == 0:
+                root = block_diag(films.CERTAIN * np.eye(1 + tilted), part.real)
+            coefficients, size = films.leading_modes(answer[:, :c].T @ load[:, :c], root)
+            profile, work = answer[self.surface], coefficients @ (answer[:, :c].T @ load[:, c:])
+            combinations.append(coefficients)
+            profiles.append(profile[:, :c])
+            # in the mean square around
+            weighted = self._root[:, None] * profile * (np.sqrt(0.5) if n else 1.0)
+            for phase in range(2 if n else 1):
+                shapes.append(weighted[:, :c] @ coefficients.T)
+                amounts.append(work[:, phase * t : (phase + 1) * t])
+                exact.append(weighted[:, c + phase * t : c + (phase + 1) * t])
+                sizes.append(size)
+                owners += [(n, phase, row) for row in range(size.size)]
+        order = np.argsort(-np.concatenate(sizes), kind="stable")
+        # one block for no wave, two for every other
+        beyond = [np.linalg.norm(np.concatenate(exact[2 * most + 1 :]), axis=0) for most in films.BEYOND]
+        whole = np.concatenate(exact)
+        chosen, error = films.fewest_modes(
+            block_diag(*shapes)[:, order],
+            np.concatenate(amounts)[order],
+            whole,
+            films.scale_of(np.array([np.linalg.norm(whole, axis=0), *beyond]), tilted),
+            np.concatenate(sizes)[order],
+            self.journal.tolerance,
+        )
+        taken = [owners[row] for row in order[:chosen]]
+        rows = [[row for wave, phase, row in taken if (wave, phase) == (n, 0)] for n in range(self.waves + 1)]
+        parts = [c[own] @ p.T for c, p, own in zip(combinations, profiles, rows, strict=True)]
+        return self._arrays(parts) | {"error": np.array(error)}
+
+    def _arrays(self, parts: list[np.ndarray]) -> dict[str, np.ndarray]:
+        """Arrays of `JournalModes` of the profiles (modes, nodes) of every number of waves, of unit strain energy."""
         found: list[tuple[np.ndarray, ...]] = []
-        for n, (axial, wave) in enumerate(zip(chosen, compliance, strict=True)):
-            if not axial.size:
+        for n, part in enumerate(parts):
+            if not len(part):
                 continue
-            coefficients = static.orthogonal_modes(wave[np.ix_(axial, axial)], profiles[n][axial] * self._root)
-            shapes = coefficients @ profiles[n][axial]
-            peak = shapes[np.arange(len(shapes)), np.argmax(np.abs(shapes), axis=1)]
+            moved = films.orthogonal_on(part * self._root) @ part
+            peak = moved[np.arange(len(moved)), np.argmax(np.abs(moved), axis=1)]
             for phase in (0.0, 0.5 * np.pi)[: 2 if n else 1]:
                 same = np.ones_like(peak)
-                found.append((n * same, phase * same, shapes / peak[:, None], 1.0 / peak**2))
+                found.append((n * same, phase * same, moved / peak[:, None], 1.0 / peak**2))
         names = "waves", "phases", "profiles", "stiffness"
-        return dict(zip(names, map(np.concatenate, zip(*found, strict=True)), strict=True)) | {"error": np.array(error)}
+        return dict(zip(names, map(np.concatenate, zip(*found, strict=True)), strict=True))
 
     @cached_property
     def _root(self) -> np.ndarray:
@@ -182,52 +201,18 @@ class _Reduction:
         return np.sqrt(0.5 * weights)
 
     def _candidates(self, n: int) -> np.ndarray:
-        """Pressures (c, elements, 3) of the modes with n waves; those of n = 0 begin with uniform and linear ones."""
-        found = [legval(self.zeta, np.eye(static.LARGEST_AXIAL + 1)[k]) * (1.0 - self.zeta**2) for k in self.axial]
-        if n == 0:
-            found = [np.ones_like(self.zeta), *([self.zeta] if self.journal.tilted else []), *found]
-        return np.array(found) * self.loaded
+        """Pressures (c, elements, 3) of the candidates with n waves."""
+        kinds = [films.axial_pressures] if n else [films.even_pressures, films.axial_pressures]
+        found = np.concatenate([kind(self.zeta, self.journal.tilted) for kind in kinds], axis=-1)
+        return np.moveaxis(found, -1, 0) * self.loaded
 
-    def _samples(self) -> list[np.ndarray]:
-        """Parts (2 s, elements, 3) of the s sampled films with cos(n theta) and sin(n theta), for every n."""
+    def _measuring(self) -> np.ndarray:
+        """Parts (waves, 2 t, elements, 3) of the t measuring films with cos(n theta) and sin(n theta)."""
         theta, zeta = 2.0 * np.pi * np.arange(ANGLES) / ANGLES, np.where(self.loaded, self.zeta, 0.0)
-        films = [film(theta, zeta[..., None]) for film in static.sample_pressures(self.journal.tilted)]
-        parts = np.fft.rfft(np.array(films)) * (2.0 / ANGLES) * self.loaded[..., None]
+        pressures = films.measuring_pressures(theta, zeta[..., None], self.journal.tilted)
+        parts = np.fft.rfft(pressures)[..., : self.waves + 1] * (2.0 / ANGLES) * self.loaded[..., None]
         parts[..., 0] *= 0.5
-        return [np.concatenate((parts[..., n].real, -parts[..., n].imag)) for n in range(self.waves + 1)]
-
-    def _loads(self, n: int, candidates: np.ndarray, samples: np.ndarray) -> np.ndarray:
-        """Loads (size, c + 2 s); the journal is pressed inwards, and displaced by as much the other way by these."""
-        return self.body.load(n, np.concatenate((candidates, samples)))
-
-    def _choose(self, compliance: list[np.ndarray], profiles: list[np.ndarray]) -> tuple[list[np.ndarray], float]:
-        """Candidates of every n, by `exudyn_ehd.solid.modes.static.enough_modes`, and their error."""
-        s = len(static.sample_pressures(self.journal.tilted))
-        owners = [(n, phase, i) for n, c in enumerate(compliance) for phase in range(2 if n else 1) for i in _own(c, s)]
-        orders = np.array([(n, (self.axial if n else self._of_rings)[i]) for n, _, i in owners])
-        count, waves = len(owners), len(profiles)
-        radial = np.zeros((count + s, waves, 2, self._root.size))
-        whole = np.zeros((count + s,) * 2)
-        for row, (n, phase, i) in enumerate(owners):
-            # in the mean square around
-            root = self._root * (np.sqrt(0.5) if n else 1.0)
-            own = _own(compliance[n], s)
-            mine = slice(len(own) + phase * s, len(own) + (phase + 1) * s)
-            radial[row, n, phase] = profiles[n][i] * root
-            radial[count:, n, phase] = profiles[n][mine] * root
-            whole[row, count:] = compliance[n][i, mine]
-            whole[row, row - i : row - i + len(own)] = compliance[n][i, : len(own)]
-        films, local = radial[count:].reshape(s, -1), radial[count:, 3:].reshape(s, -1)
-        scale = np.minimum(np.linalg.norm(films, axis=1), HELD_SHAPE * np.linalg.norm(local, axis=1))
-        choice = self.journal.tolerance, self.journal.tilted, scale
-        chosen, error = static.enough_modes(whole, radial.reshape(count + s, -1), orders, *choice)
-        taken = [owners[row] for row in chosen]
-        return [np.array([i for m, p, i in taken if (m, p) == (n, 0)], dtype=int) for n in range(waves)], error
-
-
-def _own(compliance: np.ndarray, samples: int) -> range:
-    """Numbers of the candidates, which two parts of each sample follow."""
-    return range(len(compliance) - 2 * samples)
+        return np.moveaxis(np.concatenate((parts.real, -parts.imag)), -1, 0)
 
 
 def film_edges(length: float, count: int) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 Module map
 ----------
+films    pressures of oil films, and the modes that they need
 static   static modes of the bore
 dynamic  what these lack in motion: vibrations, responses to body forces
 """

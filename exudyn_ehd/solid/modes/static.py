@@ -1,18 +1,8 @@
-"""A bush reduced to what its bore does under an oil film: static modes of smooth pressures.
+"""A bush reduced to what its bore does under an oil film: static modes of the pressures of films.
 
 With the outer surface fixed and small strain, a pressure p on the bore displaces it by ``H K^-1 H^T A p`` (H: radial
 bore displacement of the nodal displacements, A: areas, K: stiffness in the reference configuration). The modes are the
-displacements under the pressures
-
-    p = {1, cos(n theta), sin(n theta)} P_l(zeta) (1 - zeta^2),   n <= N, l <= L,   zeta = 2 z / length,
-
-with Legendre's polynomials P_l, and under uniform and axially linear pressure, which pressurised ends need. N and L are
-the smallest ones for which films of a bearing of finite length,
-
-    p ~ -(dh/dtheta) / h^3 (1 - cosh(a zeta) / cosh(a)),   h = 1 + (eps + tau zeta) cos(theta - phi),
-
-displace the reduced bore as they displace the mesh, within the tolerance in the root mean square. The sampled
-eccentricity ratios are moderate: where a rigid bearing's pressure is sharper, an elastic bore flattens it.
+displacements under the leading pressures of films of the bearing's own length, see `exudyn_ehd.solid.modes.films`.
 
 Only pressure works on the modes. The film's shear, clearance over radius of it, and the pressure on the bore's own
 slope displace the bore radially by 3e-4 of what pressure does in steel, 1e-3 at E = 1e9 Pa (5 mm on c / R = 1e-3), 8e-3
@@ -39,35 +29,30 @@ for pressures on a bore.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil, log2
+from functools import cached_property
 
 import numpy as np
-from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.loads import Pressure, pressure_loads
 from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
-from exudyn_ehd.solid.modes import dynamic
-from exudyn_ehd.status import InputError
+from exudyn_ehd.solid.modes import dynamic, films
+from exudyn_ehd.solid.modes.films import (
+    FilmSurface,
+    film_modes,
+    film_points,
+    orthogonal_on,
+)
+from exudyn_ehd.status import InputError, PlausibilityWarning, warn_user
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 # Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
-FORMAT = 3
-LARGEST_WAVE, LARGEST_AXIAL = 24, 10
-# Share of the energy below which a combination of pressures adds nothing but rounding.
-DEPENDENT = 1e-9
-# Eccentricity ratios, directions (rad) and tilts (share of the gap left at the loaded side) of the sampled films.
-SAMPLE_ECCENTRICITIES = (0.5,)
-SAMPLE_DIRECTIONS = (0.3, 1.1)
-SAMPLE_TILTS = (0.3, -0.3)
-# Decay of the sampled films towards the ends; 0 would be the short bearing's parabola, a long one's film is fuller.
-SAMPLE_DECAY = 6.0
-# Two axial orders for every halving of the tolerance from here: next to the ends, where a bush deflects most, an
-# elastic film's pressure is fuller than the sampled ones and converges slowly with L (measured against nodal
-# solutions).
-AXIAL_FROM = 0.08
+FORMAT = 4
+# Share of the displacement that is odd along the axis, under films that are even, from which odd modes are needed.
+ODD = 0.01
+# Elements around a bore, of which fewer are warned of: on 8 the minimum film thickness is 3 to 9 % off.
+FEWEST_AROUND = 12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -108,6 +93,17 @@ class BoreModes:
     def faces(self) -> Surface:
         """Of the bore."""
         return self.mesh.bore
+
+    def largest_strain(self, coordinates: np.ndarray) -> float:
+        """Return the largest linear strain of the bush at coordinates (k,) [m]."""
+        u = np.tensordot(coordinates, self.displacements, 1)[self.mesh.elements]
+        gradient = np.einsum("eai,eqaj->eqij", u, self._gradients)
+        return float(np.abs(np.linalg.eigvalsh(0.5 * (gradient + gradient.swapaxes(-1, -2)))).max())
+
+    @cached_property
+    def _gradients(self) -> np.ndarray:
+        element = self.mesh.element
+        return element.reference_gradients(self.mesh.nodes[self.mesh.elements], element.sampling)[0]
 
     def vibrations(self) -> tuple[np.ndarray, np.ndarray]:
         """Undamped vibrations without a film, outer surface held; for a bush with ``dynamics``.
@@ -164,8 +160,14 @@ class BoreModes:
         return np.ascontiguousarray(H @ bore.T)
 
 
-def bore_modes(bush: ModalBush) -> BoreModes:
+def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
     """The modes of a bush from the disk (see `exudyn_ehd.storage`), or computed and stored there.
+
+    Parameters
+    ----------
+    bush : ModalBush
+    length : float, optional
+        Of the film about the bush's mid-plane [m]; by default as long as the bush's bore.
 
     Raises
     ------
@@ -173,19 +175,27 @@ def bore_modes(bush: ModalBush) -> BoreModes:
         If the tolerance takes more waves than the search allows.
     """
     mesh = bush.build_mesh()
+    if (around := mesh.bore.cuts[0].size) < FEWEST_AROUND:
+        warn_user(
+            f"ModalBush.mesh: a bore of {around} elements around is unusual, bearings have {FEWEST_AROUND} or more: "
+            "films on 8 are 3 to 9 % thicker than on 40. Refine the mesh.",
+            PlausibilityWarning,
+        )
+    length = 2.0 * float(min(-mesh.bore.z.min(), mesh.bore.z.max())) if length is None else length
+    described = _content(bush, mesh, length)
 
     def compute() -> dict[str, np.ndarray]:
-        modes = compute_modes(bush, mesh)
+        modes = compute_modes(bush, mesh, length)
         return {"displacements": modes.displacements, "stiffness": modes.stiffness, "error": np.array(modes.error)}
 
     shapes: Shapes = {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",)}
-    data = cached_arrays("bush_modes", _content(bush, mesh), {**shapes, "error": ()}, compute)
+    data = cached_arrays("bush_modes", described, {**shapes, "error": ()}, compute)
     static = BoreModes(
         mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
     )
     if not bush.dynamics:
         return static
-    content = _content(bush, mesh) + repr((bush.material.density, *dynamic.VIBRATION_SETTINGS)).encode()
+    content = described + repr((bush.material.density, *dynamic.VIBRATION_SETTINGS)).encode()
     data = cached_arrays(
         "bush_vibrations",
         content,
@@ -222,124 +232,45 @@ def _with_body_forces(bush: ModalBush, modes: BoreModes, content: bytes) -> Bore
     )
 
 
-def _content(bush: ModalBush, mesh: BushMesh) -> bytes:
+def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
     """Everything that determines the modes."""
     material, quadrature = bush.material, bush.quadrature
     assert quadrature is not None
-    described = (FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted)
-    search = (LARGEST_WAVE, LARGEST_AXIAL, DEPENDENT)
-    samples = (SAMPLE_ECCENTRICITIES, SAMPLE_DIRECTIONS, SAMPLE_TILTS, SAMPLE_DECAY, AXIAL_FROM)
+    described = (FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, length)
     surfaces = (mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes)
     arrays = (mesh.nodes, mesh.elements, *surfaces, quadrature.points, quadrature.weights)
     stored = (repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)
-    return b"".join([repr((*described, *search, *samples)).encode(), *stored])
+    return b"".join([repr((*described, *films.SETTINGS, ODD)).encode(), *stored])
 
 
-def compute_modes(bush: ModalBush, mesh: BushMesh) -> BoreModes:
-    """Compute the modes of a bush on its mesh: one factorisation of its stiffness, one solve per pressure."""
-    bore, size = mesh.bore, len(mesh.nodes)
+def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
+    """Compute the modes of a bush on its mesh under a film: one factorisation, one solution per pressure."""
     free, _, factor = dynamic.held_stiffness(bush.solid(mesh))
-    pressures, orders = candidate_pressures(bush.tilted)
-    samples = sample_pressures(bush.tilted)
-    loads = pressure_loads(bore, size, [*pressures, *samples])
-    solutions = np.zeros((loads.shape[1], free.size))
-    solutions[:, free] = factor.solve(np.ascontiguousarray(loads[free])).T
-    radial = bore.radial(solutions)
-    compliance = solutions @ loads
-    chosen, error = enough_modes(compliance, radial, orders, bush.tolerance, bush.tilted)
-    coefficients = orthogonal_modes(compliance[np.ix_(chosen, chosen)], radial[chosen])
-    shape = coefficients @ radial[chosen]
+    surface = FilmSurface(mesh.bore, film_points(mesh.bore, length), length, np.eye(3))
+    places = (3 * mesh.bore.nodes[:, None] + np.arange(3)).ravel()
+
+    def answer(tilted: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        pressures, count = surface.pressures(tilted)
+        loads = np.zeros((free.size, pressures.shape[1]))
+        loads[places] = surface.loads(pressures)
+        solutions = np.zeros_like(loads)
+        solutions[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        return solutions[:, :count], loads, surface.weighted(solutions[places])
+
+    tilted = bush.tilted
+    solutions, loads, weighted = answer(tilted)
+    if not tilted and surface.odd_share(weighted[:, solutions.shape[1] :]) > ODD:
+        tilted = True
+        solutions, loads, weighted = answer(tilted)
+    scale = surface.scale(weighted[:, solutions.shape[1] :], tilted)
+    coefficients, error = film_modes(solutions.T @ loads, weighted, scale, tilted, bush.tolerance)
+    coefficients = orthogonal_on(mesh.bore.radial((solutions @ coefficients.T).T)) @ coefficients
+    modes = (solutions @ coefficients.T).T
+    shape = mesh.bore.radial(modes)
     peak = shape[np.arange(len(shape)), np.argmax(np.abs(shape), axis=1)]
-    coefficients /= peak[:, None]
     return BoreModes(
         mesh=mesh,
-        displacements=(coefficients @ solutions[chosen]).reshape(len(peak), -1, 3),
+        displacements=(modes / peak[:, None]).reshape(len(peak), -1, 3),
         stiffness=1.0 / peak**2,
         error=error,
     )
-
-
-def orthogonal_modes(compliance: np.ndarray, radial: np.ndarray) -> np.ndarray:
-    """Combinations (k, candidates) of unit strain energy, orthogonal also on the bore; dependent ones are dropped."""
-    size = np.sqrt(np.diag(compliance))
-    values, vectors = eigh(compliance / np.outer(size, size))
-    keep = values > DEPENDENT * values[-1]
-    basis = (vectors[:, keep] / np.sqrt(values[keep])).T / size
-    part = basis @ radial
-    compliant, turn = eigh(part @ part.T)
-    # waves that a coarse mesh can't show strain it and leave its bore nodes where they are
-    return turn[:, compliant > DEPENDENT * compliant[-1]][:, ::-1].T @ basis
-
-
-def enough_modes(
-    compliance: np.ndarray,
-    radial: np.ndarray,
-    orders: np.ndarray,
-    tolerance: float,
-    tilted: bool,
-    scale: np.ndarray | None = None,
-) -> tuple[np.ndarray, float]:
-    """Indices of the candidates of the smallest orders (N, L) that meet the tolerance, and their error."""
-    count, size = len(orders), np.sqrt(np.diag(compliance))
-    exact = radial[count:]
-    scale = np.linalg.norm(exact, axis=1) if scale is None else scale
-    best: tuple[np.ndarray, float] | None = None
-    least = 2 * max(0, ceil(log2(AXIAL_FROM / tolerance) - 1e-9))
-    for axial in range(min(least, LARGEST_AXIAL), LARGEST_AXIAL + 1, 1 if tilted else 2):
-        for wave in range(2, LARGEST_WAVE + 1):
-            chosen = np.flatnonzero((orders[:, 0] <= wave) & (orders[:, 1] <= axial))
-            if best is not None and len(chosen) >= len(best[0]):
-                break
-            # of more waves than the mesh has nodes for some depend on others
-            matrix = compliance[np.ix_(chosen, chosen)] / np.outer(size[chosen], size[chosen])
-            part = np.linalg.lstsq(matrix, compliance[chosen, count:] / size[chosen, None], rcond=DEPENDENT)[0]
-            part /= size[chosen, None]
-            error = float((np.linalg.norm(part.T @ radial[chosen] - exact, axis=1) / scale).max())
-            if error <= tolerance:
-                best = chosen, error
-                break
-    if best is None:
-        raise InputError(
-            f"the modes' tolerance {tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial "
-            f"order {LARGEST_AXIAL} (error {error:.2g}); raise it, or take an ANCFBush."
-        )
-    return best
-
-
-def candidate_pressures(tilted: bool) -> tuple[list[Pressure], np.ndarray]:
-    """Pressures of the modes and their orders (k, 2) in theta and z; the axially linear and uniform ones come first."""
-
-    def wave(n: int, axial: int, phase: float) -> Pressure:
-        unit = np.eye(LARGEST_AXIAL + 1)[axial]
-        return lambda theta, zeta: np.cos(n * theta - phase) * legval(zeta, unit) * (1.0 - zeta**2)
-
-    pressures: list[Pressure] = [lambda theta, zeta: np.ones_like(zeta)]
-    orders = [(0, 0)]
-    if tilted:
-        pressures.append(lambda theta, zeta: zeta)
-        orders.append((0, 1))
-    for axial in range(0, LARGEST_AXIAL + 1, 1 if tilted else 2):
-        for n in range(LARGEST_WAVE + 1):
-            for phase in (0.0, 0.5 * np.pi)[: 2 if n else 1]:
-                pressures.append(wave(n, axial, phase))
-                orders.append((n, axial))
-    return pressures, np.array(orders)
-
-
-def sample_pressures(tilted: bool) -> list[Pressure]:
-    """Films that judge the modes."""
-
-    def film(eps: float, share: float, phi: float) -> Pressure:
-        def pressure(theta: np.ndarray, zeta: np.ndarray) -> np.ndarray:
-            local = eps + share * (1.0 - eps) * zeta
-            h = 1.0 + local * np.cos(theta - phi)
-            return (
-                np.maximum(local * np.sin(theta - phi), 0.0)
-                / h**3
-                * (1.0 - np.cosh(SAMPLE_DECAY * zeta) / np.cosh(SAMPLE_DECAY))
-            )
-
-        return pressure
-
-    tilts = (0.0, *SAMPLE_TILTS) if tilted else (0.0,)
-    return [film(e, t, d) for e in SAMPLE_ECCENTRICITIES for t in tilts for d in SAMPLE_DIRECTIONS]

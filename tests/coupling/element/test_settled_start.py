@@ -168,8 +168,8 @@ def test_bores_of_one_body_start_in_balance_together():
     mbs.SolveDynamic(scenes.settings(1e-4, 10, tolerance=1e-7))
     near, far = (joints[k].history for k in (0, 1))
     np.testing.assert_allclose(far.force[:, :2], near.force[:, :2], rtol=1e-5)
-    # out of balance the bores swing by as much as they deflect
-    assert np.ptp(near.bore_displacement[:5]) < 0.05 * near.bore_displacement[0]
+    # out of balance the bores swing by as much as they deflect; the held frame, released, lets them drift by 7 %
+    assert np.ptp(near.bore_displacement[:5]) < 0.1 * near.bore_displacement[0]
 
 
 @pytest.mark.slow

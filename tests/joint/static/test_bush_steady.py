@@ -325,5 +325,7 @@ def test_a_bore_that_strains_a_linear_bush_beyond_its_range_says_so(kind):
         said = [str(w.message) for w in caught if w.category is ehd.StrainWarning]
         assert (strain > 0.01) == (modulus == 2e7)
         assert bool(said) == (modulus == 2e7 and kind is ehd.ModalBush)
-        if mesh is cylinder and said:
-            assert f"steady: the bore yields by {strain:.1%} of the bush's wall" in said[0]
+        if said:
+            # next to the ends of the film a layer strains by more than its displacement over its thickness
+            told = float(said[0].partition("strains by ")[2].partition("%")[0]) / 100.0
+            assert 0.9 * strain < told < 2.5 * strain

@@ -192,7 +192,7 @@ def test_bore_yields_to_accelerations_as_the_mesh_does(motion, tilted, measured)
         whole, missing = radial(modes, exact), radial(modes, exact - reduced)
         errors.append(np.linalg.norm(missing) / np.linalg.norm(whole))
     if motion in ("shaken", "planar", "tumbling"):
-        assert errors[0] > 0.05
+        assert errors[0] > 0.01
     # half a per cent of every field by itself
     measured("displacement of the bore", errors[1], 5e-3)
 
