@@ -165,17 +165,13 @@ if TYPE_CHECKING:
     from exudyn_ehd.studies.recommend import Recommendation, recommend
     from exudyn_ehd.studies.steps import StepRecommendation, recommend_steps
 else:
-    _GONE = {"JournalLeakage": "give ThrustFaces(inner_pressures=...) the pressures at the inner edges"}
 
     def __getattr__(name):
-        if name in _GONE:
-            raise InputError(f"exudyn_ehd.{name} is not supported any more; {_GONE[name]}.")
+        exudyn_ehd.status.require_supported(name)
         if name in _LAZY:
             return exudyn_ehd.status.hint_arguments(getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name))
-        meant = exudyn_ehd.status.did_you_mean(name, __all__)
-        raise AttributeError(
-            f"module 'exudyn_ehd' has no attribute {name!r}" + f"; did you mean {meant!r}?" * bool(meant)
-        )
+        hint = f"; did you mean {meant!r}?" if (meant := exudyn_ehd.status.did_you_mean(name, __all__)) else ""
+        raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}{hint}")
 
 
 def __dir__() -> list[str]:

@@ -323,6 +323,19 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     return near[found[0]] if found else ""
 
 
+# Public names and arguments that are not supported any more, with what takes their place.
+GONE = {
+    "JournalLeakage": "give ThrustFaces(inner_pressures=...) the pressures at the inner edges",
+    "ThrustFaces.feed": "give inner_pressures=... the pressures at the inner edges",
+}
+
+
+def require_supported(name: str) -> None:
+    """Raise `InputError` with the substitute of a name or an argument that is not supported any more."""
+    if name in GONE:
+        raise InputError(f"{name} is not supported any more; {GONE[name]}.")
+
+
 def hint_arguments(item: Item) -> Item:
     """Let a description name the argument that was meant by one that it does not have; return any other item as it is.
 
@@ -335,6 +348,7 @@ def hint_arguments(item: Item) -> Item:
     @functools.wraps(own)
     def init(self: object, *args: object, **given: object) -> None:
         for name in given.keys() - names:
+            require_supported(f"{item.__name__}.{name}")
             meant = did_you_mean(name, names)
             about = re.search(rf"\n +{meant} : .*\n +([^.]*)\.", item.__doc__ or "") if meant else None
             meaning = f" ({' '.join(about[1].split())})" if about else ""

@@ -58,3 +58,18 @@ def test_descriptions_stay_what_they_were():
         ehd.Hole(angle=1.0)
     before = ehd.Hole.__init__
     assert hint_arguments(ehd.Hole).__init__ is before and hint_arguments(ehd.steady) is ehd.steady
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: ehd.JournalLeakage, r"JournalLeakage is not supported any more; give ThrustFaces\(inner_pressures"),
+        (
+            lambda: ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.04, clearance=2e-5, feed=None),
+            r"ThrustFaces.feed is not supported any more; give inner_pressures",
+        ),
+    ],
+)
+def test_what_is_gone_names_its_substitute(call, message):
+    with pytest.raises(ehd.InputError, match=message):
+        call()

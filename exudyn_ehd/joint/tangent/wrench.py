@@ -25,12 +25,7 @@ from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import chain_links, contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import (
-    add_drag_by_pose,
-    add_drag_rows,
-    drag_by_deflection,
-    pulls_unevenly,
-)
+from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection, pulls_unevenly
 from exudyn_ehd.joint.tangent.line import add_by_motion, by_fills, true_fills, true_line
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
