@@ -154,6 +154,7 @@ SHARED = {
     "banded.lending",
     "cavitation.closures",
     "cavitation.active_set",
+    "cavitation.steady_oil",
     "models",
     "banded.numbering",
     "banded.substitution",
