@@ -143,3 +143,29 @@ def test_random_films_after_distant_ones():
 def test_many_random_films_after_distant_ones():
     """2 000 states of every closure, bore and law that go together."""
     assert _compare(_bearings(BORES, LAWS), 28, 2) > 2000
+
+
+@pytest.mark.parametrize("line_in_cells", [False, True])
+def test_dry_films_with_rates_that_last(line_in_cells):
+    """Cavities whose gap closes faster than their oil flows out may stay dry or fill up: two films for one motion."""
+    bearing = ehd.JournalBearing(
+        journal_radius=RADIUS,
+        length=LENGTH,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=VISCOSITY),
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+        cavitation=ehd.ElrodAdams(line_in_cells=line_in_cells),
+    )
+    warm, cold, rng, found = build_model(bearing), build_model(bearing), np.random.default_rng(3), 0
+    for _ in range(400):
+        eps, a = rng.uniform(0.05, 0.98), rng.uniform(0.0, 2.0 * math.pi)
+        rates = (1.0 - eps) * CLEARANCE * 10.0 ** rng.uniform(0.0, 4.0) * rng.normal(size=2)
+        place = eps * CLEARANCE * np.array([math.cos(a), math.sin(a)])
+        motion = np.array([*place, 0, 0, *rates, 0, 0, SPEED * rng.choice([-1.0, 0.0, 0.1, 1.0]), 0])
+        cold.forget()
+        one, other = warm.evaluate(motion), cold.evaluate(motion)
+        assert one.status is other.status, motion
+        if one.status is ehd.Status.CONVERGED:
+            found += 1
+            assert np.abs(one.wrench - other.wrench).max() <= SAME * np.abs(other.wrench).max(), motion
+    assert found > 200

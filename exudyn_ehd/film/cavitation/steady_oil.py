@@ -8,8 +8,8 @@ and every vertex connected to one with s > 0, R is an M-function and the film th
 Anal. Appl. 32 (1970) 274). Two kinds of films do not have that:
 
 * The gap closes at a rate that lasts. Where it closes faster than oil flows out, a dry cavity may stay dry or fill up.
-  The film is then the largest one, which a cold start or pseudo time reaches from the full side. Over 4 000 random
-  films warm starts without such cavities have led to the same.
+  The film is then the largest one, which a cold start or pseudo time reaches from the full side: such films take no
+  warm start.
 * Oil goes round in a row that has neither prescribed vertices nor pressure (`has_unfed_row`), without rates and axial
   Couette flow: ``fill H`` is the same all around, and any number up to the minimum film thickness. A row whose
   neighbour has pressure is fed by it.
@@ -19,7 +19,6 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
-from exudyn_ehd.film.cavitation.lagging_void import outflow_of
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.status import Status
 
@@ -28,14 +27,6 @@ from exudyn_ehd.status import Status
 NO_PRESSURE = 1e-9
 # Imbalance of a vertex over the largest flow that drives the film; larger ones are those of a singular matrix.
 BALANCED = 1e-8
-
-
-def stays_dry(s: FilmSystem) -> bool:
-    """Return whether the gap of a cavity closes faster than its oil flows out: one that is dry does not fill up."""
-    if not s.closes:
-        return False
-    fill, closing, leaving = outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, s.fill)
-    return bool(np.any((fill < 1.0) & (closing + leaving <= 0.0)))
 
 
 def status_of(s: FilmSystem, status: Status) -> Status:

@@ -15,7 +15,7 @@ from exudyn_ehd.film.cavitation.line_newton import refine_factor
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.oil_line.newton import factor_on_curve
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
-from exudyn_ehd.film.cavitation.steady_oil import status_of, stays_dry
+from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
@@ -160,10 +160,13 @@ class FilmSolver:
             np.copyto(s.linear_pressure, s.pressure)
         if self.closure.conserves_mass:
             self._set_storage(mass_old, step)
+        if s.closes:
+            # from another film, cavities may stay dry that fill up from a full one
+            self.forget()
         was_warm = self.work.warm
         steps = 0 if was_warm else self._guess_from_coarse(mass_old, step)
         status, fine_steps = self.closure.solve(s, self.work)
-        if was_warm and ((status is Status.NOT_CONVERGED and self.coarse is not None) or stays_dry(s)):
+        if was_warm and status is Status.NOT_CONVERGED and self.coarse is not None:
             # a start from another state can mislead where the film itself is benign
             self.forget()
             steps += fine_steps + self._guess_from_coarse(mass_old, step)
