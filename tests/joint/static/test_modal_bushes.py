@@ -160,7 +160,8 @@ def test_a_bush_held_at_its_end_has_odd_modes_for_parallel_journals():
 @IGNORED
 def test_a_body_that_is_not_symmetric_about_its_bore_has_odd_modes_for_parallel_journals():
     mesh = held_at_its_end()
-    place = {"position": [0, 0, 0], "radius": R + C, "length": R, "fixed_nodes": mesh.outer.nodes, "tolerance": 0.1}
+    held = np.setdiff1d(mesh.outer.nodes, mesh.bore.nodes)
+    place = {"position": [0, 0, 0], "radius": R + C, "length": R, "fixed_nodes": held, "tolerance": 0.1}
     aligned, tilted = (
         ehd.add_bore_modes(fem_of(mesh, STEEL), axis=[0, 0, 1], **place, tilted=tilted) for tilted in (False, True)
     )
