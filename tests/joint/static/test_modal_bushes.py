@@ -11,7 +11,7 @@ from tests.solid_tetrahedra import tet_mesh
 
 R, C = 0.025, 25e-6
 KINDS = "plain", "long", "seat", "foot", "end"
-FILMS = 200
+FILMS = 600
 
 
 def draw(seed):
@@ -91,12 +91,13 @@ def test_films_on_many_modal_bushes_are_those_on_the_mesh():
 
 
 @pytest.mark.parametrize(
-    "seed", [0, 1, pytest.param(30, marks=pytest.mark.slow), pytest.param(6, marks=pytest.mark.slow)]
+    "seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (6, 30, 501, 505, 506, 510, 511))]
 )
 def test_told_error_is_that_under_films_of_all_directions(seed):
     """Solutions for films that the choice of modes does not know, at places of its own between the nodes.
 
-    The told error is the largest of its films; others, on tilted, wavy and crowned bores, find 0.67 to 1.5 of it.
+    Their ratios are 0.5 to 0.8, with slopes, waves and crowns from none to the measuring films'. The largest error of
+    them is 0.67 to 1.5 of the told one.
     """
     _, mesh, material, bearing, pose = draw(seed)
     bush, length = ehd.ModalBush(mesh=mesh, material=material, tilted=any(pose["tilt"])), bearing["length"]
@@ -109,11 +110,11 @@ def test_told_error_is_that_under_films_of_all_directions(seed):
     free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
     loads, pressures = np.zeros((mesh.nodes.size, FILMS)), np.zeros((T.size, FILMS))
     for k in range(FILMS):
-        e, phi, decay = rng.uniform(0.65, 0.75), rng.uniform(0.0, 2.0 * np.pi), rng.choice((2.5, 9.0, 20.0))
-        slope = rng.uniform(0.4, 0.5) * (1.0 - e) * bush.tilted * np.exp(1j * rng.uniform(0.0, 2.0 * np.pi))
+        e, phi, decay = rng.uniform(0.5, 0.8), rng.uniform(0.0, 2.0 * np.pi), 2.0 * 10.0 ** rng.uniform(0.0, 1.0)
+        slope = rng.uniform(0.0, 0.5) * (1.0 - e) * bush.tilted * np.exp(1j * rng.uniform(0.0, 2.0 * np.pi))
         kind = rng.integers(3)
-        slope, wave = slope * (kind == 0), (kind == 1) * rng.uniform(0.3, 0.35) * (1.0 - e)
-        crown, psi = (kind == 2) * rng.choice((-0.4, 0.6)) * (1.0 - e), rng.uniform(0.0, 2.0 * np.pi)
+        slope, wave = slope * (kind == 0), (kind == 1) * rng.uniform(0.0, 0.35) * (1.0 - e)
+        crown, psi = (kind == 2) * rng.uniform(-0.4, 0.6) * (1.0 - e), rng.uniform(0.0, 2.0 * np.pi)
         gap = 1.0 + e * np.cos(T - phi) + Z * (slope * np.exp(-1j * T)).real + wave * np.cos(3.0 * T - psi)
         gap += crown * Z**2
         rise = e * np.sin(T - phi) - Z * (slope * np.exp(-1j * T)).imag + 3.0 * wave * np.sin(3.0 * T - psi)
