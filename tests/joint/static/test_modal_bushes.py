@@ -82,7 +82,11 @@ def test_films_on_modal_bushes_are_those_on_the_mesh(seed):
 @IGNORED
 @pytest.mark.slow
 def test_films_on_many_modal_bushes_are_those_on_the_mesh():
-    """Within 1 %; on a foot of 1.1 rad within 2 %, as the film's shear, which modes leave out, rocks it."""
+    """Within 1 %; on a foot of 1.1 rad within 2 %, as the film's shear, which modes leave out, rocks it.
+
+    A third of the meshes are tetrahedra. Apart from the draw, 10 bushes 3 to 4 times as long as their film were within
+    0.1 % of the peak and 0.5 % of the minimum film thickness, 10 on tetrahedra within 0.4 and 0.7 %, on a foot 1.4 %.
+    """
     found = [compare(seed) for seed in range(150)]
     for kind in KINDS:
         errors = np.array([e for k, e in found if k == kind and e is not None])
@@ -91,7 +95,7 @@ def test_films_on_many_modal_bushes_are_those_on_the_mesh():
 
 
 @pytest.mark.parametrize(
-    "seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (6, 30, 501, 505, 506, 510, 511))]
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 6, 30, 501, 505, 506, 510, 511))]
 )
 def test_told_error_is_that_under_films_of_all_directions(seed):
     """Solutions for films that the choice of modes does not know, at places of its own between the nodes.

@@ -147,7 +147,7 @@ def test_modes_are_kept_on_disk(monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize(("held", "inner"), [("bosses", 0.0), ("free", 0.005)])
 def test_films_of_the_default_tolerance(held, inner):
-    """Aligned, within 0.1 % of the peak and 0.5 % of the thinnest film; the table of solid/README.md."""
+    """Aligned, within 0.1 % of the peak and 0.5 % of the thinnest film, as solid/README.md says."""
     films = [
         ehd.steady(bearing(pin(held, inner_radius=inner, tolerance=tolerance)), speed=400.0, eccentricity_ratio=0.9)
         for tolerance in (0.02, 0.005)
