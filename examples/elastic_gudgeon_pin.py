@@ -57,7 +57,7 @@ def small_end(*, quick: bool) -> ehd.JournalBearing:
         radial_clearance=CLEARANCE,
         lubricant=ehd.Lubricant(viscosity=0.012, pressure_law=ehd.RoelandsPressure(coefficient=1.5e-8)),
         asperity=ehd.GreenwoodTripp(composite_roughness=0.3e-6, composite_modulus=1.15e11),
-        film=ehd.FiniteLength(n_theta=64, n_z=8) if quick else ehd.FiniteLength(n_theta=96, n_z=12),
+        film=ehd.FiniteLength(n_theta=64 if quick else 96, n_z=12, stretch=0.9),
     )
 
 

@@ -41,6 +41,7 @@ Source of the idea: L. Sirovich, Quarterly of Applied Mathematics 45 (1987) 561;
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -56,10 +57,11 @@ from exudyn_ehd.status import InputError
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
 # Films of the set and those that measure the error: eccentricity ratios; slopes and waves of the gap (shares of the
 # gap left at the loaded side); phases of both (rad, from the direction of the eccentricity); numbers of waves; crowns
-# (such shares that the ends are wider by); decays towards the ends. A wider set takes more modes.
+# (such shares that the ends are wider by); decays towards the ends. A wider set takes more modes. The phases are those
+# of the mirror image too, whose modes are as many.
 PHASES = 0.0, 0.5 * np.pi, np.pi, 1.5 * np.pi
 SET = (0.3, 0.6, 0.85), (0.5,), PHASES, (2, 3), (-0.5, 1.0), (0.5, 4.0, 12.0, 40.0)
-MEASURE = (0.5, 0.75), (0.5,), (0.8, 2.4, 3.9, 5.5), (3,), (-0.4, 0.6), (2.0, 20.0)
+MEASURE = (0.5, 0.75), (0.5,), (0.8, 2.4, 0.8 + np.pi, 2.4 + np.pi), (3,), (-0.4, 0.6), (2.0, 20.0)
 # Waves of the gap over its slope.
 WAVY = 0.7
 # Directions of the eccentricity in the films that measure the error, rad: by the golden angle, so that none lies to
@@ -74,6 +76,8 @@ LEAST_SHARE = 0.1
 DEPENDENT = 1e-11
 # Weight of uniform and linear pressures over that of all films: their modes leave no more than its inverse of them.
 CERTAIN = 1e3
+# Share of the displacement that is odd along the axis, under films that are even, from which odd modes are needed.
+ODD = 0.01
 # Singular values this close belong to a pair, cos and sin, that the number of modes must not part.
 PAIR = 1e-3
 # Vertices around and along of the fit of films by candidates.
@@ -92,6 +96,7 @@ SETTINGS = (
     DEPENDENT,
     CERTAIN,
     PAIR,
+    ODD,
     FIT,
 )
 
@@ -169,6 +174,61 @@ class FilmSurface:
         """Largest share of `weighted` displacements that is linear in zeta, up to two waves around."""
         odd = self._fields(self.zeta[:, None] * self._waves(2))
         return float((np.linalg.norm(odd.T @ weighted, axis=0) / np.linalg.norm(weighted, axis=0)).max())
+
+
+class Answers(NamedTuple):
+    """Nodal displacements (3 m, c) of a body under the candidates, and what belongs to them.
+
+    Attributes
+    ----------
+    solutions : ndarray, shape (3 m, c)
+    loads : ndarray, shape (3 m, c + t)
+        Nodal forces of the candidates and of the measuring films.
+    seen : ndarray, shape (p, c + t)
+        What the film sees of the displacements under both, as `FilmSurface.weighted`.
+    tilted : bool
+        With pressures that are odd in z.
+    """
+
+    solutions: np.ndarray
+    loads: np.ndarray
+    seen: np.ndarray
+    tilted: bool
+
+
+def answers(
+    surface: FilmSurface,
+    places: np.ndarray,
+    solve: Callable[[np.ndarray], np.ndarray],
+    size: int,
+    tilted: bool,
+    without_rigid: bool = False,
+) -> Answers:
+    """What a body does under the films; odd pressures come in if it answers even ones by odd displacements.
+
+    Parameters
+    ----------
+    surface : FilmSurface
+    places : ndarray of int
+        Of the coordinates of its faces' nodes in those of the body.
+    solve : callable
+        Displacements of the held body under nodal forces, both (size, k).
+    size : int
+        Number of the body's coordinates.
+    tilted : bool
+    without_rigid : bool
+        The film does not see the rigid motion of the bore: it is the joint's.
+    """
+    pressures, count = surface.pressures(tilted)
+    loads = np.zeros((size, pressures.shape[1]))
+    loads[places] = surface.loads(pressures)
+    solutions = solve(loads)
+    seen = surface.weighted(solutions[places])
+    if without_rigid:
+        seen = surface.without_rigid(seen)
+    if not tilted and surface.odd_share(seen[:, count:]) > ODD:
+        return answers(surface, places, solve, size, True, without_rigid)
+    return Answers(solutions[:, :count], loads, seen, tilted)
 
 
 def film_points(faces: Surface | BoreFaces, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

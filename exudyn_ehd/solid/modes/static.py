@@ -38,19 +38,12 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
 from exudyn_ehd.solid.modes import dynamic, films
-from exudyn_ehd.solid.modes.films import (
-    FilmSurface,
-    film_modes,
-    film_points,
-    orthogonal_on,
-)
+from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points, orthogonal_on
 from exudyn_ehd.status import InputError, PlausibilityWarning, warn_user
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 # Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
 FORMAT = 4
-# Share of the displacement that is odd along the axis, under films that are even, from which odd modes are needed.
-ODD = 0.01
 # Elements around a bore, of which fewer are warned of: on 8 the minimum film thickness is 3 to 9 % off.
 FEWEST_AROUND = 12
 
@@ -240,7 +233,7 @@ def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
     surfaces = (mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes)
     arrays = (mesh.nodes, mesh.elements, *surfaces, quadrature.points, quadrature.weights)
     stored = (repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)
-    return b"".join([repr((*described, *films.SETTINGS, ODD)).encode(), *stored])
+    return b"".join([repr((*described, *films.SETTINGS)).encode(), *stored])
 
 
 def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
@@ -249,21 +242,14 @@ def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
     surface = FilmSurface(mesh.bore, film_points(mesh.bore, length), length, np.eye(3))
     places = (3 * mesh.bore.nodes[:, None] + np.arange(3)).ravel()
 
-    def answer(tilted: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        pressures, count = surface.pressures(tilted)
-        loads = np.zeros((free.size, pressures.shape[1]))
-        loads[places] = surface.loads(pressures)
-        solutions = np.zeros_like(loads)
-        solutions[free] = factor.solve(np.ascontiguousarray(loads[free]))
-        return solutions[:, :count], loads, surface.weighted(solutions[places])
+    def solve(loads: np.ndarray) -> np.ndarray:
+        out = np.zeros_like(loads)
+        out[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        return out
 
-    tilted = bush.tilted
-    solutions, loads, weighted = answer(tilted)
-    if not tilted and surface.odd_share(weighted[:, solutions.shape[1] :]) > ODD:
-        tilted = True
-        solutions, loads, weighted = answer(tilted)
-    scale = surface.scale(weighted[:, solutions.shape[1] :], tilted)
-    coefficients, error = film_modes(solutions.T @ loads, weighted, scale, tilted, bush.tolerance)
+    solutions, loads, seen, tilted = answers(surface, places, solve, free.size, bush.tilted)
+    scale = surface.scale(seen[:, solutions.shape[1] :], tilted)
+    coefficients, error = film_modes(solutions.T @ loads, seen, scale, tilted, bush.tolerance)
     coefficients = orthogonal_on(mesh.bore.radial((solutions @ coefficients.T).T)) @ coefficients
     modes = (solutions @ coefficients.T).T
     shape = mesh.bore.radial(modes)

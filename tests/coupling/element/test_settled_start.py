@@ -122,8 +122,8 @@ def tube():
     return fem
 
 
-def carrier(order, clearances=(C, C), moved=False):
-    """The tube, and a journal in its two bores; joints are made in ``order``."""
+def carrier(order, clearances=(C, C), moved=False, released=True):
+    """The tube, and a journal in its two bores; joints are made in ``order``. Not released, both bodies stay."""
     fem = tube()
     mbs = scenes.new_system()
     parts = ObjectFFRFreducedOrderInterface(fem, rigidBodyNodeType="NodeType.RotationRxyz").AddObjectFFRFreducedOrder(
@@ -132,12 +132,17 @@ def carrier(order, clearances=(C, C), moved=False):
     if moved:
         size = len(mbs.GetNodeParameter(parts["nGenericODE2"], "referenceCoordinates"))
         mbs.SetNodeParameter(parts["nGenericODE2"], "initialCoordinates", [1e-7] * size)
+    heavy = 1.0 if released else 1e6
     journal = mbs.CreateRigidBody(
-        inertia=RigidBodyInertia(2.0, np.diag([4e-3, 4e-3, 1e-3])),
+        inertia=RigidBodyInertia(2.0 * heavy, heavy * np.diag([4e-3, 4e-3, 1e-3])),
         nodeType=exu.NodeType.RotationRxyz,
         initialAngularVelocity=[0, 0, SPEED],
         initialDisplacement=[PLACE[0] * C, PLACE[1] * C, 0],
     )
+    ground = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(eii.NodePointGround()), coordinate=0))
+    for k in () if released else range(6):
+        frame = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=parts["nRigidBody"], coordinate=k))
+        mbs.AddObject(eii.CoordinateConstraint(markerNumbers=[ground, frame]))
     joints = {}
     for k in order:
         bearing = ehd.JournalBearing(
@@ -161,15 +166,20 @@ def carrier(order, clearances=(C, C), moved=False):
     return mbs, joints, modes
 
 
-def test_bores_of_one_body_start_in_balance_together():
-    """What is the same at both ends is so in the run."""
-    mbs, joints, modes = carrier((0, 1))
+@pytest.mark.parametrize("released", [False, True])
+def test_bores_of_one_body_start_in_balance_together(released):
+    """What is the same at both ends is so in the run.
+
+    Out of balance the bores swing by as much as they deflect. Held, they stay; released, the tube flies off and swings,
+    which moves the bores by 3.6 % in the first steps, with modes of the tolerance 0.02 too.
+    """
+    mbs, joints, modes = carrier((0, 1), released=released)
     assert np.abs(modes).max() > 1e-8
     mbs.SolveDynamic(scenes.settings(1e-4, 10, tolerance=1e-7))
     near, far = (joints[k].history for k in (0, 1))
     np.testing.assert_allclose(far.force[:, :2], near.force[:, :2], rtol=1e-5)
-    # out of balance the bores swing by as much as they deflect; the held frame, released, lets them drift by 7 %
-    assert np.ptp(near.bore_displacement[:5]) < 0.1 * near.bore_displacement[0]
+    # Newton's tolerance leaves 1e-6 of the held ones
+    assert np.ptp(near.bore_displacement[:5]) < (0.05 if released else 1e-5) * near.bore_displacement[0]
 
 
 @pytest.mark.slow

@@ -6,11 +6,12 @@ from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
 from exudyn_ehd.solid.modes.static import bore_modes
+from tests.finite_elements import fem_of
 from tests.solid_tetrahedra import tet_mesh
 
 R, C = 0.025, 25e-6
 KINDS = "plain", "long", "seat", "foot", "end"
-FILMS = 200
+FILMS = 600
 
 
 def draw(seed):
@@ -81,7 +82,11 @@ def test_films_on_modal_bushes_are_those_on_the_mesh(seed):
 @IGNORED
 @pytest.mark.slow
 def test_films_on_many_modal_bushes_are_those_on_the_mesh():
-    """Within 1 %; on a foot of 1.1 rad within 2 %, as the film's shear, which modes leave out, rocks it."""
+    """Within 1 %; on a foot of 1.1 rad within 2 %, as the film's shear, which modes leave out, rocks it.
+
+    A third of the meshes are tetrahedra. Apart from the draw, 10 bushes 3 to 4 times as long as their film were within
+    0.1 % of the peak and 0.5 % of the minimum film thickness, 10 on tetrahedra within 0.4 and 0.7 %, on a foot 1.4 %.
+    """
     found = [compare(seed) for seed in range(150)]
     for kind in KINDS:
         errors = np.array([e for k, e in found if k == kind and e is not None])
@@ -90,12 +95,13 @@ def test_films_on_many_modal_bushes_are_those_on_the_mesh():
 
 
 @pytest.mark.parametrize(
-    "seed", [0, 1, pytest.param(30, marks=pytest.mark.slow), pytest.param(6, marks=pytest.mark.slow)]
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 6, 30, 501, 505, 506, 510, 511))]
 )
 def test_told_error_is_that_under_films_of_all_directions(seed):
     """Solutions for films that the choice of modes does not know, at places of its own between the nodes.
 
-    The told error is the largest of its films; others, on tilted, wavy and crowned bores, find 0.67 to 1.5 of it.
+    Their ratios are 0.5 to 0.8, with slopes, waves and crowns from none to the measuring films'. The largest error of
+    them is 0.67 to 1.5 of the told one.
     """
     _, mesh, material, bearing, pose = draw(seed)
     bush, length = ehd.ModalBush(mesh=mesh, material=material, tilted=any(pose["tilt"])), bearing["length"]
@@ -108,11 +114,11 @@ def test_told_error_is_that_under_films_of_all_directions(seed):
     free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
     loads, pressures = np.zeros((mesh.nodes.size, FILMS)), np.zeros((T.size, FILMS))
     for k in range(FILMS):
-        e, phi, decay = rng.uniform(0.65, 0.75), rng.uniform(0.0, 2.0 * np.pi), rng.choice((2.5, 9.0, 20.0))
-        slope = rng.uniform(0.4, 0.5) * (1.0 - e) * bush.tilted * np.exp(1j * rng.uniform(0.0, 2.0 * np.pi))
+        e, phi, decay = rng.uniform(0.5, 0.8), rng.uniform(0.0, 2.0 * np.pi), 2.0 * 10.0 ** rng.uniform(0.0, 1.0)
+        slope = rng.uniform(0.0, 0.5) * (1.0 - e) * bush.tilted * np.exp(1j * rng.uniform(0.0, 2.0 * np.pi))
         kind = rng.integers(3)
-        slope, wave = slope * (kind == 0), (kind == 1) * rng.uniform(0.3, 0.35) * (1.0 - e)
-        crown, psi = (kind == 2) * rng.choice((-0.4, 0.6)) * (1.0 - e), rng.uniform(0.0, 2.0 * np.pi)
+        slope, wave = slope * (kind == 0), (kind == 1) * rng.uniform(0.0, 0.35) * (1.0 - e)
+        crown, psi = (kind == 2) * rng.uniform(-0.4, 0.6) * (1.0 - e), rng.uniform(0.0, 2.0 * np.pi)
         gap = 1.0 + e * np.cos(T - phi) + Z * (slope * np.exp(-1j * T)).real + wave * np.cos(3.0 * T - psi)
         gap += crown * Z**2
         rise = e * np.sin(T - phi) - Z * (slope * np.exp(-1j * T)).imag + 3.0 * wave * np.sin(3.0 * T - psi)
@@ -137,9 +143,9 @@ BEARING = {
 }
 
 
-def held_at_its_end():
-    mesh, low = CYLINDER.mesh(), -0.5 * R + 1e-9
-    return ehd.mesh_from_arrays(mesh.nodes, mesh.elements, bore_radius=R + C, held=lambda x: x[:, 2] < low)
+def held_at_its_end(side=-1):
+    mesh, end = CYLINDER.mesh(), 0.5 * R - 1e-9
+    return ehd.mesh_from_arrays(mesh.nodes, mesh.elements, bore_radius=R + C, held=lambda x: side * x[:, 2] > end)
 
 
 def test_a_journal_that_tilts_on_even_modes_is_warned_of():
@@ -154,6 +160,25 @@ def test_a_bush_held_at_its_end_has_odd_modes_for_parallel_journals():
     bush = ehd.ModalBush(mesh=held_at_its_end(), material=STEEL, tilted=False)
     shape = bore_modes(bush).radial(np.linspace(-3.0, 3.0, 9), np.array([-0.4, 0.4]) * R)
     assert np.abs(shape[:, 0] - shape[:, 1]).max() > 0.1
+
+
+@IGNORED
+def test_a_body_that_is_not_symmetric_about_its_bore_has_odd_modes_for_parallel_journals():
+    mesh = held_at_its_end()
+    held = np.setdiff1d(mesh.outer.nodes, mesh.bore.nodes)
+    place = {"position": [0, 0, 0], "radius": R + C, "length": R, "fixed_nodes": held, "tolerance": 0.1}
+    aligned, tilted = (
+        ehd.add_bore_modes(fem_of(mesh, STEEL), axis=[0, 0, 1], **place, tilted=tilted) for tilted in (False, True)
+    )
+    assert aligned == tilted
+
+
+@IGNORED
+def test_modes_of_a_mirror_image_are_as_many():
+    found = [bore_modes(ehd.ModalBush(mesh=held_at_its_end(side), material=STEEL, tolerance=0.1)) for side in (1, -1)]
+    assert found[0].count == found[1].count
+    # rounding
+    assert found[0].error == pytest.approx(found[1].error, rel=1e-6)
 
 
 def test_a_bush_that_moves_as_a_whole_does_not_strain(recwarn):

@@ -1,5 +1,7 @@
 """Modes of elastic journals: what they lack, what they leave to the body, what is refused."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
@@ -46,28 +48,91 @@ def test_elements_through_a_solid_pin_yield_as_closed_forms_do(tolerance, measur
         assert -1.15 * error < found < 0.0
 
 
-@pytest.mark.parametrize("held", HELD)
-@pytest.mark.parametrize("inner", [0.0, pytest.param(0.005, marks=pytest.mark.slow)])
-def test_compliance_of_the_modes_is_that_of_the_elements(held, inner):
-    """Smooth pressures displace the modes as they displace the elements.
+FILMS, ANGLES, BEYOND = 200, 256, (2, 4, 6, 8, 10)
 
-    The error of 0.08 is a root mean square over the films; the largest of this steeper one at a place is 1.3 times it.
+
+def random_film(rng, theta, zeta):
+    """Pressure of a film on a round, tilted, wavy or crowned surface, as the bushes' told error is tested with."""
+    e, phi, decay = rng.uniform(0.5, 0.8), rng.uniform(0.0, 2.0 * np.pi), 2.0 * 10.0 ** rng.uniform(0.0, 1.0)
+    sizes = np.diag([rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.35), rng.uniform(-0.4, 0.6)])[rng.integers(3)]
+    (slope, wave, crown), (turn, psi) = sizes * (1.0 - e), rng.uniform(0.0, 2.0 * np.pi, 2)
+    gap = 1.0 + e * np.cos(theta - phi) + slope * zeta * np.cos(theta - turn) + wave * np.cos(3.0 * theta - psi)
+    rise = e * np.sin(theta - phi) + slope * zeta * np.sin(theta - turn) + 3.0 * wave * np.sin(3.0 * theta - psi)
+    axial = 1.0 - np.cosh(decay * zeta) / np.cosh(decay)
+    return np.maximum(rise, 0.0) ** 2 / (gap + crown * zeta**2) ** 4 * axial
+
+
+def random_waves(zeta):
+    """Parts (33, 2, films, ...) with cos and sin of n waves around of random films, at places zeta."""
+    rng, theta = np.random.default_rng(8), 2.0 * np.pi * np.arange(ANGLES) / ANGLES
+    parts = np.fft.rfft([random_film(rng, theta, zeta[..., None]) for _ in range(FILMS)])[..., :33] * (2.0 / ANGLES)
+    parts[..., 0] *= 0.5
+    return np.moveaxis(np.stack((parts.real, -parts.imag)), -1, 0)
+
+
+def square(weight, values):
+    """Mean square (33, films) over a surface of every wave's part: values (33, 2, films, ...)."""
+    around = np.where(np.arange(len(values)) == 0, 1.0, 0.5)[:, None]
+    return around * np.einsum("nkfz,z->nf", values**2, weight)
+
+
+@pytest.mark.parametrize(
+    ("held", "inner", "tolerance"),
+    [
+        ("ends", 0.0, 0.08),
+        *(
+            pytest.param(held, inner, tolerance, marks=pytest.mark.slow)
+            for held, inner, tolerance in itertools.product(HELD, (0.0, 0.005), (0.08, 0.02))
+            if (held, inner, tolerance) != ("ends", 0.0, 0.08)
+        ),
+    ],
+)
+def test_told_error_is_that_of_the_elements_under_films(held, inner, tolerance):
+    """The told error against the elements', over |v| max(|v| / |u|, 0.1) of `exudyn_ehd.solid.modes.films`.
+
+    The largest error of the films is 0.67 to 1.5 of the told one; with the few modes of the tolerance 0.08, of which
+    pairs take off more at once, down to half of it.
     """
-    journal = pin(held, inner_radius=inner, tolerance=0.08)
+    journal = pin(held, inner_radius=inner, tolerance=tolerance)
     found, reduced = journal_modes(journal, RADIUS, LENGTH), _Reduction(journal, RADIUS, LENGTH)
-    assert found.error <= 0.08
+    assert found.error <= tolerance
     assert np.abs(found.profiles).max(axis=1) == pytest.approx(1.0)
-    body, zeta = reduced.body, reduced.zeta
-    for n in range(4):
-        for shape, tolerance in ((1.0 - zeta**2, 0.02), (np.cos(0.5 * np.pi * zeta) ** 3 * np.exp(zeta), 0.13)):
-            pressure = (shape * reduced.loaded)[None]
-            load = body.load(n, pressure)
-            exact = body.solve(n, load, reduced.held)[reduced.surface, 0]
-            cos = (found.waves == n) & (found.phases == 0.0)
-            # loads of a mode: its profile under the same pressure
-            Q = found.profiles[cos] @ load[reduced.surface, 0]
-            q = Q / found.stiffness[cos]
-            assert np.abs(q @ found.profiles[cos] - exact).max() < tolerance * np.abs(exact).max()
+    body, places = reduced.body, np.where(reduced.loaded, reduced.zeta, 0.0)
+    exact = np.zeros((33, 2, FILMS, found.profiles.shape[1]))
+    lack = np.zeros_like(exact)
+    pressures = random_waves(places) * reduced.loaded
+    for n, phase in itertools.product(range(33), range(2)):
+        load = body.load(n, pressures[n, phase])
+        exact[n, phase] = body.solve(n, load, reduced.held)[reduced.surface].T
+        own = (found.waves == n) & (found.phases == 0.5 * np.pi * phase)
+        # loads of a mode: its profile under the same pressure
+        q = found.profiles[own] @ load[reduced.surface] / found.stiffness[own, None]
+        lack[n, phase] = exact[n, phase] - q.T @ found.profiles[own]
+    node, weight = np.polynomial.legendre.leggauss(24)
+    half_space = square(weight, random_waves(node)) / np.maximum(np.arange(33), 1)[:, None] ** 2
+    # Simpson's rule along z
+    ends = reduced.edges / reduced.edges[-1]
+    along = np.zeros(found.profiles.shape[1])
+    for first, size in enumerate(np.diff(ends)):
+        along[2 * first : 2 * first + 3] += size / 12.0 * np.array([1.0, 4.0, 1.0])
+    u = square(along, exact)
+    local = [u[m:].sum(axis=0) * half_space.sum(axis=0) / half_space[m:].sum(axis=0) for m in (0, *np.add(BEYOND, 1))]
+    share = np.sqrt(np.min(local, axis=0) / u.sum(axis=0))
+    true = np.sqrt(square(along, lack).sum(axis=0) / u.sum(axis=0)) / (share * np.maximum(share, 0.1))
+    assert true.max() / 1.5 < found.error < (2.0 if tolerance > 0.05 else 1.5) * true.max()
+
+
+@pytest.mark.parametrize("held", HELD)
+def test_even_pressures_displace_the_modes_as_they_displace_the_elements(held):
+    """Those of pressurised ends, which the modes hold but for 1e-3."""
+    journal = pin(held, tolerance=0.08)
+    found, reduced = journal_modes(journal, RADIUS, LENGTH), _Reduction(journal, RADIUS, LENGTH)
+    for shape in (np.ones_like(reduced.zeta), 1.0 + 0.5 * reduced.zeta):
+        load = reduced.body.load(0, (shape * reduced.loaded)[None])
+        exact = reduced.body.solve(0, load, reduced.held)[reduced.surface, 0]
+        own = found.waves == 0
+        q = found.profiles[own] @ load[reduced.surface, 0] / found.stiffness[own]
+        assert np.abs(q @ found.profiles[own] - exact).max() < 1e-3 * np.abs(exact).max()
 
 
 def test_modes_are_kept_on_disk(monkeypatch):
@@ -82,7 +147,7 @@ def test_modes_are_kept_on_disk(monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize(("held", "inner"), [("bosses", 0.0), ("free", 0.005)])
 def test_films_of_the_default_tolerance(held, inner):
-    """Aligned, within 0.1 % of the peak and 0.5 % of the thinnest film; the table of solid/README.md."""
+    """Aligned, within 0.1 % of the peak and 0.5 % of the thinnest film, as solid/README.md says."""
     films = [
         ehd.steady(bearing(pin(held, inner_radius=inner, tolerance=tolerance)), speed=400.0, eccentricity_ratio=0.9)
         for tolerance in (0.02, 0.005)
