@@ -26,7 +26,7 @@ from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.watch import poor_films, solver_state, tiny_forces
-from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch
+from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch, warn_of_radius
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
@@ -222,6 +222,7 @@ class AcceptedSteps:
         area = 2.0 * bearing.journal_radius * bearing.length
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
         self._turning = turn_watch(mbs, film.sides, self.solver)
+        warn_of_radius(self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
