@@ -16,6 +16,17 @@ No film is solved for it. The error of the gap is |e| at the end of the journal 
 w goes into the film by its difference quotient, of first order: dw/dt of the parabola through the last three states
 less (w1 - w0) / h, times h, is a step's further error, along the direction of the peak, unless the peak jumps.
 
+A load L on the film that jumps makes the rate jump by D^-1 dL. The steps take it to happen in the middle of the one in
+which it lies: each u h off, with u within -1/2 and 1/2, makes an error of the pose of u h D^-1 dL, however smooth the
+rates are that inertia lets follow. No accepted state tells u. So jumps add a variance
+
+    P1 = A (P0 + h^2 / 12 q q^T) A^T,   A = (D + h K)^-1 D,   q = D^-1 dL,
+
+that of a u anywhere in the step, and the error of the gap is the root of |e|^2 and the trace of P. Of a jump it tells
+0.58 |e| and more; up to 2.5 times the error where the jump lies more than 0.12 h off the middle. L is known at accepted
+states, from the bodies' accelerations and the film's force (`exudyn_ehd.coupling.element.outer_load`): dL is what
+departs from the line through the two states before, if it does so at once. D is the mean of both ends of the step.
+
 Left out: the first two steps, in which the rates still jump from what the model was given to what its films ask for;
 errors of the motion of the bodies, which films do not feel at once; what the trapezoidal rule, which does not damp,
 lets ring on; and errors of what films remember (cavities, heat, wear), which are of first order there: with
@@ -36,10 +47,18 @@ JOURNAL, BALL = (([0, 1], [0, 1]), ([3, 4], [2, 3])), (([0, 1, 2], [0, 1, 2]),)
 _UPPER = np.triu_indices(3)
 # First state whose error is known.
 FIRST = 3
+# At the beginning of a record, see `errors_behind`.
+NO_ERROR = np.zeros(10)
 # Least gap against which errors count, share of the clearance.
 SMALLEST_GAP_SHARE = 1e-3
 # Cosine of the turn of a peak in a step beyond which it has jumped.
 JUMP = 0.9
+# Departure of a load from a line at the state before, share of the one at a state, below which it has jumped there.
+SUDDEN = 0.5
+# Share of the largest error of the gap that a jump anywhere in a step may make.
+LARGEST_JUMP = 0.5
+# What a step has missed over what it may miss, from which it is repeated.
+REFUSED = 8.0
 # What a step may miss of the error that is left, and of the largest one at least.
 BUDGET, SMALLEST_BUDGET = 0.1, 0.01
 # The error that the number of steps aims at, less than half of the one that is told: the first steps are not known.
@@ -55,16 +74,18 @@ def errors_behind(
     clearance: float,
     length: float,
     deflection: np.ndarray | None,
+    load: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Error (n,) of the gap over the minimum film thickness, of every accepted state, and the pose's of the last.
+    """Error (n,) of the gap over the minimum film thickness, of every accepted state, and ``before`` behind the last.
 
     The first `FIRST` states have nan, as those before the first tangent; a record in parts has the errors of the whole
     if every part begins with the last `FIRST` states of the one before.
 
     Parameters
     ----------
-    before : (4,) array
-        Error of the pose behind the first `FIRST` states.
+    before : (10,) array
+        Error of the pose behind the first `FIRST` states (4,), and variances (xx, xy, yy) of places and of slopes; zero
+        (`NO_ERROR`) at the beginning of a record.
     time : (n,) array
         s.
     motion : (n, 10) array
@@ -77,6 +98,8 @@ def errors_behind(
         m.
     deflection : (n, 2) array, optional
         Of a liner, where it is largest, m.
+    load : (n, 4) array
+        On the film, N and N m (rows of `JOURNAL`); nan where it is not known: no jump.
     """
     out = np.full(time.size, np.nan)
     last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0, 0]), np.arange(time.size), -1))
@@ -87,14 +110,19 @@ def errors_behind(
     missed = _missed(time, motion[:, :4], motion[:, 4:8])
     if deflection is not None:
         missed[:, :2] -= _lag(time, deflection)
-    errors = np.zeros((time.size, 4))
+    errors, variance = np.zeros((time.size, 4)), np.zeros((time.size, 2, 3))
     steps = np.diff(time, prepend=time[0])
     for k in (0, 2):
-        kept = _kept(-tangent[last, k], -tangent[last, k + 1], steps)
+        K, D = -tangent[last, k], -tangent[last, k + 1]
+        kept = _kept(K, D, steps)
         errors[known, k : k + 2] = _added(kept[known], missed[known, k : k + 2], before[k : k + 2])
+        jumped = _jumped(D.reshape(-1, 2, 2), _sudden(time, load[:, k : k + 2]), steps)
+        variance[known, k // 2] = _variances(kept[known], jumped[known], before[4 + 3 * (k // 2) :][:3])
     ends = [np.hypot(*(errors[:, :2] + s * 0.5 * length * errors[:, 2:]).T) for s in (-1.0, 1.0)]
-    out[known] = (np.maximum(*ends) / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance))[known]
-    return out, errors[-1]
+    square = variance[:, 0, ::2].sum(axis=1) + (0.5 * length) ** 2 * variance[:, 1, ::2].sum(axis=1)
+    whole = np.sqrt(np.maximum(*ends) ** 2 + square)
+    out[known] = (whole / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance))[known]
+    return out, np.concatenate([errors[-1], variance[-1].ravel()])
 
 
 def pack_of_ball(tangent: np.ndarray) -> np.ndarray:
@@ -110,6 +138,7 @@ def errors_of_ball(
     packed: np.ndarray,
     minimum_gap: np.ndarray,
     clearance: float,
+    load: np.ndarray,
 ) -> np.ndarray:
     """Error (n,) of a ball's place over the minimum film thickness, of every accepted state; see `errors_behind`.
 
@@ -125,6 +154,8 @@ def errors_of_ball(
         m.
     clearance : float
         m.
+    load : (n, 3) array
+        On the ball, N; nan where it is not known.
     """
     out = np.full(time.size, np.nan)
     last = np.maximum.accumulate(np.where(np.isfinite(packed[:, 0]), np.arange(time.size), -1))
@@ -134,10 +165,12 @@ def errors_of_ball(
     missed, h = _missed(time, place, velocity), np.diff(time, prepend=time[0])
     K, D = packed[last, :9].reshape(-1, 3, 3), np.empty((time.size, 3, 3))
     D[:, _UPPER[0], _UPPER[1]] = D[:, _UPPER[1], _UPPER[0]] = packed[last, 9:]
-    kept, error = _kept_of_ball(K, D, h), np.zeros(3)
+    kept, error, variance = _kept_of_ball(K, D, h), np.zeros(3), np.zeros((3, 3))
+    jumped = _jumped(D, _sudden(time, load), h)
     for k in range(first, time.size):
         error = kept[k] @ (error + missed[k])
-        out[k] = np.sqrt(error @ error)
+        variance = kept[k] @ (variance + np.outer(jumped[k], jumped[k])) @ kept[k].T
+        out[k] = np.sqrt(error @ error + np.trace(variance))
     return out / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance)
 
 
@@ -149,6 +182,7 @@ def next_error(
     length: float,
     largest: float,
     deflection: np.ndarray | None = None,
+    jump: np.ndarray | None = None,
     *,
     ball: bool = False,
 ) -> tuple[np.ndarray, float]:
@@ -171,6 +205,8 @@ def next_error(
         Of the bearing, and error of the gap that is allowed, m.
     deflection : (3, 2) array, optional
         Of a liner, where it is largest, m.
+    jump : (4,) array, optional
+        Rate by which the pose has jumped in the step, see `rate_jump`.
     ball : bool
         Whether the pose is a ball's place and a zero.
 
@@ -181,7 +217,7 @@ def next_error(
     missed = _missed(time, motion[:, :4], motion[:, 4:8])[2]
     if deflection is not None:
         missed[:2] -= _lag(time, deflection)[2]
-    after, used, h = np.zeros(4), 0.0, np.diff(time)[-1:]
+    after, used, thrown, h = np.zeros(4), 0.0, 0.0, np.diff(time)[-1:]
     for rows, places in BALL if ball else JOURNAL:
         D, K = (-tangent[rows][:, np.add(places, shift)] for shift in (4, 0))
         kept = _kept_of_ball(K[None], D[None], h)[0] if ball else _kept(K.reshape(1, 4), D.reshape(1, 4), h)
@@ -192,7 +228,30 @@ def next_error(
         left = largest - lever * float(np.linalg.norm(before[places]))
         allowed = max(forgotten * largest, BUDGET * left, SMALLEST_BUDGET * largest)
         used += lever * float(np.linalg.norm(missed[places])) / allowed
-    return after, used
+        if jump is not None:
+            thrown += 0.5 * lever * float(h[0] * np.linalg.norm(jump[places]))
+    return after, max(used, REFUSED * thrown / (LARGEST_JUMP * largest))
+
+
+def rate_jump(time: np.ndarray, load: np.ndarray, tangents: tuple[np.ndarray, np.ndarray], *, ball: bool) -> np.ndarray:
+    """Jump (4,) of the pose's rate in the step to the last of four states.
+
+    Parameters
+    ----------
+    time : (4,) array
+        s.
+    load : (4, 4) array
+        On the film, as for `errors_behind` or `errors_of_ball`.
+    tangents : two (6, 10) arrays
+        Of the film's wrench, at the start of the step and at its end.
+    ball : bool
+    """
+    out, mean = np.zeros(4), -0.5 * (tangents[0] + tangents[1])
+    for rows, places in BALL if ball else JOURNAL:
+        jump = _sudden(time, load[:, places])[3]
+        if jump.any():
+            out[places] = np.linalg.pinv(mean[rows][:, np.add(places, 4)], rcond=1e-9) @ jump
+    return out
 
 
 def _bend(time: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -219,6 +278,40 @@ def _lag(time: np.ndarray, deflection: np.ndarray) -> np.ndarray:
     jumps = np.concatenate(([True], turned))
     jumps[1:] |= jumps[:-1]
     return np.where(jumps[:, None], 0.0, _bend(time, deflection) * h**2)
+
+
+def _sudden(time: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Jump of a load (n, k) in every step, zero where it goes on as before."""
+    steps, change = np.diff(time), np.diff(load, axis=0)
+    off = np.zeros_like(load)
+    off[2:] = np.nan_to_num(change[1:] - change[:-1] * (steps[1:] / steps[:-1])[:, None])
+    size = np.sqrt(np.sum(off * off, axis=1))
+    # the first departure that is known has none to be compared with
+    earlier = np.concatenate([np.full(3, np.inf), size[2:-1]])[: size.size]
+    return np.where((earlier < SUDDEN * size)[:, None], off, 0.0)
+
+
+def _jumped(D: np.ndarray, load: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Standard deviation (n, k) of the displacement by jumps of a load (n, k) anywhere in a step, with its sign."""
+    out, jumps = np.zeros_like(load), np.flatnonzero(load.any(axis=1))
+    if jumps.size:
+        mean = np.nan_to_num(0.5 * (D[jumps] + D[jumps - 1]))
+        rate = np.linalg.pinv(mean, rcond=1e-9) @ load[jumps, :, None]
+        out[jumps] = step[jumps, None] * rate[:, :, 0] / math.sqrt(12.0)
+    return out
+
+
+def _variances(kept: np.ndarray, jumped: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """Variances (n, 3), xx, xy and yy: what is left of the one before and of the step's jump."""
+    if not (jumped.any() or before.any()):
+        return np.zeros((len(kept), 3))
+    out, (xx, xy, yy) = [], before.tolist()
+    for (a, b, c, d), (u, v) in zip(kept.tolist(), jumped.tolist(), strict=True):
+        xx, xy, yy = xx + u * u, xy + u * v, yy + v * v
+        left = a * xx + b * xy, a * xy + b * yy, c * xx + d * xy, c * xy + d * yy
+        xx, xy, yy = left[0] * a + left[1] * b, left[0] * c + left[1] * d, left[2] * c + left[3] * d
+        out.append((xx, xy, yy))
+    return np.array(out).reshape(-1, 3)
 
 
 def _kept(K: np.ndarray, D: np.ndarray, step: np.ndarray) -> np.ndarray:

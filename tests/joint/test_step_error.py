@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, NO_ERROR, errors_behind
 
 CLEARANCE, LENGTH, GAP = 20e-6, 0.02, 8e-6
 # stiffness and damping of translations and tilts, the latter with moments Mx, My; of a film that whirls while it decays
@@ -57,7 +57,8 @@ def ends(pose):
 def estimate(time, motion, tangents=None, deflection=None):
     blocks = np.broadcast_to(tangent().ravel()[BLOCKS], (time.size, 4, 4)) if tangents is None else tangents
     gaps = np.full(time.size, GAP)
-    return errors_behind(np.zeros(4), time, motion, blocks, gaps, CLEARANCE, LENGTH, deflection)[0]
+    load = np.full((time.size, 4), np.nan)
+    return errors_behind(NO_ERROR, time, motion, blocks, gaps, CLEARANCE, LENGTH, deflection, load)[0]
 
 
 @pytest.mark.parametrize("uneven", [0.0, 0.4])

@@ -21,6 +21,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Element, Trial
 from exudyn_ehd.coupling.element.failures import Failures
+from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
@@ -46,11 +47,13 @@ class Film(Element, Protocol):
     Attributes
     ----------
     failures : Failures
+    outer : OuterLoad
     is_massless : bool
         Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
     """
 
     failures: Failures
+    outer: OuterLoad
     is_massless: bool
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
@@ -116,6 +119,8 @@ class AcceptedSteps:
         Whether the run under way chooses the size of its steps.
     tangent : (6, 10) array or None
         Of the film's wrench, as Newton's method of an implicit run has asked for it last.
+    load : (4,) array or None
+        On the film at the state that was recorded last, of an implicit run (`OuterLoad`).
     """
 
     def __init__(self, film: Film) -> None:
@@ -138,6 +143,7 @@ class AcceptedSteps:
         self._uses_memory = self._may_starve = self.in_own_run = self.chosen = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
+        self.load: np.ndarray | None = None
         self.tolerance: float | None = None
         self._thin = -np.inf
         self._told = True
@@ -179,7 +185,7 @@ class AcceptedSteps:
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
         trial = self.film.look(mbs, start, START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
-        row = self.film.row(start, trial)
+        row = self._row(mbs, start, trial, START_OF_STEP)
         if self.control is not None:
             film = trial.evaluation if row is not None and self._makes_room else None
             self.control.start(trial.motion, None if film is None else film.quantities()["minimum_gap"])
@@ -197,6 +203,13 @@ class AcceptedSteps:
                     self._first_memory = self.memory
         last, self.start = self.start, start
         self._check(start, trial, start - last, row)
+
+    def _row(self, mbs: exu.MainSystem, time: float, trial: Trial, where: exu.ConfigurationType) -> np.ndarray | None:
+        """Row of the record at an accepted state, with the load on its film; None without a film."""
+        found = trial.evaluation
+        known = found is not None and solver_state.is_implicit(self.solver)
+        self.load = self.film.outer.at(mbs, where, found.wrench[:6]) if found is not None and known else None
+        return self.film.row(time, trial)
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
@@ -223,10 +236,11 @@ class AcceptedSteps:
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
         self._turning = turn_watch(mbs, film.sides, self.solver)
         warn_of_radius(self.solver)
+        self.film.outer.forget()
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
-        self.tangent = self.tolerance = None
+        self.tangent = self.load = self.tolerance = None
         self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
         self._cool = HOT
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
@@ -335,7 +349,7 @@ class AcceptedSteps:
     def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, StepStart | None, np.ndarray]:
         """Time of the last accepted state, the film's memory there, where the next step begins, and the record."""
         time, trial, _ = self.look_at_accepted(mbs)
-        row, memory = self.film.row(time, trial), self.memory if self._uses_memory else self._aside
+        row, memory = self._row(mbs, time, trial, self._accepted), self.memory if self._uses_memory else self._aside
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
             memory = trial.found.history()
@@ -381,6 +395,6 @@ class AcceptedSteps:
         if known or time <= self.record.last_time:
             return
         trial = self.film.look(mbs, time, self._accepted)
-        self.record.end = self.film.row(time, trial)
+        self.record.end = self._row(mbs, time, trial, self._accepted)
         if self.record.end is None and self.is_idle:
             self.film.failures.warn_of_end(time, trial)

@@ -21,17 +21,15 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import START_OF_STEP
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, next_error
+from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, next_error, rate_jump
 from exudyn_ehd.status import Status
 
 # First and largest step, in steps of the settings.
 FIRST, LARGEST = 0.125, 4.0
-# What a step has missed, over what it may miss, from which it is repeated.
-REFUSED = 8.0
 # Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
 SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 # Part of its demand that a step hands on.
@@ -44,7 +42,7 @@ SHORTENED, ROUNDING = 0.99, 1e-6
 NEVER = 10**9
 
 
-_State: TypeAlias = tuple[float, np.ndarray, tuple[float, float]]
+_State: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np.ndarray | None]
 
 
 class _Joint:
@@ -57,7 +55,7 @@ class _Joint:
         self.now: _State | None = None
         self.before = self.after = np.zeros(4)
 
-    def used(self, time: float) -> float | None:
+    def used(self, mbs: exu.MainSystem, time: float) -> float | None:
         """What the step to ``time`` has missed over what it may miss; None if it is not known."""
         trial, tangent, bearing = self.film.last, self.film.steps.tangent, self.film.model.bearing
         if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:
@@ -65,15 +63,30 @@ class _Joint:
             return None
         film = trial.evaluation.quantities()
         w, angle = (film["bore_displacement"], film["peak_angle"]) if self.lags else (0.0, 0.0)
-        self.now = (time, trial.motion[:10], (w * math.cos(angle), w * math.sin(angle)))
+        load = self.film.outer.at(mbs, CURRENT, trial.found.wrench[:6])
+        self.now = (time, trial.motion[:10], (w * math.cos(angle), w * math.sin(angle)), load, tangent)
         if len(self.states) < 2 or tangent is None:
             return None
-        times, motions, deflections = map(np.array, zip(*self.states, self.now, strict=True))
+        times, motions, deflections, loads = map(
+            np.array, zip(*(state[:4] for state in (*self.states, self.now)), strict=True)
+        )
         gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
         deflection = deflections if self.lags else None
         allowed, ball = CANCELLED * self.error * gap, self.film.failures.axes == 3
+        jump, earlier = None, self.states[-1][4]
+        if len(times) == 4 and earlier is not None:
+            jump = rate_jump(times, loads, (earlier, tangent), ball=ball)
+        last = slice(-3, None)
         self.after, used = next_error(
-            times, motions, tangent, self.before, bearing.length, allowed, deflection, ball=ball
+            times[last],
+            motions[last],
+            tangent,
+            self.before,
+            bearing.length,
+            allowed,
+            None if deflection is None else deflection[last],
+            jump,
+            ball=ball,
         )
         return used
 
@@ -81,7 +94,7 @@ class _Joint:
         """Go on behind the step at hand."""
         self.before = self.after
         # without a film there is no error, and the next ones are known two steps later
-        self.states = [] if self.now is None else [*self.states[-1:], self.now]
+        self.states = [] if self.now is None else [*self.states[-2:], self.now]
 
 
 class StepSize:
@@ -127,7 +140,7 @@ class StepSize:
     def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
         """User function after Newton's method and the user's own: error, and step size to repeat the step with."""
         error, wanted = own(mbs, time) if own else (0.0, -1.0)
-        known = [used for joint in self.joints if (used := joint.used(time)) is not None]
+        known = [used for joint in self.joints if (used := joint.used(mbs, time)) is not None]
         self.used = max(known, default=None)
         step = time - mbs.systemData.GetTime(START_OF_STEP)
         smallest = mbs.sys["dynamicSolver"].it.minStepSize
