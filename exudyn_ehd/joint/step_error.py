@@ -55,6 +55,8 @@ SMALLEST_GAP_SHARE = 1e-3
 JUMP = 0.9
 # Departure of a load from a line at the state before, share of the one at a state, below which it has jumped there.
 SUDDEN = 0.5
+# The same for a step that is repeated: coarse steps of mechanisms have loads that set in nearly as fast.
+CERTAIN = 0.1
 # Share of the largest error of the gap that a jump anywhere in a step may make.
 LARGEST_JUMP = 0.5
 # What a step has missed over what it may miss, from which it is repeated.
@@ -230,7 +232,9 @@ def next_error(
         used += lever * float(np.linalg.norm(missed[places])) / allowed
         if jump is not None:
             thrown += 0.5 * lever * float(h[0] * np.linalg.norm(jump[places]))
-    return after, max(used, REFUSED * thrown / (LARGEST_JUMP * largest))
+    jumped = REFUSED * thrown / (LARGEST_JUMP * largest)
+    # a jump is over behind its step: a step that may be kept asks for no shorter ones after it
+    return after, max(used, jumped) if jumped >= REFUSED else used
 
 
 def rate_jump(time: np.ndarray, load: np.ndarray, tangents: tuple[np.ndarray, np.ndarray], *, ball: bool) -> np.ndarray:
@@ -248,7 +252,7 @@ def rate_jump(time: np.ndarray, load: np.ndarray, tangents: tuple[np.ndarray, np
     """
     out, mean = np.zeros(4), -0.5 * (tangents[0] + tangents[1])
     for rows, places in BALL if ball else JOURNAL:
-        jump = _sudden(time, load[:, places])[3]
+        jump = _sudden(time, load[:, places], CERTAIN)[3]
         if jump.any():
             out[places] = np.linalg.pinv(mean[rows][:, np.add(places, 4)], rcond=1e-9) @ jump
     return out
@@ -280,7 +284,7 @@ def _lag(time: np.ndarray, deflection: np.ndarray) -> np.ndarray:
     return np.where(jumps[:, None], 0.0, _bend(time, deflection) * h**2)
 
 
-def _sudden(time: np.ndarray, load: np.ndarray) -> np.ndarray:
+def _sudden(time: np.ndarray, load: np.ndarray, share: float = SUDDEN) -> np.ndarray:
     """Jump of a load (n, k) in every step, zero where it goes on as before."""
     steps, change = np.diff(time), np.diff(load, axis=0)
     off = np.zeros_like(load)
@@ -288,7 +292,7 @@ def _sudden(time: np.ndarray, load: np.ndarray) -> np.ndarray:
     size = np.sqrt(np.sum(off * off, axis=1))
     # the first departure that is known has none to be compared with
     earlier = np.concatenate([np.full(3, np.inf), size[2:-1]])[: size.size]
-    return np.where((earlier < SUDDEN * size)[:, None], off, 0.0)
+    return np.where((earlier < share * size)[:, None], off, 0.0)
 
 
 def _jumped(D: np.ndarray, load: np.ndarray, step: np.ndarray) -> np.ndarray:

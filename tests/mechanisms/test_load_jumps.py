@@ -61,7 +61,8 @@ class Scene:
             ehd.equilibrium(self.bearing, speed=self.speed, load=tuple(load)).critical_mass
             for load in (self.load, self.load + self.change)
         ]
-        self.mass = between(0.005, 0.5) * min(*critical)
+        # none is critical at large eccentricities
+        self.mass = between(0.005, 0.5) * min(*critical, 1e3 * math.hypot(*self.load) / 9.81)
 
     def share(self, time):
         """Of the change that has set in."""
@@ -128,11 +129,10 @@ def test_a_jump_is_told_and_kept():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", range(6))
-def test_told_and_chosen_errors_of_many(part):
-    """SHARES."""
+def test_told_and_chosen_errors_of_many():
+    """Errors above 2 % are told at half their size at least, and at 2.5 times it but next to the middle of a step."""
     ratios, kept = [], []
-    for seed in range(50 * part, 50 * part + 50):
+    for seed in range(50):
         scene = Scene(seed)
         reference = scene.reference()
         told, true = told_and_true(scene, reference)
@@ -141,6 +141,5 @@ def test_told_and_chosen_errors_of_many(part):
         kept += [
             true_error(scene.run(stepControl=ehd.StepControl(error=error)), reference) / error for error in (0.02, 0.05)
         ]
-    ratios = np.array(ratios)
-    assert ratios.size > 15 and ratios.min() > 0.5 and np.mean(ratios < 2.5) > 0.9
+    assert len(ratios) > 20 and min(ratios) > 0.5 and np.mean(np.array(ratios) < 2.5) > 0.9
     assert max(kept) < 1.5

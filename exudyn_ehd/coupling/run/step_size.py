@@ -30,6 +30,9 @@ from exudyn_ehd.status import Status
 
 # First and largest step, in steps of the settings.
 FIRST, LARGEST = 0.125, 4.0
+# Step up to which jumps of loads are followed, in steps of the settings: in shorter ones the loads' noise, which grows
+# with 1 / h^2 as that of accelerations does, looks like jumps.
+SHORTEST_JUMP = 0.0625
 # Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
 SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 # Part of its demand that a step hands on.
@@ -48,8 +51,8 @@ _State: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np
 class _Joint:
     """The error of one joint: at the start of the step, and behind the one at hand."""
 
-    def __init__(self, film: FilmElement, error: float) -> None:
-        self.film, self.error = film, error
+    def __init__(self, film: FilmElement, error: float, usual: float) -> None:
+        self.film, self.error, self.shortest = film, error, SHORTEST_JUMP * usual
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_State] = []
         self.now: _State | None = None
@@ -74,7 +77,7 @@ class _Joint:
         deflection = deflections if self.lags else None
         allowed, ball = CANCELLED * self.error * gap, self.film.failures.axes == 3
         jump, earlier = None, self.states[-1][4]
-        if len(times) == 4 and earlier is not None:
+        if len(times) == 4 and earlier is not None and time - times[-2] > self.shortest:
             jump = rate_jump(times, loads, (earlier, tangent), ball=ball)
         last = slice(-3, None)
         self.after, used = next_error(
@@ -125,9 +128,9 @@ class StepSize:
         sensors: bool,
     ) -> None:
         run, solution = settings.timeIntegration, settings.solution
-        self.joints = [_Joint(film, error) for film in films]
         self.begin, self.end = run.startTime, run.endTime
         self.usual = (self.end - self.begin) / run.numberOfSteps
+        self.joints = [_Joint(film, error, self.usual) for film in films]
         self.periods = [solution.file.writePeriod] if solution.file.write else []
         self.periods += [solution.sensors.writePeriod] if sensors else []
         self.beyond = 2.0 * run.discontinuous.iterationTolerance
