@@ -206,9 +206,8 @@ class AcceptedSteps:
 
     def _row(self, mbs: exu.MainSystem, time: float, trial: Trial, where: exu.ConfigurationType) -> np.ndarray | None:
         """Row of the record at an accepted state, with the load on its film; None without a film."""
-        found = trial.evaluation
-        known = found is not None and solver_state.is_implicit(self.solver)
-        self.load = self.film.outer.at(mbs, where, found.wrench[:6]) if found is not None and known else None
+        found = trial.evaluation if solver_state.is_implicit(self.solver) else None
+        self.load = None if found is None else self.film.outer.at(mbs, where, found.wrench[:6])
         return self.film.row(time, trial)
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
