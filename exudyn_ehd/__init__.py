@@ -30,12 +30,10 @@ Examples in docstrings take ``import numpy as np``, ``import exudyn as exu`` and
 granted, and go on from the examples that they name.
 """
 
-import difflib
 import importlib
 from typing import TYPE_CHECKING
 
-# first of all: it finds a folder for compiled kernels
-import exudyn_ehd.storage  # noqa: F401
+import exudyn_ehd.storage
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
@@ -57,7 +55,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
-from exudyn_ehd.film.thrust.options import JournalLeakage, StepLand, TaperLand, ThrustFaces
+from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
 from exudyn_ehd.joint.audit.audit import Audit, Finding
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
@@ -68,6 +66,7 @@ from exudyn_ehd.progress import show_progress
 from exudyn_ehd.status import (
     EHDError,
     FilmError,
+    GridWarning,
     HotFilmWarning,
     InputError,
     MemoryWarning,
@@ -166,14 +165,17 @@ if TYPE_CHECKING:
     from exudyn_ehd.studies.recommend import Recommendation, recommend
     from exudyn_ehd.studies.steps import StepRecommendation, recommend_steps
 else:
+    _GONE = {"JournalLeakage": "give ThrustFaces(inner_pressures=...) the pressures at the inner edges"}
 
     def __getattr__(name):
+        if name in _GONE:
+            raise InputError(f"exudyn_ehd.{name} is not supported any more; {_GONE[name]}.")
         if name in _LAZY:
-            return getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name)
-        near = {known.lower(): known for known in __all__}
-        found = difflib.get_close_matches(name.lower(), near, n=1)
-        hint = f"; did you mean {near[found[0]]!r}?" if found else ""
-        raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}{hint}")
+            return exudyn_ehd.status.hint_arguments(getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name))
+        meant = exudyn_ehd.status.did_you_mean(name, __all__)
+        raise AttributeError(
+            f"module 'exudyn_ehd' has no attribute {name!r}" + f"; did you mean {meant!r}?" * bool(meant)
+        )
 
 
 def __dir__() -> list[str]:
@@ -227,6 +229,7 @@ __all__ = [
     "FullSommerfeld",
     "Gravity",
     "GreenwoodTripp",
+    "GridWarning",
     "Gumbel",
     "Held",
     "HeldBands",
@@ -240,7 +243,6 @@ __all__ = [
     "JointHistory",
     "JointState",
     "JournalBearing",
-    "JournalLeakage",
     "LastCycle",
     "LineLoad",
     "LongBearing",
@@ -328,3 +330,6 @@ __all__ = [
     "stribeck",
     "varied",
 ]
+
+for _name in set(__all__) - set(_LAZY):
+    exudyn_ehd.status.hint_arguments(globals()[_name])

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, get_args
 
-import numpy as np
-
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.film.combinations import check_combinations
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import (
@@ -26,7 +25,7 @@ from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
-from exudyn_ehd.film.supply.checks import check_supply
+from exudyn_ehd.film.supply.checks import check_depths, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
@@ -53,9 +52,6 @@ SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
 # Beyond it nothing is a thin film, or lengths are in other units.
 THICKEST_FILM_RATIO = 0.1
-
-# Pa s; of a gas far from cold, and of pitch.
-LEAST_VISCOSITY, LARGEST_VISCOSITY = 1e-7, 1e9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +100,7 @@ class JournalBearing:
     length : float
         L, m.
     radial_clearance : float
-        c = bore radius - journal radius, m. A ratio c/R outside 1e-4 to 1e-2 warns.
+        c = bore radius - journal radius, half the diametral clearance, m. A ratio c/R outside 1e-4 to 1e-2 warns.
     lubricant : Lubricant
     film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR
         Film model and grid.
@@ -181,7 +177,6 @@ class JournalBearing:
         self._check_sizes()
         for name, types in _OPTIONS.items():
             require_type(f"JournalBearing.{name}", getattr(self, name), *types)
-        _check_temperatures(self)
         for profile in self.profiles:
             require_type("JournalBearing.profile", profile, *get_args(Profile))
         ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
@@ -195,7 +190,7 @@ class JournalBearing:
         if isinstance(self.film, ImpedanceMap):
             self._check_plain()
         check_line(self.film, self.cavitation, self.yielding, self.lubricant)
-        _check_turbulence(self)
+        check_combinations(vars(self))
         check_faces(vars(self))
         self._check_supply()
         self._check_pressures()
@@ -248,6 +243,7 @@ class JournalBearing:
                 "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its "
                 "grooves; use inlet=Periodic()."
             )
+        check_depths(self.supply, self.radial_clearance)
         lowest, pc = min(area.pressure for area in self.supply), self.cavitation.cavity_pressure
         if pc > lowest:
             raise InputError(
@@ -331,20 +327,6 @@ class JournalBearing:
         return area * self.lubricant.viscosity * abs(speed) / self.clearance_ratio**2
 
 
-def _check_turbulence(bearing: JournalBearing) -> None:
-    """Refuse what has no turbulent form: properties by the pressure, and factors of a laminar profile."""
-    oil, laws = bearing.lubricant, ("pressure_law", "density_law", "shear_law")
-    others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
-    others += [] if bearing.roughness is None else ["JournalBearing.roughness"]
-    others += [] if getattr(bearing.thermal, "conductivity", None) is None else ["FilmEnergy.conductivity"]
-    if bearing.turbulence is not None and others:
-        raise InputError(
-            f"JournalBearing.turbulence={type(bearing.turbulence).__name__}() does not go with {', '.join(others)}: "
-            "its Reynolds number takes viscosity and density at ambient pressure, its walls are smooth, and its eddies "
-            "carry heat across the film; leave one out."
-        )
-
-
 _OPTIONS: dict[str, tuple[type, ...]] = {
     "lubricant": (Lubricant,),
     "film": (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap),
@@ -358,24 +340,6 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
     "turbulence": (NgPan, Hirs, type(None)),
     "thrust": (ThrustFaces, type(None)),
 }
-
-
-def _check_temperatures(bearing: JournalBearing) -> None:
-    """Refuse temperatures at which the lubricant's law gives no viscosity, as for degrees Celsius given as kelvin."""
-    law = bearing.lubricant.temperature_law
-    if bearing.thermal is None or law is None:
-        return
-    for field in fields(bearing.thermal):
-        value = getattr(bearing.thermal, field.name)
-        if value is None or not field.name.endswith("temperature"):
-            continue
-        with np.errstate(all="ignore"):
-            viscosity = float(law.viscosity(value, bearing.lubricant.density))
-        if not LEAST_VISCOSITY <= viscosity <= LARGEST_VISCOSITY:
-            raise InputError(
-                f"JournalBearing.thermal.{field.name} = {value!r} K: the lubricant's {type(law).__name__} gives a "
-                f"viscosity of {viscosity:g} Pa s there; temperatures are in kelvin, 0 degrees Celsius are 273.15 K."
-            )
 
 
 def _check_elastic(bearing: JournalBearing) -> None:

@@ -132,6 +132,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "CircumferentialGroove.width",
         "Hole.diameter",
         "Pocket.length",
+        *(f"{area}.depth" for area in ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")),
         "EdgeRelief.relief_length",
     ),
     "place along z": (

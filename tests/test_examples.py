@@ -13,6 +13,7 @@ pytestmark = [
     pytest.mark.usefixtures("tidy_pictures"),
     pytest.mark.filterwarnings("error::exudyn_ehd.PlausibilityWarning"),
     pytest.mark.filterwarnings("error::exudyn_ehd.ThinFilmWarning"),
+    pytest.mark.filterwarnings("error::exudyn_ehd.GridWarning"),
     pytest.mark.filterwarnings("error::exudyn_ehd.OverloadWarning"),
 ]
 

@@ -6,6 +6,8 @@ import re
 
 import pytest
 
+import exudyn_ehd
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 GUIDES = sorted(path for folder in ("exudyn_ehd", "examples", "tests") for path in (ROOT / folder).rglob("*.md")) + [
     ROOT / "README.md"
@@ -67,6 +69,13 @@ def test_what_the_guides_name_exists(name):
     # made by the examples
     for wanted in sorted({n.rstrip(".") for n in names} - {"results/"}):
         assert any((place / wanted).exists() for place in places), f"{name} names {wanted}, which is not there"
+
+
+def test_project_package_citation_and_changelog_tell_one_version():
+    (version,) = re.findall(r'^version = "(.*)"$', (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)
+    assert exudyn_ehd.__version__ == version
+    assert re.findall(r"exudyn_ehd (\d[\d.]*\d)", TEXTS["README.md"]) == [version]
+    assert re.findall(r"^## (.*)$", TEXTS["exudyn_ehd/CHANGELOG.md"], re.MULTILINE)[0] == version
 
 
 def test_the_main_guide_is_short_and_its_difference_is_the_example_s(example):

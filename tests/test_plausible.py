@@ -25,7 +25,7 @@ PURE = {
     "CreateLubricatedJoint.rotationMatrixAxes", "CreateLubricatedJoint.color", "Crown.exponent",
     "DeadPressure.distribution", "ElasticLiner.poisson_ratio", "FactorReuse.contractivity", "FEBore.radius_tolerance",
     "FEJournal.radius_tolerance",
-    "FilmEnergy.carry_over",
+    "FilmEnergy.carry_over", "LumpedThermal.carry_over",
     "FiniteLength.stretch", "FollowerPressure.distribution", "GreenwoodTripp.density_radius_roughness",
     "GreenwoodTripp.roughness_radius_ratio", "GreenwoodTripp.friction_coefficient", "GreenwoodTripp.residual_film",
     "Gumbel.cavity_shear", "ImpedanceMap.stretch", "ImpedanceMap.largest_eccentricity_ratio",

@@ -160,9 +160,6 @@ class Faces(Protocol):
 
     objectNumber: Index
 
-    def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
-        """The journal's film at a trial, to which the sides' arrays belong, with the journal's angle, rad."""
-
     def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
         """Scalars at a trial, to which the sides' arrays belong."""
 

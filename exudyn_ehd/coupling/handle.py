@@ -155,7 +155,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         InputError
             Before anything was recorded, and of a thinned record (`Every`, `Period`).
         """
-        history = self.history
+        history = self._recorded()
         if history.time.size == 0:
             raise InputError(
                 f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
@@ -342,4 +342,4 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         return self.film()
 
     def _history(self) -> JointHistory:
-        return self.history
+        return self._recorded()

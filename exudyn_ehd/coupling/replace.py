@@ -1,8 +1,9 @@
 """`ReplaceJoint`: a film in the place of a joint that a model already has; `ReplaceReducedBody`.
 
 A joint of two markers with the frames A R (A of the marker, R the joint's ``rotationMarker``) gives all that
-`CreateLubricatedJoint` asks for: the markers are the two sides, the frame of the first with z along the free rotation
-is the joint's. The joint itself stays, inactive and hidden, since deleting it would renumber all that comes after it.
+`CreateLubricatedJoint` asks for: the markers are the two sides, the housing's frame with z along the free rotation is
+the joint's, whichever way the journal's axis points. The joint itself stays, inactive and hidden, since deleting it
+would renumber all that comes after it.
 """
 
 from __future__ import annotations
@@ -21,9 +22,11 @@ from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import MASS_POINTS, POINT_KINDS
 from exudyn_ehd.coupling.items.markers import marker_item
 from exudyn_ehd.coupling.items.object_mass import own_equations
+from exudyn_ehd.coupling.run.solve import joints_of
 from exudyn_ehd.status import InputError, require_type
 
 TYPES = ("JointRevoluteZ", "JointGeneric", "JointRevolute2D")
+_LEAVE = "leave this joint as it is (ReplaceJoints: bearing as a function that returns None for it)"
 # Sine of the angle between the axes of the two markers up to which they count as one.
 PARALLEL = 1e-9
 
@@ -94,17 +97,24 @@ def ReplaceJoint(
             )
     markers, frames = zip(*(_side(mbs, joint, k, where) for k in (0, 1)), strict=True)
     axes = [frame[:, free] for frame in frames]
-    if np.linalg.norm(np.cross(*axes)) > PARALLEL or axes[0] @ axes[1] < 0.0:
-        raise InputError(f"{where}: the axes of its two markers, {axes[0]} and {axes[1]}, must be the same.")
+    # of either sense, as for Exudyn: the film takes the housing's
+    if np.linalg.norm(np.cross(*axes)) > PARALLEL:
+        raise InputError(
+            f"{where}: the axes of its two markers, {axes[0]} and {axes[1]}, must be parallel in the reference "
+            "configuration; turn one of the markers by its localHT, or of the joint by rotationMarker0 or 1."
+        )
     rotation = np.roll(frames[1 - journal], 2 - free, axis=1)
-    film = CreateLubricatedJoint(
-        mbs,
-        name or f"film of {joint['name']}",
-        [markers[1 - journal], markers[journal]],
-        rotationMatrixAxes=rotation,
-        bearing=bearing,
-        **({"axial": Held() if held else Free()} | options),
-    )
+    try:
+        film = CreateLubricatedJoint(
+            mbs,
+            name or _free_name(mbs, joint, int(objectNumber)),
+            [markers[1 - journal], markers[journal]],
+            rotationMatrixAxes=rotation,
+            bearing=bearing,
+            **({"axial": Held() if held else Free()} | options),
+        )
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
     mbs.SetObjectParameter(objectNumber, "activeConnector", False)
     mbs.SetObjectParameter(objectNumber, "Vshow", False)
     return film
@@ -237,10 +247,22 @@ def _joint(mbs: exu.MainSystem, number: Index) -> tuple[Data, str]:
     kind = joint["objectType"]
     where = f"ReplaceJoint: object {int(number)} '{joint['name']}' ({kind})"
     if kind not in TYPES:
-        raise InputError(f"{where} is none of the joints that a film can replace: {', '.join(TYPES)}.")
+        raise InputError(
+            f"{where} is none of the joints that a film can replace: {', '.join(TYPES)}; put a film between two bodies "
+            "with CreateLubricatedJoint."
+        )
     if not joint["activeConnector"]:
-        raise InputError(f"{where} is inactive; a film would act where the model has no joint.")
+        raise InputError(
+            f"{where} is inactive, or replaced already: a film would act where the model has no joint; set its "
+            "activeConnector to True if it is to be replaced."
+        )
     return joint, where
+
+
+def _free_name(mbs: exu.MainSystem, joint: Data, number: int) -> str:
+    """Name of the film by that of the joint, and by its number where another joint has the same name."""
+    name = f"film of {joint['name']}"
+    return f"{name} (object {number})" if name in {known.name for known in joints_of(mbs)} else name
 
 
 def _turns(joint: Data) -> bool:
@@ -253,7 +275,10 @@ def _freedom(joint: Data, where: str) -> tuple[int, bool]:
     if joint["objectType"] != "JointGeneric":
         return 2, joint["objectType"] == "JointRevoluteZ"
     if joint["offsetUserFunction"] != 0 or joint["offsetUserFunction_t"] != 0:
-        raise InputError(f"{where} has an offset function, which moves the joint; a film can't follow it.")
+        raise InputError(
+            f"{where} has an offset function, which moves the joint, and a film can't follow it; {_LEAVE}, or move a "
+            "body by a joint of its own."
+        )
     if np.any(joint["offsetUserFunctionParameters"]):
         raise InputError(f"{where} has offsets, which a film can't have; move the markers instead.")
     held = [bool(axis) for axis in joint["constrainedAxes"]]
@@ -267,7 +292,7 @@ def _freedom(joint: Data, where: str) -> tuple[int, bool]:
     if not (held[free - 1] and held[free - 2]):
         raise InputError(
             f"{where} has constrainedAxes={joint['constrainedAxes']}, which leaves the journal free across the axis "
-            "of its rotation; a film would hold it there."
+            f"of its rotation, where a film would hold it; {_LEAVE}, or set these axes to 1."
         )
     return free, held[free]
 

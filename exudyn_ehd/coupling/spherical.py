@@ -60,12 +60,17 @@ class SphericalFailures(Failures):
         if float(np.linalg.norm(trial.motion[:3])) > FARTHEST * self.bearing.journal_radius:
             return self._at(
                 time,
-                f"{self._place(trial.motion)}the ball has left its socket, of which the film covers "
+                f"{self.place(trial.motion)}the ball has left its socket, of which the film covers "
                 f"{self.bearing.socket_angles} rad; let socket_angles reach beyond the equator, or hold it otherwise.",
             )
         return super().absurd(time, row, trial)
 
-    def _place(self, motion: np.ndarray) -> str:
+    def tilting(self, motion: np.ndarray) -> str:
+        """Nothing: balls have no axis."""
+        return ""
+
+    def place(self, motion: np.ndarray) -> str:
+        """Where the ball is at a motion (10,)."""
         x, y, z = (motion[:3] / self.bearing.radial_clearance).tolist()
         gap = self.bore.smallest(motion)
         return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
@@ -132,8 +137,9 @@ class SphericalHistory:
     --------
     After the example of `CreateLubricatedSphericalJoint`:
 
-    >>> joint.history, joint.history.place.shape
-    (<SphericalHistory without steps>, (0, 3))
+    >>> mbs.Assemble()
+    >>> joint.history.place.shape  # of the initial state
+    (1, 3)
     """
 
     time: np.ndarray
@@ -151,7 +157,7 @@ class SphericalHistory:
 
     def __repr__(self) -> str:
         if not self.time.size:
-            return "<SphericalHistory without steps>"
+            return "<SphericalHistory without steps: run a solver first>"
         gap, peak = float(self.minimum_gap.min()), float(self.peak_pressure.max())
         return (
             f"<SphericalHistory of {self.time.size} steps from {self.time[0]:.6g} to {self.time[-1]:.6g} s: "
@@ -259,7 +265,7 @@ class LubricatedSphericalJoint(Joint):
         InputError
             Before anything was recorded.
         """
-        h = self.history
+        h = spherical_history(self._recorded())
         if h.time.size == 0:
             raise InputError(
                 f"LubricatedSphericalJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."

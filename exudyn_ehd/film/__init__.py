@@ -3,6 +3,7 @@
 Module map
 ----------
 grid         vertices (theta, z), control volumes, weights
+combinations options of a bearing that exclude or need each other
 models       film models that a scene names; their grids and solvers
 supply       grooves, holes, pockets
 loads        integrals of pressure, shear and drag; flows through the edges

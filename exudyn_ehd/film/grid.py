@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.status import require_bool, require_integer, require_number
+from exudyn_ehd.status import require_bool, require_count, require_number
 
 
 class Mesh(NamedTuple):
@@ -70,6 +70,8 @@ class FilmGrid:
         Integration weights along z.
     weight : (n, m) array
         Integration weights (area), next to the edges of supply areas no product of those in theta and z.
+    lands : (n, m) array or None
+        Integration weights of what acts between the surfaces alone, outside of supply areas; None: ``weight``.
     fixed : (n, m) bool array
         Vertices with prescribed pressure.
     reference_length : float
@@ -91,6 +93,12 @@ class FilmGrid:
     fixed: np.ndarray
     reference_length: float
     cuts: np.ndarray | None = None
+    lands: np.ndarray | None = None
+
+    @property
+    def shear_weight(self) -> np.ndarray:
+        """Integration weights (n, m) of the shear between the surfaces."""
+        return self.weight if self.lands is None else self.lands
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -237,7 +245,7 @@ def rows_between(edges: Sequence[float], counts: Sequence[int], stretch: float) 
 
 
 def _check_grid(where: str, n_z: int, stretch: float, **flags: bool) -> None:
-    require_integer(f"{where}: n_z", n_z, at_least=1)
+    require_count(f"{where}: n_z", n_z, at_least=1)
     require_number(f"{where}: stretch", stretch, at_least=0.0, below=1.0)
     for name, value in flags.items():
         require_bool(f"{where}: {name}", value)
@@ -289,7 +297,7 @@ def bearing_grid(
     for name, value in (("radius", radius), ("length", length)):
         require_number(f"bearing_grid: {name}", value, "m", above=0.0)
     require_number("bearing_grid: start_angle", start_angle, "rad")
-    require_integer("bearing_grid: n_theta", n_theta, at_least=3)
+    require_count("bearing_grid: n_theta", n_theta, at_least=3)
     _check_grid("bearing_grid", n_z, stretch, open_ring=open_ring)
     step = 2.0 * math.pi / n_theta
     theta = start_angle + step * np.arange(n_theta)
@@ -377,7 +385,7 @@ def slider_grid(
     scale = length if reference_length is None else reference_length
     for name, value in (("length", length), ("width", width), ("reference_length", scale)):
         require_number(f"slider_grid: {name}", value, "m", above=0.0)
-    require_integer("slider_grid: n_x", n_x, at_least=1)
+    require_count("slider_grid: n_x", n_x, at_least=1)
     _check_grid("slider_grid", n_z, stretch, sealed_sides=sealed_sides)
     step = length / scale / n_x
     x = np.concatenate(([0.0], step * (np.arange(n_x) + 0.5), [length / scale]))

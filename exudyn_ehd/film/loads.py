@@ -66,6 +66,25 @@ def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
         rhs_out[1, r] = w * z[at]
 
 
+@njit(cache=True, inline="always")
+def ends_cavity(active, fixed, i, end):
+    """Whether the end vertex (i, end) lies beside a cavity: its half control volume then holds what the cavity does."""
+    last = active.shape[1] - 1
+    beside = 1 if end == 0 else last - 1
+    return last > 1 and fixed[i, end] and not (active[i, beside] or fixed[i, beside])
+
+
+@njit(cache=True)
+def ends_of_cavity(H, weight, active, fixed, ratio):
+    """C over the ends' half control volumes beside a cavity, with a viscosity ratio (n, m) or None."""
+    out = 0.0
+    for i in range(H.shape[0]):
+        for end in (0, H.shape[1] - 1):
+            if ends_cavity(active, fixed, i, end):
+                out += weight[i, end] / H[i, end] * (1.0 if ratio is None else ratio[i, end])
+    return out
+
+
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def couette_integral(H, weight, active, fixed, cavity_share):
     """(C, C over the unbroken film, dC as -W share/H^2 is left to `couette_gradient`)."""
@@ -75,7 +94,8 @@ def couette_integral(H, weight, active, fixed, cavity_share):
         s = w[c] / h[c]
         unbroken += s if free[c] | known[c] else 0.0
         cavity += 0.0 if free[c] | known[c] else s
-    return unbroken + cavity_share * cavity, unbroken
+    ends = ends_of_cavity(H, weight, active, fixed, None)
+    return unbroken + cavity_share * cavity - (1.0 - cavity_share) * ends, unbroken - ends
 
 
 @njit(cache=True)
@@ -120,6 +140,47 @@ def couette_gradient(H, weight, active, fixed, cavity_share, out):
         for j in range(m):
             share = 1.0 if (active[i, j] or fixed[i, j]) else cavity_share
             out[i, j] = -share * weight[i, j] / (H[i, j] * H[i, j])
+        for end in (0, m - 1):
+            out[i, end] *= cavity_share if ends_cavity(active, fixed, i, end) else 1.0
+
+
+# Flat loops without checks for a division by zero, which the compiler vectorises.
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def couette_integral_law(H, weight, ratio, active, fixed, cavity_share):
+    """(C with the viscosity ratio in ``sum weight share ratio / H``, C over the unbroken film)."""
+    h, w, r, a, b = H.reshape(-1), weight.reshape(-1), ratio.reshape(-1), active.reshape(-1), fixed.reshape(-1)
+    whole = 0.0
+    unbroken = 0.0
+    for k in range(h.size):
+        s = w[k] * r[k] / h[k]
+        kept = s if a[k] | b[k] else 0.0
+        unbroken += kept
+        whole += s - kept
+    ends = ends_of_cavity(H, weight, active, fixed, ratio)
+    return unbroken + cavity_share * whole - (1.0 - cavity_share) * ends, unbroken - ends
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def couette_gradient_ratio(H, weight, ratio, ratio_h, ratio_v, active, fixed, cavity_share, out):
+    """dC/dH of `couette_integral_law` -> out (n, m); returns dC/dv."""
+    h, w, a, b = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1)
+    r, r_h, r_v, gradient = ratio.reshape(-1), ratio_h.reshape(-1), ratio_v.reshape(-1), out.reshape(-1)
+    speed = 0.0
+    for k in range(h.size):
+        inverse = 1.0 / h[k]
+        density = w[k] * inverse
+        density = density if a[k] | b[k] else density * cavity_share
+        gradient[k] = density * (r_h[k] - r[k] * inverse)
+        speed += density * r_v[k]
+    n, m = H.shape
+    for i in range(n):
+        for end in (0, m - 1):
+            if ends_cavity(active, fixed, i, end):
+                out[i, end] *= cavity_share
+                speed -= (1.0 - cavity_share) * weight[i, end] / H[i, end] * ratio_v[i, end]
+    return speed
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -12,7 +12,6 @@ tangent      derivatives of the wrench
 heat         temperature over time
 thrust       films on both end faces
 model        from a bearing's description to its evaluation
-feed         faces that the journal's film feeds
 balance      steady films: their temperature, their position under a load
 spherical    a ball in its socket
 audit        which effects mattered

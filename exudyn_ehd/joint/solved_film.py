@@ -29,9 +29,12 @@ from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply.cuts import SupplyMap
+from exudyn_ehd.film.supply.recess import RecessShear
+from exudyn_ehd.film.surfaces.contact import Contact
 
 # Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
 MOTION_SIZE = 10
@@ -76,27 +79,35 @@ class ContactFields:
     Parameters
     ----------
     shape : (int, int)
+    laws : list of Contact
+
+    Attributes
+    ----------
     friction : list of (float, float)
         Boundary friction coefficient and transition speed (m/s) of every contact.
     presses_below : float
         Scaled gap from which on no contact presses.
-
-    Attributes
-    ----------
     P, slope : lists of (n, m) arrays
         Pressure of every contact, Pa, and its derivative with respect to the scaled gap.
     integrals : (contacts, 5) array
         As `exudyn_ehd.film.surfaces.contact_wrench.contact_wrench` leaves them.
     """
 
-    def __init__(self, shape: tuple[int, int], friction: list[tuple[float, float]], presses_below: float) -> None:
-        self.P = [np.zeros(shape) for _ in friction]
-        self.slope = [np.zeros(shape) for _ in friction]
-        self.integrals = np.zeros((len(friction), 5))
+    def __init__(self, shape: tuple[int, int], laws: list[Contact]) -> None:
+        self.laws = laws
+        self.P = [np.zeros(shape) for _ in laws]
+        self.slope = [np.zeros(shape) for _ in laws]
+        self.integrals = np.zeros((len(laws), 5))
         self.gradients = np.zeros((5, 4))
-        self.friction = friction
-        self.presses_below = presses_below
+        self.friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in laws]
+        self.presses_below = max(f.presses_below for f in laws)
         self.acting = False
+
+    def press(self, H: np.ndarray) -> None:
+        """Pressures at the true gap H (n, m), scaled."""
+        self.acting = True
+        for law, P, slope in zip(self.laws, self.P, self.slope, strict=True):
+            law.pressure(H, P, slope)
 
     def clear(self) -> None:
         """No pressures."""
@@ -250,6 +261,7 @@ class Loads(NamedTuple):
     integrals : (4,) array, scaled pressure times cos, sin, z cos, z sin
     couette, couette_unbroken : scaled integrals of the Couette shear, of all of the film and of its unbroken part
     s_theta : scaled integral of the pressure flow's shear along theta
+    recess : shear of the oil in supply areas, which is part of both integrals of the Couette shear; None without any
     """
 
     wrench: np.ndarray
@@ -258,6 +270,7 @@ class Loads(NamedTuple):
     couette: float
     couette_unbroken: float
     s_theta: float
+    recess: RecessShear | None = None
 
 
 class SolvedFilm(NamedTuple):
@@ -337,10 +350,7 @@ class SolvedFilm(NamedTuple):
 
     def share(self) -> np.ndarray:
         """Share of a full film's shear that acts at each vertex (n, m)."""
-        s = self.solver
-        if s.closure.conserves_mass:
-            return s.fill
-        return np.where(s.work.active | self.grid.fixed, 1.0, s.closure.cavity_shear)
+        return shear_share(self.solver.system, self.solver.work.active, self.solver.closure)
 
     def slip(self, transition_speed: float) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""

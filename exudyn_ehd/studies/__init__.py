@@ -2,8 +2,8 @@
 
 Module map
 ----------
-parameters      `parameter_study`: a function over lists of parameters, in processes, under MPI, on hosts
-places          where rows are computed, and what becomes of a row whose process dies
+parameters      `parameter_study`: a function over lists of parameters, in processes, by an executor
+places          computation of the rows in this process or by an executor
 rows            one row, and the file of finished ones
 recommend       `recommend`: the cheapest film that keeps an error
 steps           `recommend_steps`: time steps in a mechanism

@@ -1,20 +1,14 @@
-"""Studies over parameters: in this process, in several, under MPI, on hosts, by executors; rows kept on disk.
-
-The same call serves all of them; what differs is how the script is started:
+"""Studies over parameters: in this process, in several, by an executor; rows kept on disk.
 
 =============  ==========================================  =============================================================
 where          call                                        start
 =============  ==========================================  =============================================================
 this process   ``parameter_study(f, parameters)``          ``python study.py``
 processes      ``..., processes=4``                        ``python study.py``; under ``if __name__ == "__main__":``
-MPI            ``..., mpi=True``                           ``mpiexec -n 5 python -m mpi4py.futures study.py``: one rank
-                                                           leads, four compute; needs mpi4py and an MPI library; under
-                                                           ``if __name__ == "__main__":``
-hosts          ``..., hosts=("10.0.0.2", "10.0.0.3")``     ``python study.py``, with ``dispynode.py`` of the package
-                                                           dispy running on every host and this package installed there
-executor       ``..., executor=pool``                      ``python study.py``: any executor of processes that follows
-                                                           `concurrent.futures`, as those of loky, ipyparallel,
-                                                           mpi4py.futures, and ``Client(...).get_executor()`` of dask
+executor       ``..., executor=pool``                      any executor of processes that follows `concurrent.futures`,
+                                                           as those of loky, ipyparallel, mpi4py.futures (MPI:
+                                                           ``mpiexec -n 5 python -m mpi4py.futures study.py``), and
+                                                           ``Client(...).get_executor()`` of dask (clusters)
 =============  ==========================================  =============================================================
 
 Set the environment variable ``OMP_NUM_THREADS=1`` for more than one process: every worker has its own linear algebra.
@@ -29,7 +23,6 @@ import numbers
 import pathlib
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -272,32 +265,28 @@ def parameter_study(
     parameters: Mapping[str, Sequence[float]],
     *,
     processes: int = 1,
-    mpi: bool = False,
-    hosts: Sequence[str] = (),
     executor: Executor | None = None,
     file: str | pathlib.Path | None = None,
     units: Mapping[str, str] | None = None,
     show_progress: bool | None = None,
+    mpi: bool = False,
+    hosts: Sequence[str] = (),
 ) -> StudyTable:
     """Evaluate a function at every combination of parameters; see the module's docstring for where it runs.
 
     Parameters
     ----------
     function : callable
-        Gets a dict of parameters and returns a number or a dict of numbers. It builds its own model. For processes and
-        MPI it must be importable: a function or an instance of a class defined at the top of a module. Hosts get the
-        source of a plain function alone: let it import what it needs.
+        Gets a dict of parameters and returns a number or a dict of numbers. It builds its own model. For other
+        processes it must be importable: a function or an instance of a class defined at the top of a module.
     parameters : dict
         Name: sequence of numbers.
     processes : int
         Number of processes on this machine.
-    mpi : bool
-        Compute on the ranks of an MPI run.
-    hosts : sequence of str
-        Names or addresses of hosts that run dispy's node server, which executes what anyone on its network sends: for
-        trusted networks only.
     executor : Executor, optional
         Of `concurrent.futures`, or one that follows it; it stays open. More than 512 rows go to it in parts.
+    mpi, hosts
+        Not supported any more; an `InputError` names the executor that takes their place.
     file : path, optional
         Keeps finished rows, each as soon as it is there. A second call reads them and computes the rest: what was
         interrupted, what failed, what was added to the lists. A change of the function itself, or of the bearing and
@@ -310,16 +299,16 @@ def parameter_study(
     Returns
     -------
     StudyTable
-        A row that fails, or whose process dies, does not end the study: it holds nan and says why in ``errors``. Under
-        MPI a rank that dies ends all of them; with ``file`` the next call goes on from there.
+        A row that fails does not end the study: it holds nan and says why in ``errors``. A process that dies takes the
+        rows along that its executor has not finished; with ``file`` the next call computes them.
 
     Raises
     ------
     InputError
-        For parameters that are no lists of numbers, functions that can't be sent to other processes, several places at
-        once, executors of threads, missing packages, MPI without mpiexec, files of another function.
+        For parameters that are no lists of numbers, functions that can't be sent to other processes, processes beside
+        an executor, executors of threads, files of another function.
     EHDError
-        If every row failed, or no host answers.
+        If every row failed.
 
     Examples
     --------
@@ -331,7 +320,7 @@ def parameter_study(
     """
     lists = _checked_parameters(parameters)
     told = is_shown() if show_progress is None else show_progress
-    where = _checked_place(processes, mpi, hosts, executor)
+    _require_place(processes, executor, mpi, hosts)
     points = [dict(zip(lists, values, strict=True)) for values in itertools.product(*lists.values())]
     kept = None if file is None else RowFile(file, function)
     stored = [None if kept is None else kept.find(point) for point in points]
@@ -339,15 +328,13 @@ def parameter_study(
     left = {index: point for index, point in enumerate(points) if index not in rows}
     if told and rows:
         print(f"{len(rows)} of {len(points)} rows are taken from {file}", flush=True)
-    runs: dict[str, Callable[[], places.Rows]] = {
-        "here": lambda: places.here(function, left),
-        "processes": lambda: places.in_processes(function, left, processes),
-        "mpi": lambda: places.on_ranks(function, left),
-        "hosts": lambda: places.on_hosts(function, left, hosts),
-    }
     if executor is not None:
-        runs["executor"] = partial(places.on_executor, function, left, executor)
-    for index, row in runs[where]() if left else ():
+        computed = places.on_executor(function, left, executor)
+    elif processes > 1:
+        computed = places.in_processes(function, left, processes)
+    else:
+        computed = places.here(function, left)
+    for index, row in computed if left else ():
         rows[index] = row
         if kept is not None:
             kept.add(points[index], row)
@@ -373,20 +360,17 @@ def _checked_parameters(parameters: Mapping[str, Sequence[float]]) -> dict[str, 
     return lists
 
 
-def _checked_place(processes: int, mpi: bool, hosts: Sequence[str], executor: Executor | None) -> str:
+def _require_place(processes: int, executor: Executor | None, mpi: bool, hosts: Sequence[str]) -> None:
     require_integer(f"{_WHERE}: processes", processes, at_least=1)
-    given = {"processes": processes > 1, "mpi": mpi, "hosts": len(hosts) > 0, "executor": executor is not None}
-    asked = [name for name, wanted in given.items() if wanted]
-    if len(asked) > 1:
+    if mpi or hosts:
         raise InputError(
-            f"{_WHERE}: only one of processes, mpi, hosts and executor can be given, got {' and '.join(asked)}."
+            f"{_WHERE}: mpi and hosts are not supported any more; give executor=mpi4py.futures.MPIPoolExecutor() for "
+            "MPI, or executor=dask.distributed.Client(...).get_executor() for hosts."
         )
-    for place, package in (("mpi", "mpi4py"), ("hosts", "dispy")):
-        if place in asked:
-            places.require_package(place, package)
     if executor is not None:
+        if processes > 1:
+            raise InputError(f"{_WHERE}: only one of processes and executor can be given, got both.")
         places.require_executor(executor)
-    return asked[0] if asked else "here"
 
 
 def _table(

@@ -127,7 +127,8 @@ def recommend(
     tilt_ratio : float
         Share of the mid-plane's minimum film thickness that the tilt takes at one end, 0 to 0.7.
     direction : float, optional
-        Of the eccentricity, rad; without it all around, which matters for supplied and other uneven bearings.
+        Of the eccentricity, rad; without it all around, which matters for supplied and other uneven bearings. All
+        around in any case with supply areas that turn with the journal.
     speed : float
         rad/s; not needed for plain bearings, whose relative errors do not depend on it.
 
@@ -156,7 +157,7 @@ def recommend(
     speed = _speed(bearing, speed)
     ratio = bearing.length / (2.0 * bearing.journal_radius)
     place = f"L/D {ratio:.3g}, eps {low:g} to {high:g}, tilt {tilt_ratio:g}"
-    unknown = _unknown(bearing, {"L/D": (ratio, RATIO), "tilt_ratio": (tilt_ratio, TILT)}, (low, high))
+    unknown = _unknown(bearing, quantity, {"L/D": (ratio, RATIO), "tilt_ratio": (tilt_ratio, TILT)}, (low, high))
     if unknown:
         return Recommendation(found=False, reason=f"nothing is known of this bearing: {unknown}.")
     count = 1 + math.ceil((high - low) / SPACING - 1e-9)
@@ -240,13 +241,18 @@ def _speed(bearing: JournalBearing, speed: float | None) -> float:
 
 
 def _unknown(
-    bearing: JournalBearing, numbers: Mapping[str, tuple[float, tuple[float, float]]], eccentricity: tuple[float, float]
+    bearing: JournalBearing,
+    quantity: str,
+    numbers: Mapping[str, tuple[float, tuple[float, float]]],
+    eccentricity: tuple[float, float],
 ) -> str:
     """Why nothing is known of such a bearing; empty if something is."""
     if isinstance(bearing.bush, ANCFBush):
         return "an ANCFBush takes minutes a film; ask for the ModalBush of the same mesh, or compare a finer film"
     if isinstance(bearing.inlet, MaximumGap):
         return "inlet=MaximumGap() cuts the film where the journal stands; compare a finer film"
+    if quantity == "critical mass" and any(area.rotating for area in bearing.supply):
+        return "supply areas turn with the journal (rotating=True), so that it has no equilibrium and no critical mass"
     for name, (value, (lowest, highest)) in numbers.items():
         if not lowest <= value <= highest:
             return f"{name} is {value:g}, and this was tried from {lowest:g} to {highest:g}"
@@ -259,7 +265,12 @@ def _unknown(
 
 
 def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
-    """Directions of the eccentricity, rad: all around or where asked, over a column of the coarsest grid."""
+    """Directions of the eccentricity, rad: all around or where asked, over a column of the coarsest grid.
+
+    All around too where supply areas turn with the journal: they pass every angle to the eccentricity.
+    """
+    if any(area.rotating for area in bearing.supply):
+        direction = None
     many = UNEVEN_DIRECTIONS if (bearing.supply or bearing.profiles) and direction is None else DIRECTIONS
     count = np.arange(many)
     places = COARSEST * (GOLDEN * count % 1.0 - 0.5)

@@ -28,7 +28,7 @@ from exudyn.itemInterface import (
     ObjectRigidBody2D,
 )
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint
@@ -206,14 +206,17 @@ def _say_again(caught: list[warnings.WarningMessage]) -> None:
         warn_user(text, kind)
 
 
-def _periodic(values: np.ndarray, period: float) -> CubicSpline:
-    """A smooth periodic function through values at equal intervals."""
+def _periodic(values: np.ndarray, period: float) -> CubicHermiteSpline:
+    """Return a periodic function through values at equal intervals that stays between neighbours: monotone cubics."""
     times = np.linspace(0.0, period, len(values) + 1)
-    return CubicSpline(times, np.concatenate([values, values[:1]]), bc_type="periodic")
+    known = np.concatenate([values[-1:], values, values[:2]])
+    around = period / len(values) * np.arange(-1, len(values) + 2)
+    slopes = PchipInterpolator(around, known).derivative()(times)
+    return CubicHermiteSpline(times, known[1:-1], slopes, extrapolate="periodic")
 
 
 def _second_period(
-    bearing: JournalBearing, steps: int, spin: CubicSpline, force: CubicSpline, mass: float
+    bearing: JournalBearing, steps: int, spin: CubicHermiteSpline, force: CubicHermiteSpline, mass: float
 ) -> np.ndarray:
     """Minimum film thickness (steps + 1,) over the second period."""
     period, turned = float(force.x[-1]), spin.antiderivative()

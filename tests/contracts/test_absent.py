@@ -131,8 +131,8 @@ EFFECTS = {
         {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
     ),
     "holes": (
-        ("film.supply.cuts", "film.supply.holes"),
-        {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5),)},
+        ("film.supply.cuts", "film.supply.holes", "film.supply.coverage", "film.supply.recess"),
+        {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5, depth=1e-3),)},
     ),
     "thrust": (
         ("film.thrust.annulus", "film.thrust.face", "joint.thrust"),
@@ -148,6 +148,7 @@ EFFECTS = {
 # Modules that every film uses, that describe a scene, or (the last line) whose
 # kernels only other kernels of their effect call.
 SHARED = {
+    "combinations",
     "banded.lu",
     "banded.lanes",
     "banded.lending",

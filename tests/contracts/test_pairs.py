@@ -20,7 +20,7 @@ EFFECTS = {
     "roelands": {"lubricant": {"pressure_law": ehd.RoelandsPressure(coefficient=2e-8)}},
     "carreau": {"lubricant": {"shear_law": ehd.CarreauShear(relaxation_time=2e-6, exponent=0.8)}},
     "density": {"lubricant": {"density_law": ehd.DowsonHigginson()}},
-    "groove": {"supply": (ehd.AxialGroove(angle=3.0, width_angle=0.4, length=0.02, pressure=2e5),)},
+    "groove": {"supply": (ehd.AxialGroove(angle=3.0, width_angle=0.4, length=0.02, pressure=2e5, depth=3e-4),)},
     "wall": {"contact": ehd.RegularisedWall(onset=0.35 * CLEARANCE, pressure=1e7)},
     "asperity": {"asperity": ehd.GreenwoodTripp(composite_roughness=5e-6, composite_modulus=1e9)},
     "roughness": {"roughness": ehd.PatirCheng(composite_roughness=5e-6)},

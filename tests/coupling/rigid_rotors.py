@@ -44,6 +44,7 @@ def shaft(
     node=EULER,
     offsets=(0.0, 0.0),
     film=None,
+    weight=WEIGHT,
     held=True,
     extra=None,
     assemble=True,
@@ -54,7 +55,7 @@ def shaft(
     body = mbs.CreateRigidBody(
         referencePosition=place * turn[:, 2],
         inertia=inertia_of(mass, transverse, polar, turn, com),
-        gravity=-WEIGHT * turn[:, 1],
+        gravity=-weight * turn[:, 1],
         nodeType=node,
     )
     joints = []

@@ -3,7 +3,17 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import MarkerBodyPosition, ObjectJointRevolute2D, SensorObject
+from exudyn.itemInterface import (
+    MarkerBodyPosition,
+    MarkerBodyRigid,
+    MarkerKinematicTreeRigid,
+    NodeGenericODE2,
+    ObjectJointGeneric,
+    ObjectJointRevolute2D,
+    ObjectJointRevoluteZ,
+    ObjectKinematicTree,
+    SensorObject,
+)
 from exudyn.utilities import InertiaCuboid, RotationVector2RotationMatrix
 
 import exudyn_ehd as ehd
@@ -169,16 +179,116 @@ def inactive(mbs, items, place, turn):
     return joint
 
 
+def turned(angle, generic):
+    """A joint whose marker on the link is turned about its x by ``angle``, half a turn for antiparallel axes."""
+
+    def make(mbs, items, place, turn):
+        frames = np.eye(4), np.eye(4)
+        frames[0][:3, :3], frames[0][:3, 3] = turn, place
+        frames[1][:3, :3], frames[1][:3, 3] = RotationVector2RotationMatrix([angle, 0.0, 0.0]), [-0.1, 0.0, 0.0]
+        markers = [mbs.AddMarker(MarkerBodyRigid(bodyNumber=b, localHT=f)) for b, f in zip(items, frames, strict=True)]
+        if generic:
+            return mbs.AddObject(
+                ObjectJointGeneric(name="pivot", markerNumbers=markers, constrainedAxes=[1, 1, 1, 1, 1, 0])
+            )
+        return mbs.AddObject(ObjectJointRevoluteZ(name="pivot", markerNumbers=markers))
+
+    return make
+
+
+@pytest.mark.parametrize("journal", [0, 1])
+@pytest.mark.parametrize("generic", [False, True])
+def test_antiparallel_axes_are_those_of_one_joint(journal, generic):
+    """The film takes the housing's axis, so that the journal's sense changes nothing; 1e-6 of the clearance is rounding
+    of positions near 1 m, which the run enlarges."""
+    rng = np.random.default_rng(11 + journal)
+    place, turn = rng.uniform(-1.0, 1.0, 3), RotationVector2RotationMatrix(rng.uniform(-1.5, 1.5, 3))
+    ends = []
+    for angle in (0.0, np.pi):
+        mbs, number, link = pendulum(place, turn, turned(angle, generic))
+        joint = ehd.ReplaceJoint(mbs, number, bearing=BEARING, journal=journal)
+        solve(mbs)
+        ends.append((end(mbs, link), joint.history.friction_torque[-1]))
+    sense = 1.0 if journal else -1.0  # of the joint's axis where the link is the housing
+    assert np.abs(ends[1][0] - ends[0][0]).max() < 1e-6 * CLEARANCE
+    assert ends[1][1] == pytest.approx(sense * ends[0][1], rel=1e-6)
+    mbs, number, _ = pendulum(place, turn, turned(0.01, generic))
+    with pytest.raises(ehd.InputError, match=r"pivot.*must be parallel .*; turn one of the markers"):
+        ehd.ReplaceJoint(mbs, number, bearing=BEARING, journal=journal)
+
+
+def elbow():
+    """A link on the link of a kinematic tree, the tree's marker first."""
+    mbs = exu.SystemContainer().AddSystem()
+    node = mbs.AddNode(
+        NodeGenericODE2(
+            referenceCoordinates=[0.0],
+            initialCoordinates=[0.0],
+            initialCoordinates_t=[0.0],
+            numberOfODE2Coordinates=1,
+        )
+    )
+    tree = mbs.AddObject(
+        ObjectKinematicTree(
+            nodeNumber=node,
+            jointTypes=[exu.JointType.RevoluteZ],
+            linkParents=[-1],
+            jointTransformations=exu.Matrix3DList([np.eye(3)]),
+            jointOffsets=exu.Vector3DList([[0, 0, 0]]),
+            linkInertiasCOM=exu.Matrix3DList([LINK.InertiaCOM()]),
+            linkCOMs=exu.Vector3DList([[0.1, 0, 0]]),
+            linkMasses=[LINK.mass],
+        )
+    )
+    body = mbs.CreateRigidBody(inertia=LINK, referencePosition=[0.3, 0, 0])
+    markers = [
+        mbs.AddMarker(MarkerKinematicTreeRigid(objectNumber=tree, linkNumber=0, localPosition=[0.2, 0, 0])),
+        mbs.AddMarker(MarkerBodyRigid(bodyNumber=body, localPosition=[-0.1, 0, 0])),
+    ]
+    return mbs, mbs.AddObject(ObjectJointRevoluteZ(name="elbow", markerNumbers=markers))
+
+
+@pytest.mark.parametrize("tilt", [ehd.Free(), ehd.Held()])
+def test_trees_as_housings_are_refused_with_a_remedy_that_works(tilt):
+    held = "tilt" if tilt == ehd.Held() else "axial"
+    mbs, number = elbow()
+    with pytest.raises(ehd.InputError, match=rf"'elbow' \(JointRevoluteZ\).* {held}=Held\(\) .*journal=0") as error:
+        ehd.ReplaceJoints(mbs, bearing=BEARING, tilt=tilt)
+    assert "link of a kinematic tree" in str(error.value)
+    for remedy in ({"journal": 0}, {"axial": ehd.Free(), "tilt": ehd.Free()}):
+        mbs, number = elbow()
+        assert ehd.ReplaceJoint(mbs, number, bearing=BEARING, **({"tilt": tilt} | remedy)).name == "film of elbow"
+
+
+def test_errors_of_the_new_joint_name_the_old_one():
+    """Here a journal that is not in its bore; joints of one name get films of their own."""
+    mbs, joints = chain(2)
+    for joint in joints:
+        mbs.SetObjectParameter(joint, "name", "hinge")
+    films = ehd.ReplaceJoints(mbs, bearing=BEARING)
+    assert [film.name for film in films.values()] == ["film of hinge", f"film of hinge (object {int(joints[1])})"]
+    mbs, joints = chain(1)
+    mbs.SetNodeParameter(exu.NodeIndex(0), "initialCoordinates", [1e-3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    with pytest.raises(ehd.InputError, match=rf"object {int(joints[0])} 'pivot 0' .*outside the bore.*; check"):
+        ehd.ReplaceJoints(mbs, bearing=BEARING)
+    mbs, joints = chain(1)
+    with pytest.raises(ehd.InputError, match=rf"object {int(joints[0])} 'pivot 0' .*bearing must be a JournalBearing"):
+        ehd.ReplaceJoints(mbs, bearing=lambda number: ehd.FiniteLength())
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
         (constrained(1, 1, 1, 1, 0, 0), "exactly one must be free"),
         (constrained(1, 1, 1, 1, 1, 1), "exactly one must be free"),
-        (constrained(0, 1, 1, 1, 1, 0), "free across the axis"),
-        (moved, "has an offset function"),
+        (constrained(0, 1, 1, 1, 1, 0), r"free across the axis.*; leave this joint as it is"),
+        (moved, r"has an offset function.*; leave this joint as it is"),
         (read, "is read by sensor 0 'load'"),
-        (inactive, "is inactive"),
-        (lambda mbs, items, place, turn: items[1], r"\(RigidBody\) is none of the joints"),
+        (inactive, r"is inactive.*; set its activeConnector to True"),
+        (
+            lambda mbs, items, place, turn: items[1],
+            r"\(RigidBody\) is none of the joints.*; put a film between two bodies",
+        ),
     ],
 )
 def test_what_a_film_can_not_replace_is_refused(make, message):

@@ -73,3 +73,51 @@ def test_groove_in_the_journal_turns_with_it():
         assert np.allclose(history.force[k], expected[:3], rtol=1e-8, atol=1e-8 * np.abs(expected[:3]).max())
     still = model.evaluate(history.motion[20], None, 0.0, 0.0).wrench
     assert not np.allclose(history.force[20], still[:3], rtol=1e-3)
+
+
+def test_a_recess_drags_the_housing_as_it_brakes_the_journal():
+    """Two free bodies: the housing gains the spin that the journal loses, by the recess's 4 mu U / d as well."""
+    size, depth = math.pi, 4e-4
+    inertia = InertiaCuboid(density=7800, sideLengths=[0.05, 0.05, 0.1])
+
+    def spins(depth):
+        pocket = ehd.Pocket(angle=0.0, width_angle=size, length=0.02, pressure=0.0, depth=depth)
+        mbs = exu.SystemContainer().AddSystem()
+        bodies = [
+            mbs.CreateRigidBody(
+                inertia=inertia,
+                nodeType=exu.NodeType.RotationRxyz,
+                referencePosition=[0, 0, 0],
+                initialAngularVelocity=[0, 0, spin],
+                returnDict=True,
+            )
+            for spin in (0.0, SPEED)
+        ]
+        ehd.CreateLubricatedJoint(
+            mbs,
+            itemNumbers=[body["bodyNumber"] for body in bodies],
+            position=[0, 0, 0],
+            axis=[0, 0, 1],
+            bearing=_bearing(supply=(pocket,), cavitation=ehd.FullSommerfeld()),
+        )
+        mbs.Assemble()
+        settings = exu.SimulationSettings()
+        settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.01, 20
+        settings.timeIntegration.verboseMode = 0
+        settings.solution.file.write = False
+        ehd.ConfigureSolver(settings)
+        mbs.SolveDynamic(settings)
+        kind = exu.OutputVariableType.AngularVelocity
+        return np.array([mbs.GetNodeOutput(body["nodeNumber"], kind)[2] for body in bodies])
+
+    deep, shallow = spins(None), spins(depth)
+    # round-off of Newton's method
+    assert deep.sum() == pytest.approx(SPEED, rel=1e-9) and shallow.sum() == pytest.approx(SPEED, rel=1e-9)
+    # concentric; the slip falls by the rate of both bodies together
+    area, lands = size * 0.025 * 0.02, (2.0 * math.pi * 0.03 - size * 0.02) * 0.025
+    rates = [
+        2.0 * 0.02 * 0.025**2 * (lands / 50e-6 + more) / inertia.InertiaCOM()[2, 2]
+        for more in (0.0, 4.0 * area / depth)
+    ]
+    for found, rate in zip((deep, shallow), rates, strict=True):
+        assert found[1] - found[0] == pytest.approx(SPEED * math.exp(-0.01 * rate), rel=1e-5)

@@ -38,10 +38,14 @@ def test_picture_has_a_labelled_bar_and_names_what_is_not_to_scale(film, tmp_pat
     assert (tmp_path / "bearing.png").stat().st_size > 10_000
 
 
-def test_every_facet_has_four_finite_corners(film):
+def test_every_facet_has_four_finite_corners(film, monkeypatch):
     """Matplotlib pads shorter polygons with uninitialised memory, which then scales the axes."""
-    (facets,) = film.plot_bearing().axes[0].collections[:1]
-    corners = np.asarray(facets._faces)
+    drawn, collection = [], bearing3d.Poly3DCollection
+    monkeypatch.setattr(
+        bearing3d, "Poly3DCollection", lambda polygons, **style: drawn.append(polygons) or collection(polygons, **style)
+    )
+    film.plot_bearing()
+    (corners,) = map(np.asarray, drawn)
     assert corners.shape[1:] == (4, 3)
     assert np.abs(corners).max() < 1.0 + bearing3d.HILL + 1e-9
 

@@ -117,6 +117,16 @@ def test_supply():
     assert true_error(question, around) <= 0.02
 
 
+def test_areas_that_turn_with_the_journal_are_met_at_all_angles():
+    """Whatever direction is given; without an equilibrium there is no critical mass."""
+    bearing = _bearing(supply=(ehd.Hole(angle=1.0, diameter=8e-3, pressure=2e5, rotating=True),))
+    question = {"error": 0.05, "eccentricity_ratio": 0.6, "speed": SPEED}
+    around, there = (ehd.recommend(bearing, quantity="load", direction=d, **question) for d in (None, 4.0))
+    assert around.found
+    assert (there.film, there.error, there.evidence) == (around.film, around.error, around.evidence)
+    assert "no critical mass" in ehd.recommend(bearing, quantity="critical mass", **question).reason
+
+
 @pytest.mark.parametrize(
     ("change", "place", "words"),
     [

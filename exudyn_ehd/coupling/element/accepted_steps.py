@@ -24,7 +24,7 @@ from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
-from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
+from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.watch import poor_films, solver_state, tiny_forces
 from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch, warn_of_radius
@@ -147,7 +147,7 @@ class AcceptedSteps:
         self.tolerance: float | None = None
         self._thin = -np.inf
         self._told = True
-        self._overloaded, self._cool = False, HOT
+        self._overloaded, self._cool, self._grid = False, HOT, poor_films.GridWatch()
         self.asked: tuple[float, list[float]] = (np.nan, [])
         self.forget()
 
@@ -241,7 +241,7 @@ class AcceptedSteps:
         self._may_starve = self._uses_memory and lacks_oil(bearing)
         self.tangent = self.load = self.tolerance = None
         self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
-        self._cool = HOT
+        self._cool, self._grid = HOT, poor_films.GridWatch()
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory, self.began = place, memory, start
         if not resumed and not goes_on:
@@ -322,9 +322,10 @@ class AcceptedSteps:
     def _warn_of_film(self, start: float, trial: Trial, row: np.ndarray) -> None:
         """Warn, once per run, of a film that is too thin for smooth surfaces or presses too hard for any."""
         failures = self.film.failures
+        self._grid.take(start, row[PEAK_PRESSURE], getattr(trial.found, "film", None))
         if (gap := row[MINIMUM_GAP]) < self._thin:
             self._thin = -np.inf
-            poor_films.warn_of_thin_film(failures.name, start, gap)
+            poor_films.warn_of_thin_film(failures.name, start, gap, failures.tilting(trial.motion))
         if not self._overloaded and failures.overload(row) > 1.0:
             self._overloaded = True
             warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)
@@ -370,6 +371,7 @@ class AcceptedSteps:
         if self._told:
             return
         self._told = True
+        self._grid.tell(self.film.failures.name)
         history = self.history(mbs)
         tiny_forces.warn(self.film.failures.name, self.solver, self.tolerance, self.film.model.bearing, history)
         if summary.is_on() and history.time.size > 1:

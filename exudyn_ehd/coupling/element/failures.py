@@ -30,6 +30,9 @@ from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarni
 
 # Mean over peak pressure below which no film is.
 SHARE = 0.01
+# Tilting dominates where the eccentricity ratio at an end exceeds both: this many times that of the mid-plane (from 2
+# on most of it is tilt), and this value (1 touches). Larger values hold the advice back.
+TILTED, NEAR = 2.0, 0.8
 
 
 class Failures:
@@ -59,7 +62,7 @@ class Failures:
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
         """The film can't be evaluated, and the solver can't repeat the step."""
         if np.all(np.isfinite(trial.motion)):
-            state = self._place(trial.motion)
+            state = self.place(trial.motion)
         elif trial.status == Status.NOT_FINITE:
             state = "the state is not finite; "
         else:
@@ -91,7 +94,7 @@ class Failures:
         return self._at(
             time,
             f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: its last "
-            f"velocities miss its last displacement by {miss:.3g} m; {self._place(trial.motion)}with the journal's "
+            f"velocities miss its last displacement by {miss:.3g} m; {self.place(trial.motion)}with the journal's "
             f"mass m and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C with "
             "forward Euler and 2.8 m / C with RK44, tilting motions alike: use smaller steps, DOPRI5 with its "
             "automatic steps, or an implicit solver.",
@@ -154,7 +157,7 @@ class Failures:
             time,
             f"the film's force is out of all proportion to the inertia and loads at hand: up to {force:.4g} N, thrown "
             f"from side to side from step to step, and {mean:.4g} N there in the mean of three steps, which is what "
-            f"moves the bodies and carries their loads; {self._place(trial.motion)}forces and "
+            f"moves the bodies and carries their loads; {self.place(trial.motion)}forces and "
             "pressures of the last steps are the time integration's: use ehd.ConfigureSolver(simulationSettings), or a "
             "spectral radius of 0.6 or less, ehd.SolveDynamic in place of mbs.SolveDynamic, and more steps until none "
             "is halved.",
@@ -171,7 +174,7 @@ class Failures:
             time,
             f"the accepted step has a film beyond the limits of joint.stop_at(force={self.largest_force:g}, "
             f"pressure={self.largest_pressure:g}): force {force:.4g} N, peak pressure {peak:.4g} Pa; "
-            f"{self._place(trial.motion)}check masses, loads and units, take more steps, or a larger limit.",
+            f"{self.place(trial.motion)}check masses, loads and units, take more steps, or a larger limit.",
         )
 
     def check_heat(self, time: float, trial: Trial, memory: History | None, limit: float) -> float:
@@ -189,7 +192,7 @@ class Failures:
         if is_above(HOTTEST, T):
             rubs = "; asperities rub, and heat spots through which hardly any oil flows"
             contact = "" if getattr(self.bearing, "asperity", None) is None else rubs
-            place = f"{hottest(T, film.grid)}, {self._place(trial.motion)}"
+            place = f"{hottest(T, film.grid)}, {self.place(trial.motion)}"
             raise self._at(time, f"the film is at {place}{NO_OIL}{contact}")
         where = f"LubricatedJoint '{self.name}' at t = {time:.9g} s"
         warnings.warn(hot_film(T, film.grid, where), HotFilmWarning, stacklevel=2)
@@ -216,7 +219,7 @@ class Failures:
             return None
         return self._at(
             time,
-            f"{PRESSED_THROUGH}; {self._place(trial.motion)}check load, mass and units; give the contact more "
+            f"{PRESSED_THROUGH}; {self.place(trial.motion)}check load, mass and units; give the contact more "
             "stiffness (RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
         )
 
@@ -231,7 +234,7 @@ class Failures:
         return (
             f"LubricatedJoint '{self.name}' at t = {time:.9g} s: the accepted step has a film that neither oil nor "
             f"steel bears: peak pressure {1e-6 * row[PEAK_PRESSURE]:.4g} MPa, force {force:.4g} N, {1e-6 * mean:.4g} "
-            f"MPa on the projected area; {self._place(motion)}if loads and inertia forces of the model are much "
+            f"MPa on the projected area; {self.place(motion)}if loads and inertia forces of the model are much "
             "smaller, the time integration has thrown the film: use ehd.SolveDynamic, "
             "ConfigureSolver(simulationSettings), more steps, or a StepControl; if they are not, check masses, loads, "
             "initial velocities and units, or give the bearing a bush that deflects; joint.stop_at(pressure=...) "
@@ -241,9 +244,20 @@ class Failures:
     def _at(self, time: float, message: str) -> FilmError:
         return FilmError(f"LubricatedJoint '{self.name}' at t = {time:.9g} s: {message}")
 
-    def _place(self, motion: np.ndarray) -> str:
+    def place(self, motion: np.ndarray) -> str:
+        """Where the journal is at a motion (10,), and `tilting`; the start of advice."""
         bearing = self.bearing
         mid, largest = eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
         gap = self.bore.smallest(motion)
         ratios = f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end"
-        return f"{ratios}, minimum gap of the rigid surfaces {gap:.6g} m; "
+        return f"{ratios}, minimum gap of the rigid surfaces {gap:.6g} m; {self.tilting(motion)}"
+
+    def tilting(self, motion: np.ndarray) -> str:
+        """Advice for a journal at a motion (10,) that touches by its tilt, before all other; empty for another."""
+        mid, largest = eccentricity_ratios(motion, self.bearing.radial_clearance, self.bearing.length)
+        if largest <= max(TILTED * mid, NEAR):
+            return ""
+        return (
+            "the journal has tilted into its bore: first give the joint tilt=ehd.Held() (CreateLubricatedJoint, "
+            "ReplaceJoint), unless other joints of its body carry the tilting moment; "
+        )

@@ -194,10 +194,7 @@ class FilmElement:
         # a sum is finite only if all its terms are
         if math.isfinite(trial.motion.dot(trial.motion)):
             spin = self._spin() if self.model.needs_spin else 0.0
-            if self.faces is None:
-                trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
-            else:
-                trial.take(self.faces.film(self.model, self.sides, trial, spin))
+            trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
             self.evaluations += 1
         self._trial = trial
 

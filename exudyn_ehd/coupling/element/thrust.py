@@ -8,20 +8,19 @@ where a bush yields under the journal's film. Besides the motion (10,) it needs 
 
 with the bearing's axis e_z, the journal's axis a_z in its direction, and the distance z_0 of both joint points in the
 reference configuration. It does not depend on where along the axis the journal's joint point lies, and its rate is w,
-to second order in the tilt. Rates are the velocities, of faces that the journal's film feeds those that this takes.
+to second order in the tilt. Rates are the velocities.
 """
 
 from __future__ import annotations
 
 import math
-import weakref
 from collections.abc import Mapping
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, Evaluation, JointModel, ObjectIndex, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, ObjectIndex, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
@@ -30,10 +29,7 @@ from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
 from exudyn_ehd.coupling.kinematics.sides import bind, derivatives_between
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
-from exudyn_ehd.joint.feed.films import FedEvaluation, FedFilms
 from exudyn_ehd.joint.model.compile import MESSAGE
-from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.thrust import ADVICE, ThrustEvaluation, ThrustModel
 from exudyn_ehd.progress import announced
@@ -93,14 +89,6 @@ class ThrustElement:
     def at(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> ThrustEvaluation:
         """The films at frames (3, 6) of housing and journal, of the motion (10,)."""
         return self.model.evaluate(motion, self._position(frames, motion))
-
-    def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
-        """The journal's film at a trial."""
-        return model.evaluate(trial.motion, trial.memory, trial.step, spin)
-
-    def beside(self, found: ThrustEvaluation, model: BearingModel) -> BearingEvaluation:
-        """The steady film of the journal at the state of an evaluation of `at`."""
-        return model.evaluate(found.motion)
 
     def place(self, sides: tuple[Side, Side], motion: np.ndarray) -> float:
         """Axial position, m, at the state to which the frames of ``sides`` and the motion (10,) belong."""
@@ -183,47 +171,6 @@ class ThrustElement:
         return False
 
 
-class FedThrustElement(ThrustElement):
-    """Films on the end faces that the journal's film feeds; parameters as for `ThrustElement`.
-
-    Both are found at once, when the element of the journal's film asks for its own, with the rates that this takes.
-    Its Jacobian is that with the ends' pressures held, and this one's has the rest: the sum is that of both films.
-    """
-
-    def __init__(self, film: FilmElement, sides: tuple[Side, Side], offset: float) -> None:
-        super().__init__(film, film.sides, offset)
-        assert isinstance(film.model, BearingModel)
-        self.films, self._film = FedFilms(film.model, self.model), weakref.proxy(film)
-        self._found: FedEvaluation | None = None
-
-    def at(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> FedEvaluation:
-        """As `ThrustElement.at`, of steady films."""
-        return self.films.evaluate(motion, self._position(frames, motion))
-
-    def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
-        """The journal's film at a trial, at the pressures of the edges."""
-        place = self.place(sides, trial.bodies)
-        self._found = self.films.evaluate(trial.motion, place, trial.memory, trial.step, spin)
-        return self._found.journal
-
-    def beside(self, found: ThrustEvaluation, model: BearingModel) -> BearingEvaluation:
-        """As `ThrustElement.beside`."""
-        assert isinstance(found, FedEvaluation)
-        return found.journal
-
-    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
-        """As `ThrustElement.wrench`, at the state of the last trial."""
-        return np.full(6, np.nan) if self._found is None else self._found.wrench
-
-    def _tried(self, sides: tuple[Side, Side], trial: Trial) -> ThrustEvaluation:
-        if self._found is not None and self._found.journal is trial.evaluation:
-            return self._found
-        return self.model.evaluate(trial.motion, np.nan)
-
-    def _evaluate(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> ThrustEvaluation:
-        return self._tried(self.sides, self._film.at(mbs, t, q, q_t))
-
-
 def attach_faces(
     mbs: exu.MainSystem,
     film: FilmElement,
@@ -250,9 +197,7 @@ def attach_faces(
     """
     housing, journal = (item.side(point, rotation) for item, point in zip(items, points, strict=True))
     offset = float(rotation[:, 2] @ (points[1] - points[0]))
-    faces = film.model.bearing.thrust
-    make = ThrustElement if faces is None or faces.feed is None else FedThrustElement
-    element = make(film, (housing, journal), offset)
+    element = ThrustElement(film, (housing, journal), offset)
     frames = initial_frame(mbs, items[0], housing), initial_frame(mbs, items[1], journal)
     motion = relative.motion_of(*frames)
     with announced(MESSAGE):

@@ -170,7 +170,8 @@ def hold(
             if axial and abs(axial_offset) > 0.0:
                 raise InputError(
                     f"{_WHERE}: with axial=Held() the two markers must lie in one plane normal to the axis in the "
-                    f"reference configuration, got an axial distance of {axial_offset:.6g} m."
+                    f"reference configuration, got an axial distance of {axial_offset:.6g} m; shift one of them along "
+                    "the axis, or take axial=Free()."
                 )
             markers.append(item.marker)
             turns.append(item.rotation.T @ rotation)
@@ -188,7 +189,11 @@ def hold(
         markers.append(_rigid_marker(mbs, f"{name} {label}", item, transform, asked))
         turns.append(np.eye(3))
     if housing.kind is None:
-        raise InputError(f"{_WHERE}: {asked}=Held() needs a rigid body, a rigid node or ground as housing.")
+        raise InputError(
+            f"{_WHERE}: {asked}=Held() needs a rigid body, a rigid node or ground as housing, not a link of a "
+            "kinematic tree or a flexible body; exchange housing and journal (itemNumbers; in ReplaceJoint "
+            f"journal=0 in place of 1), or take {asked}=Free() and a constraint of your own if one is needed."
+        )
     return mbs.AddObject(
         eii.ObjectJointGeneric(
             name=f"{name} {'held' if tilt else 'axial'}",

@@ -229,10 +229,11 @@ class JointHistory(History, HistoryPictures):
 
     def __repr__(self) -> str:
         if not self.time.size:
-            return "<JointHistory without steps>"
+            return "<JointHistory without steps: run a solver first>"
         gap, peak = float(self.minimum_gap.min()), float(self.peak_pressure.max())
         steps = f"{self.step_count[-1] - self.step_count[0] + 1} steps"
         steps += f" in {self.time.size} rows" if self.is_thinned else ""
+        steps = "the initial state, without a run," if self.step_count[-1] == 0 else steps
         return (
             f"<JointHistory of {steps} from {self.time[0]:.6g} to {self.time[-1]:.6g} s: "
             f"minimum film thickness {shown('length', gap)}, peak pressure {shown('pressure', peak)}>"

@@ -39,8 +39,9 @@ def SolveEquilibrium(
     ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes, their
     unbalance is left to `RotorResult.unbalance_response`. Loads with user functions count as they are at the start
     time. Bearings have rigid surfaces and films whose K and C hold at any frequency: no `ElrodAdams`, heat, wear,
-    liners, flexible bushes. Films on end faces take part, in all but the result's values of single films, those of
-    films that feed them with the pressures at their ends held.
+    liners, flexible bushes. Films on end faces take part, in all but the result's values of single films. A film
+    without load ruptures on the side that opens: at the exact centre K and C are those a little off it, half to two
+    thirds of an unbroken film's (`exudyn_ehd.joint.model.centre`).
 
     Parameters
     ----------
@@ -65,7 +66,8 @@ def SolveEquilibrium(
         For what the theory does not hold for: rotors that are not the same in all directions, bodies that nothing
         holds, other kinds of films or bodies.
     FilmError
-        If no equilibrium was found at a speed.
+        If no equilibrium was found at a speed, or one at the exact centre of a bearing whose supply areas at the cavity
+        pressure leave its film no stiffness and damping there.
 
     Examples
     --------

@@ -16,6 +16,8 @@ from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.position import first_guess
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
+from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.status import InputError, Status
 
@@ -105,6 +107,7 @@ class RotorFilm:
         self.motion = np.zeros(10)
         self.faces = cast("ThrustElement | None", joint.element.faces)
         self._on_faces: ThrustEvaluation | None = None
+        self._told = False
 
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
         """Bring the journal's motion to a state."""
@@ -119,10 +122,7 @@ class RotorFilm:
         found = self._on_faces
         if not np.all(np.isfinite(self.motion)) or (found is not None and found.status is not Status.CONVERGED):
             return None
-        if self.faces is None or found is None:
-            evaluation = self.model.evaluate(self.motion)
-        else:
-            evaluation = self.faces.beside(found, self.model)
+        evaluation = self.model.evaluate(self.motion)
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
@@ -210,8 +210,11 @@ class RotorFilm:
         """What `RotorResult` has of a film at its equilibrium."""
         force, known = evaluation.wrench[:2], evaluation.quantities()
         where = f"{WHERE}, joint '{self.name}'"
+        if is_central(evaluation):
+            require_derivatives(evaluation, where)
         refuse_pressed_through(self.bearing, known["minimum_gap"], where)
         warn_of_overload(self.bearing, known["peak_pressure"], float(np.hypot(*force)), where)
+        self._told = self._told or (evaluation.film is not None and warn_of_grid(evaluation.film, where))
         angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
         rows = np.zeros((2, self.size))
         rows[:, self.places] = self.loads(evaluation.wrench, tangent).motion_by_place[:2]

@@ -22,7 +22,7 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.status import InputError, require_number, require_type
+from exudyn_ehd.status import InputError, require_number, require_type, warn_user
 from exudyn_ehd.storage import fingerprint
 
 FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
@@ -104,8 +104,16 @@ class Joint:
         updateInitialValues=True)``; any other starts a new one, also a run at that time from the old initial values. A
         last state without a film is left out, and a warning says why.
 
-        What the film remembers follows the state, not the record: see `forget`.
+        What the film remembers follows the state, not the record: see `forget`. Before Assemble it is empty, and a
+        warning says so; behind it, before a run, it holds the initial state.
         """
+        history = self._recorded()
+        if not history.time.size and not np.isfinite(self.element.steps.began):
+            warn_user(f"Joint '{self.name}': its history is empty before a run; run a solver first.", UserWarning)
+        return history
+
+    def _recorded(self) -> JointHistory:
+        """The same without a warning."""
         return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
 
     def state(self) -> JointState:

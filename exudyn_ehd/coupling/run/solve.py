@@ -11,7 +11,7 @@ from typing import Any, overload
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, ObjectIndex, require_system
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit, free_bushes
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, judged, load_state
@@ -20,6 +20,7 @@ from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, Ste
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing, run_progress
 from exudyn_ehd.coupling.watch.solver_state import hooked
+from exudyn_ehd.coupling.watch.start_velocity import warn_of_misfit
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
@@ -157,7 +158,11 @@ def SolveDynamic(
         _refuse_inactive(mbs)
     require_type("SolveDynamic.until_periodic", until_periodic, UntilPeriodic, type(None))
     with going_on, ExitStack() as around:
-        watch = None
+        watch, time = None, simulationSettings.timeIntegration
+        if restart is None and mbs.systemIsConsistent:
+            elements = [(joint.name, joint.element) for joint in joints_of(mbs)]
+            states = [(name, e.motion(mbs, INITIAL), e.model.bearing) for name, e in elements]
+            warn_of_misfit(states, (time.endTime - time.startTime) / time.numberOfSteps)
         if until_periodic is not None:
             films = [(joint.name, joint.element.steps) for joint in judged(joints_of(mbs))]
             watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
@@ -302,12 +307,12 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
     time = mbs.systemData.GetTime(START_OF_STEP)
     parts = [f"Exudyn's solver ended without success at t = {time:.9g} s, though every film could be evaluated; "]
     for joint in joints_of(mbs):
-        history = joint.history
+        history = joint.element.steps.history(mbs)
         if not history.time.size:
             continue
         parts.append(
-            f"LubricatedJoint '{joint.name}': eccentricity ratio {history.eccentricity_ratio[-1]:.6g}, minimum film "
-            f"thickness {history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
+            f"LubricatedJoint '{joint.name}': {joint.element.failures.place(history.motion[-1])}minimum film thickness "
+            f"{history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
         )
     if static:
         parts.append(f"{_unheld(mbs)[:-1]}; ")

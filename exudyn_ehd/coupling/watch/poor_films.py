@@ -1,4 +1,6 @@
-"""Films that run dry: they conserve mass, oil leaves them through the ends, and nothing brings it back.
+"""Films that run dry, are too thin for their surfaces, or too steep for their grid.
+
+Films that run dry conserve mass, oil leaves them through the ends, and nothing brings it back.
 
 In a flooded film the cavity's void takes some 0.4 of ``1 - smallest gap / mean gap``, as a share of the film's volume.
 What the load squeezes out beyond it costs load: 10 % at a void of 0.55, 0.7 and 0.85 of it (eccentricity ratios 0.3,
@@ -6,6 +8,8 @@ What the load squeezes out beyond it costs load: 10 % at a void of 0.55, 0.7 and
 sinks.
 
 Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
+
+Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.resolution`), at the highest pressure.
 """
 
 from __future__ import annotations
@@ -16,14 +20,17 @@ import warnings
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
-from exudyn_ehd.status import StarvationWarning, ThinFilmWarning
+from exudyn_ehd.status import GridWarning, StarvationWarning, ThinFilmWarning
 
 # Void of a starved film over ``1 - smallest gap / mean gap``, and the least one that counts: shares of the volume.
 STARVED, LEAST = 0.6, 0.1
 # Roughness of a good surface, m; surfaces of the smallest bearings are as much finer as these are smaller.
 GOOD_SURFACE, CLEARANCE_SHARE = 0.2e-6, 0.05
+# Pressure over the highest one yet from which on the grid is looked at again. Larger: of a lower peak; smaller: dearer.
+HIGHER = 1.02
 
 
 def lost_share(history: History) -> float:
@@ -55,13 +62,36 @@ def smooth_limit(bearing: JournalBearing) -> float:
     return min(GOOD_SURFACE, CLEARANCE_SHARE * bearing.radial_clearance)
 
 
-def warn_of_thin_film(name: str, time: float, gap: float) -> None:
-    """Warn that the film of the joint ``name`` is thinner than its surfaces are rough."""
+def warn_of_thin_film(name: str, time: float, gap: float, tilting: str) -> None:
+    """Warn that the film of the joint ``name`` is thinner than its surfaces are rough; ``tilting`` is advised first."""
     warnings.warn(
         f"LubricatedJoint '{name}': at t = {time:.9g} s the minimum film thickness is {1e6 * gap:.3g} um, less than "
         "the roughness of a good surface: real surfaces touch there, and pressure, friction and film are those of "
-        "perfectly smooth ones; give the bearing asperity=GreenwoodTripp(...) and roughness=PatirCheng(...), "
+        f"perfectly smooth ones; {tilting}give the bearing asperity=GreenwoodTripp(...) and roughness=PatirCheng(...), "
         "contact=RegularisedWall(onset=...) if surfaces only just touch, or check load, clearance and viscosity.",
         ThinFilmWarning,
         stacklevel=2,
     )
+
+
+class GridWatch:
+    """Watch of one run for a grid that does not resolve the pressure peak, there where that is highest."""
+
+    def __init__(self) -> None:
+        self._peak = 0.0
+        self._coarse: tuple[float, Resolution] | None = None
+
+    def take(self, time: float, peak: float, film: object) -> None:
+        """Take an accepted step's film of a peak pressure, Pa."""
+        if not (peak > HIGHER * self._peak and isinstance(film, SolvedFilm)):
+            return
+        if is_judged(film):
+            self._peak, found = peak, resolution(film)
+            self._coarse = (time, found) if found.is_coarse else None
+
+    def tell(self, name: str) -> None:
+        """Warn, once, at the end of the run of the joint ``name``."""
+        if self._coarse is not None:
+            (time, found), self._coarse = self._coarse, None
+            where = f"LubricatedJoint '{name}': at t = {time:.9g} s, at its highest pressure"
+            warnings.warn(coarse_film(found, where), GridWarning, stacklevel=2)

@@ -52,6 +52,12 @@ class FilmSystem:
         Couette flows take ``prompt fill + late`` along, of `exudyn_ehd.film.cavitation.lagging_void`; 1 and 0 without.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
+    closes : bool
+        Whether a steady film conserves mass and its gap closes somewhere; see
+        `exudyn_ehd.film.cavitation.steady_oil`.
+    turns : float
+        Scaled speed with which oil goes round in the rows of a steady film that conserves mass, 1/s; 0 with axial
+        speed.
     line : RuptureLine or None
         Where the film's edge lies inside its cells; None: on vertices.
     oil_line : OilLine or None
@@ -72,12 +78,18 @@ class FilmSystem:
         self.linear_pressure = np.zeros(shape) if clips else self.pressure
         self.area = grid.area
         self.inverse_step = 0.0
+        self.closes, self.turns = False, 0.0
         empty = np.ones(shape) if fills else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
         self.line: RuptureLine | None = None
         self.oil_line: OilLine | None = None
         self.linked = grid.link_x != 0.0
+
+    def see_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
+        """Take over the gap's rate (n, m) and the scaled speeds of a film that conserves mass."""
+        self.closes = steady and bool(rate.min() < 0.0)
+        self.turns = abs(vx) if steady and vz == 0.0 else 0.0
 
     @property
     def coefficients(self) -> Coefficients:

@@ -30,7 +30,7 @@ from exudyn_ehd.film.cavitation.active_set import (
     solve_active_set,
     solve_on_active,
 )
-from exudyn_ehd.film.cavitation.line_newton import solve_transposed_with_line, solve_with_line
+from exudyn_ehd.film.cavitation.line_newton import solve_with_line
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
 
 # Gauge pressure of the absolute vacuum, Pa, where the air presses most.
@@ -59,7 +59,7 @@ class Closure(Protocol):
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
 
-    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
+    def adjoint(self, work: Workspace, rhs: np.ndarray) -> None: ...
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None: ...
 
@@ -71,7 +71,7 @@ class SymmetricClosure:
 
     line_in_cells: bool | None = False
 
-    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
+    def adjoint(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
         solve_ldl(work.band, work.inv_diag, work.count, work.width, rhs)
 
@@ -229,13 +229,6 @@ class SwiftStieber(SymmetricClosure):
         )
         work.count, work.width, work.warm = count, width, ok
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
-
-    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the transposed system for every row of rhs (k, count), in place."""
-        if system.line is None:
-            super().adjoint(system, work, rhs)
-        else:
-            solve_transposed_with_line(system, system.line, work, rhs)
 
 
 def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:

@@ -48,9 +48,10 @@ from exudyn_ehd.film.cavitation.closures import SwiftStieber, check_cavity_press
 from exudyn_ehd.film.cavitation.lagging_void import hold_back
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine
 from exudyn_ehd.film.cavitation.oil_line.newton import solve_on_curve
-from exudyn_ehd.film.cavitation.pseudo_time import NONE, pseudo_time
+from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
+from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row, is_balanced
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
-from exudyn_ehd.film.reynolds.links import flow_direction
+from exudyn_ehd.film.reynolds.links import Coefficients, flow_direction
 from exudyn_ehd.status import Status, require_bool
 
 MAX_NEWTON_STEPS = 60
@@ -58,10 +59,9 @@ SET_TOLERANCE = 1e-12
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.
 LARGEST_DEFICIT = 1e-6
-# Change of the oil, over the largest gap, of a film that stands still in pseudo time.
-STILL = 1e-6
-# Of the storage in pseudo time, over the largest flow into a vertex by the smallest vertex.
-FIRST_RATE = 0.01
+# Storages in pseudo time over the largest flow into a vertex by the smallest vertex: of the first one, and of the last
+# one from which a film without storage is tried.
+FIRST_RATE, LAST_RATE = 0.01, 1e-7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +116,7 @@ class ElrodAdams:
         """Newton from ``work.active``; cold starts come from the Swift-Stieber set."""
         if system.oil_line is None:
             return self._solve_plain(system, work)
-        steps = 0
+        steps, status = 0, Status.NOT_CONVERGED
         if work.known:
             work.known, steps = self._move_line(system, system.oil_line, work)
             work.warm = work.known
@@ -129,36 +129,39 @@ class ElrodAdams:
                 work.known, count = self._move_line(system, system.oil_line, work)
                 steps += count
         work.warm = work.known
-        return (Status.CONVERGED if work.known else Status.NOT_CONVERGED), steps
+        return (Status.CONVERGED if work.known else max(status, Status.NOT_CONVERGED)), steps
 
-    def _solve_plain(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    def _solve_plain(self, s: FilmSystem, work: Workspace) -> tuple[Status, int]:
         steps, was_warm = 0, work.warm
         if not was_warm:
-            np.logical_not(system.fixed, out=work.active)
-            steps = SwiftStieber().solve(system, work)[1]
-            system.fill[:] = 1.0
-        ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
+            np.logical_not(s.fixed, out=work.active)
+            steps = SwiftStieber().solve(s, work)[1]
+            s.fill[:] = 1.0
+        film = s.coefficients
+        ok, count = self._newton(s, work, film, s.inverse_step, s.mass_old)
         steps += count
         if not ok and was_warm:
             # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
-            np.logical_not(system.fixed, out=work.active)
-            ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
+            np.logical_not(s.fixed, out=work.active)
+            ok, count = self._newton(s, work, film, s.inverse_step, s.mass_old)
             steps += count
-        if not ok:
-            ok, count = self._follow(system, work)
+        status = Status.CONVERGED
+        if not ok or (s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)):
+            status, count = self._follow(s, work)
             steps += count
-        work.warm = ok
-        return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
+        work.warm = status is Status.CONVERGED
+        return status, steps
 
     def _newton(
         self,
         s: FilmSystem,
         work: Workspace,
+        film: Coefficients,
         inverse_step: float,
         mass_old: np.ndarray,
     ) -> tuple[bool, int]:
         ok, steps, work.count, work.width, work.convected = solve_elrod(
-            s.coefficients,
+            film,
             inverse_step,
             mass_old,
             s.cavity_pressure,
@@ -173,6 +176,9 @@ class ElrodAdams:
             s.pressure,
             s.fill,
         )
+        if ok and s.closes and inverse_step == 0.0:
+            # cavities whose gaps close may make the matrix singular
+            ok = is_balanced(film, s.pressure, s.fill, s.cavity_pressure)
         return ok, steps
 
     def _move_line(self, s: FilmSystem, line: OilLine, work: Workspace) -> tuple[bool, int]:
@@ -194,36 +200,43 @@ class ElrodAdams:
             s.pressure,
             s.fill,
         )
+        line.exact = False
         return ok, steps
 
-    def _follow(self, s: FilmSystem, work: Workspace) -> tuple[bool, int]:
-        """In pseudo time from a full film, whose oil stays in rows that it goes round in without pressure."""
+    def _follow(self, s: FilmSystem, work: Workspace) -> tuple[Status, int]:
+        """Follow the film in pseudo time from a full one; NO_OIL if rows run dry on the way."""
         largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
         largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
         rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
         mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
         np.logical_not(s.fixed, out=work.active)
         s.fill[:] = 1.0
+        runs_dry = False
 
         def attempt(extra: float) -> tuple[bool, int]:
+            nonlocal runs_dry
             inverse = s.inverse_step + extra
             blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
-            ok, steps = self._newton(s, work, inverse, blend)
+            film = s.coefficients
+            if s.inverse_step == 0.0 < extra:
+                # the gap's rate goes on: extra (fill H - mass) + fill dH/dt
+                film = film._replace(H=s.H + s.H_t / extra)
+            ok, steps = self._newton(s, work, film, inverse, blend)
             if ok:
-                oil = s.fill * s.H
-                # a film that a storage of next to nothing holds back still is another one
-                still = not 0.0 < extra < NONE * rate or float(np.abs(oil - mass).max()) <= STILL * float(s.H.max())
-                mass[:] = oil
-                return still, steps
+                np.multiply(s.fill, s.H, out=mass)
+                runs_dry = has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)
             return ok, steps
 
-        return pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE, last=NONE)
+        ok, steps = pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE, least=LAST_RATE)
+        if ok:
+            return Status.CONVERGED, steps
+        return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
 
     def _factor(self, work: Workspace) -> tuple[np.ndarray, np.ndarray]:
         """L and U of the folded ring."""
         return dense_band(work.lower, work.count, work.width), dense_band(work.upper, work.count, work.width)
 
-    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
+    def adjoint(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
         if work.convected:
             t = work.transport

@@ -15,7 +15,7 @@ from numba import njit
 
 from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_along
-from exudyn_ehd.film.banded.substitution import solve_ldl, solve_ldl_one
+from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, solve_on_active, update_active_set
 from exudyn_ehd.film.cavitation.line_steps import (
@@ -52,8 +52,9 @@ CAREFUL = 3.0
 USEFUL, APPROACH, MOST_APPROACHES, SETTLED, MOST_LEFT = 0.5, 0.3, 4, 0.01, 3
 # Change of s up to which rows in front of all others keep their factor.
 KEPT_ROWS = 0.01
-# The same for a factor that counts as that of the solution, as a change of pressures over the peak.
-EXACT = 1e-9
+# Change of pressures over the peak, by that of s since the factor, up to which it is the solution's: what tangents are
+# exact to. Larger values save rows of a factor and leave that error.
+EXACT = 1e-13
 _NONE = np.int64(0)
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -169,7 +170,7 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
             # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
             first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else FIRST_ROW
         line_rows(lack, line, number, order, count, active, x)
-        ok, kept = factor_line(links, line, factor, count, width, first, KEPT_ROWS, 0.0, 1.0)
+        ok, kept = factor_line(links, line, factor, count, width, first, KEPT_ROWS, 0.0)
         if not ok:
             return False, step, count, width, 0.0
         in_line, in_film, least = 0.0, 0.0, LEFT if step < LATE else LEFT_LATE
@@ -279,55 +280,24 @@ def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> t
     return work.known, steps
 
 
-def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace, least: float) -> None:
-    """The factor of the last solution itself, where it is that of a film close by; ``least`` as for `factor_line`.
-
-    What it still lacks of the diagonals is left in ``line.share``, with ``line.exact`` False.
-    """
+def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace) -> None:
+    """Make the factor that of the last solution, where it is that of a film close by."""
     if line.exact:
         return
     first = work.count if line.own_links else FIRST_ROW
     links = system.kx, system.kz, system.b
-    line.exact = refine_line(links, line.fields, work.factor, work.count, work.width, first, line.peak, least)
-    line.own_links = True
-
-
-def solve_transposed_with_line(system: FilmSystem, line: RuptureLine, work: Workspace, rhs: np.ndarray) -> None:
-    """Solve the transposed system of the last solution for every row of rhs (k, count), in place."""
-    refine_factor(system, line, work, 0.0)
-    if line.exact:
-        solve_ldl(work.band, work.inv_diag, work.count, work.width, rhs)
-    else:
-        solve_corrected(work.band, work.inv_diag, work.count, work.width, line.share, rhs)
+    refine_line(links, line.fields, work.factor, work.count, work.width, first, line.peak)
+    line.own_links = line.exact = True
 
 
 @njit(cache=True, nogil=True)
-def refine_line(links, line, factor, count, width, first, peak, least):
-    """Factor of a solution, as for `refine_factor`; returns whether it is exact."""
-    _, k, s, _, _, places, shift, share = line
+def refine_line(links, line, factor, count, width, first, peak):
+    """Factor of a solution; rows before ``first`` whose diagonals are its own to rounding stay."""
+    _, k, s, _, _, places, _, share = line
     rows = factor[2].reshape(-1)
     for r in range(count):
         share[r] = 0.0
     for q in range(places[-1]):
         c = places[q]
         share[rows[c]] = k[c] * (1.0 - s[c]) / s[c]
-    factor_line(links, line, factor, count, width, first, EXACT, peak, least)
-    exact = True
-    for r in range(count):
-        share[r] -= shift[r]
-        exact &= share[r] == 0.0
-    return exact
-
-
-@njit(cache=True, nogil=True)
-def solve_corrected(band, inv_diag, count, width, lacks_of, x):
-    """Solve with a factor that lacks the diagonals ``lacks_of`` (count,), for every row of x (k, count), in place."""
-    solve_ldl(band, inv_diag, count, width, x)
-    again = np.empty(x.shape)
-    for k in range(x.shape[0]):
-        for r in range(count):
-            again[k, r] = lacks_of[r] * x[k, r]
-    solve_ldl(band, inv_diag, count, width, again)
-    for k in range(x.shape[0]):
-        for r in range(count):
-            x[k, r] -= again[k, r]
+    factor_line(links, line, factor, count, width, first, EXACT, peak)

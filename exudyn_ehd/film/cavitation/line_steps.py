@@ -146,11 +146,11 @@ def line_rows(lack, line, number, order, count, active, rhs_out):
 
 
 @njit(cache=True)
-def factor_line(links, line, factor, count, width, first, kept, peak, least):
+def factor_line(links, line, factor, count, width, first, kept, peak):
     """Assemble and factor from the first row that changes, which is ``first`` or whose s does, by more than ``kept``.
 
-    What counts is the change over s. With a ``peak`` it is this change, or ``least`` if it is larger, times what the
-    change of s makes of the pressure over the peak: what is left of solutions that are corrected once, or (1) never.
+    What counts is the change over s. With a ``peak`` it is what the change of s makes of the pressure over the peak,
+    times the change over s if that is larger than 1.
     Returns whether there is a factor, and the largest change over s that it does not know of.
     """
     kx, kz, _ = links
@@ -163,7 +163,7 @@ def factor_line(links, line, factor, count, width, first, kept, peak, least):
             change = abs(s[c] - k[c] / (k[c] + shift[row]))
             counts = over_s = change / s[c]
             if peak > 0.0:
-                counts = max(counts, least) * change * f[c] / (k[c] * peak)
+                counts = max(counts, 1.0) * change * f[c] / (k[c] * peak)
             if counts > kept:
                 break
             stale = max(stale, over_s)

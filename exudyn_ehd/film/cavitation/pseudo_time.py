@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 MOST_STEPS = 200
-# Rate of a storage that changes nothing but what nothing else determines, over that of the film.
-NONE = 1e-6
 # Rates of the storage over those of the film: of the first one, of one that no film comes out of, and of one that is
 # none.
 FIRST, HOPELESS, LAST = 100.0, 1e6, 1e-3
@@ -19,7 +17,7 @@ FADES, GROWS = 0.3, 8.0
 
 
 def pseudo_time(
-    attempt: Callable[[float], tuple[bool, int]], rate: float, first: float = FIRST, *, last: float = 0.0
+    attempt: Callable[[float], tuple[bool, int]], rate: float, first: float = FIRST, *, least: float = 0.0
 ) -> tuple[bool, int]:
     """Follow a film in pseudo time; returns (found, Newton steps).
 
@@ -32,8 +30,8 @@ def pseudo_time(
         Of the film itself, 1/s, > 0.
     first : float
         Rate of the first storage over ``rate``.
-    last : float
-        Rate over ``rate`` below which a film with a storage is the one that is asked for, where none without is found.
+    least : float
+        Rate over ``rate`` of the smallest storage from which the film without one is tried.
     """
     extra, total = first * rate, 0
     for _ in range(MOST_STEPS):
@@ -50,7 +48,6 @@ def pseudo_time(
             total += steps
             if ok:
                 return True, total
-            if extra < last * rate:
-                ok, steps = attempt(extra)
-                return ok, total + steps
+            if extra < least * rate:
+                return False, total
     return False, total

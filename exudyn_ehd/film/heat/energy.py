@@ -59,6 +59,49 @@ def film_flows(q, fill, kx, kz, fx, fz, qx_out, qz_out, leaving_out):
             leaving_out[i, j] = qx_out[i, j] - qx_out[prv, j] + qz_out[i, j] - qz_out[i, j - 1]
 
 
+@njit(cache=True)
+def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering_out):
+    """Flows along an end's half control volumes, whose film conserves mass, and what enters them from outside, (n,).
+
+    A half control volume beside a cavity carries what arrives along theta and what the film presses out to it, up to a
+    full film; the excess leaves. From outside it takes only what an end pressure above the cavity's can drive: with
+    the link's flow q and the divergence B of a full film as in `exudyn_ehd.film.loads.end_flows`, up to ``q + B``
+    beside a full film or for ``q >= B``, up to ``2 sqrt(q B)`` for a smaller q, nothing for q <= 0.
+
+    Parameters
+    ----------
+    turned : (n,) array
+        Couette flow of a full film over the links i -> i+1, of one sign.
+    pressed : (n,) array
+        Flow from the end's vertices to those beside them.
+    stored, squeezed : (n,) arrays
+        Rates of the content, of the half control volumes and of full ones.
+    full : (n,) bool array
+        Where the end has more than the cavity's pressure beside a full film.
+    """
+    n, way = turned.size, 1 if turned.sum() >= 0.0 else -1
+    start = np.argmin(pressed)
+    carried = abs(turned[start - 1 if way > 0 else start])
+    # the second turn begins with what the first one has brought
+    for k in range(2 * n):
+        i = (start + way * k) % n
+        out, into = (i, i - 1) if way > 0 else (i - 1, i)
+        whole, q = abs(turned[out]), pressed[i]
+        B = whole - abs(turned[into]) + squeezed[i]
+        most = 0.0
+        if full[i] or (q > 0.0 and q >= B):
+            most = q + B
+        elif q > 0.0:
+            most = 2.0 * np.sqrt(q * B)
+        needed = whole - carried + q + stored[i]
+        entering = min(needed, max(most, 0.0))
+        carried = whole - needed + entering
+        if carried < 0.0:
+            entering -= carried
+            carried = 0.0
+        flow_out[out], entering_out[i] = way * carried, entering
+
+
 def content_rate(
     H: np.ndarray, H_t: np.ndarray, fill: np.ndarray, mass_old: np.ndarray, inverse_step: float, squeeze: bool
 ) -> np.ndarray:

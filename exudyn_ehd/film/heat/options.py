@@ -22,9 +22,9 @@ class LumpedThermal:
     Costs 5 % of a step at most, a sixth with a density law.
 
     ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film
-    dissipates, Q flow out of the bearing's ends (replaced by supply oil; what a supply area takes back from the film it
-    gives to it again), G conductance to the housing,
-    ``C = rho c_p 2 pi R L c + capacity`` (with a density law, too: the mass in it at ambient pressure). Backward Euler
+    dissipates, Q flow that leaves the film and is replaced by supply oil, G conductance to the housing,
+    ``C = rho c_p 2 pi R L c + capacity`` (with a density law, too: the mass in it at ambient pressure). Of a supply
+    area Q counts the net flow: an area is a well-mixed volume, see `FilmEnergy`. Backward Euler
     at every accepted step, first order; the force of a step sees the temperature at its start, and so does the heat P
     of steps that are short beside the exchange of the oil; in longer ones P follows the temperature. `steady` and
     `equilibrium` take the steady temperature; a static solution of a multibody model takes the initial one.
@@ -43,6 +43,8 @@ class LumpedThermal:
         Heat capacity that warms up with the film (surfaces near it), J/K.
     initial_temperature : float or None
         Of the film at the start of a motion, K; None: the supply temperature.
+    carry_over : float
+        As of `FilmEnergy`.
 
     Examples
     --------
@@ -58,10 +60,12 @@ class LumpedThermal:
     housing_temperature: float | None = None
     capacity: float = 0.0
     initial_temperature: float | None = None
+    carry_over: float = 1.0
 
     def __post_init__(self) -> None:
         _check_temperatures(self, "supply_temperature", "housing_temperature", "initial_temperature")
         require_numbers(self, at_least=0.0, housing_conductance="W/K", capacity="J/K")
+        require_number("LumpedThermal.carry_over", self.carry_over, above=0.0, at_most=1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,12 +142,19 @@ class FilmEnergy:
 
     ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``: m film content, q flow per width (pressure
     and Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, backward Euler, upwind in theta
-    (first order), of second order in z without new extrema. Oil enters through the ends and supplies with the supply
-    temperature. Cavitation models that do not conserve mass lose oil at the end of the film and find it again at its
-    beginning: it returns fully mixed, the leakage replaced by supply oil. The viscosity of a step follows from the
-    temperatures at its start: the coupling is explicit, of first order; in steps that are long beside the exchange of
-    the oil the heat follows the temperature, or the film would swing from step to step. `steady` and `equilibrium`
-    take the steady field; a static solution of a multibody model takes the initial temperature.
+    (first order), of second order in z without new extrema. Oil enters through the ends with the supply temperature.
+
+    A supply area is a well-mixed volume: all that flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with
+    the flow Q that the film presses into it, Q's mean temperature T, and the net feed N, which alone is fresh (H.
+    Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). `LumpedThermal` has the same law. Flush or cool a groove by
+    ``carry_over``. In films without axial flow, oil that pressure drives into an area leaves, and that from an area is
+    fresh.
+
+    Cavitation models that do not conserve mass lose oil at the end of the film and find it again at its beginning: it
+    returns fully mixed, the leakage replaced by supply oil. The viscosity of a step follows from the temperatures at
+    its start: the coupling is explicit, of first order; in steps that are long beside the exchange of the oil the heat
+    follows the temperature, or the film would swing from step to step. `steady` and `equilibrium` take the steady
+    field; a static solution of a multibody model takes the initial temperature.
 
     Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K
     (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4
@@ -185,9 +196,9 @@ class FilmEnergy:
         step sees their growth at its start.
     carry_over : float
         Share of hot oil's rise over the supply temperature that passes a supply area which feeds nothing, above 0 up to
-        1: of Q that arrives ``(1 / carry_over - 1) Q`` is exchanged with the supply. Of closures that do not conserve
-        mass also the share of the cavity's rise that the film begins with, the rest being fresh oil. 1: it passes
-        as it is, and mixes with what is fed.
+        1. Smaller values flush the area with ``(1 / carry_over - 1) Q`` of supply oil, Q the flow that arrives from the
+        film: ``1 - carry_over`` of the mixture is fresh then. Of closures that do not conserve mass also the share of
+        the cavity's rise that the film begins with, the rest being fresh oil. 1: hot oil mixes with the net feed alone.
     across : int
         Temperatures across the film: 1, its mean; 2, its mean and its tilt from bush to journal, which needs the oil's
         ``conductivity`` and does not go with a ``shear_law``.

@@ -29,7 +29,7 @@ def density_at(P, scale, floor, law, share, known, rho_out):
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
     far, tense = _ratio_near(x, scale, lowest, highest, share, law.a, law.b, known, rho)
     if far > 0.0:
-        look_up(x, scale, lowest, highest, law, known)
+        look_up(x, scale, lowest, highest, law, NEAR, known)
         far, tense = _ratio_near(x, scale, lowest, highest, share, law.a, law.b, known, rho)
     if tense > 0.0:
         for c in range(rho.size):
@@ -51,11 +51,17 @@ def density_slope_at(P, scale, floor, law, share, known, rho_P_out):
 
 
 @njit(cache=True)
-def look_up(x, scale, lowest, highest, law, known):
-    """Know the law at all x (size,), cut at ``lowest`` and ``highest``, that are not near what is known."""
+def know_at(P, scale, floor, law, known):
+    """Know the law at the pressures (n, m) of a solution, of which Taylor's polynomial is no part any more."""
+    look_up(P.reshape(-1), scale, max(floor, law.lowest / scale), law.highest / scale, law, 0.0, known)
+
+
+@njit(cache=True)
+def look_up(x, scale, lowest, highest, law, near, known):
+    """Know the law at all x (size,), cut at ``lowest`` and ``highest``, that are not ``near`` what is known."""
     for c in range(x.size):
         q = _within(x[c], lowest, highest) * scale
-        if not _is_near(q, known, c):
+        if not _is_near(q, known, c, near):
             known[0, c] = q
             known[1, c], known[2, c], known[3, c], known[4, c], known[5, c] = hermite_fourth_at(
                 q, law.exponent, law.q, law.table, law.bucket, law.bucket_scale
@@ -70,8 +76,8 @@ def _within(x, lowest, highest):
 
 
 @njit(cache=True, inline="always")
-def _is_near(q, known, c):
-    return abs((q - known[0, c]) * known[3, c]) <= NEAR * known[2, c] and (q > 0.0) == (known[0, c] > 0.0)
+def _is_near(q, known, c, near):
+    return abs((q - known[0, c]) * known[3, c]) <= near * known[2, c] and (q > 0.0) == (known[0, c] > 0.0)
 
 
 @njit(cache=True, inline="always")

@@ -38,15 +38,18 @@ _PLACE, _ONE = _unsigned((1 << 52) - 1), _unsigned(1023 << 52)
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
 # Share of the stress at which Newton's step is the last one, on the way and for exact derivatives: what it leaves of
-# stress and flow is its square. A profile so near an exact one is on its tangent.
+# stress and flow is its square.
 LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-7, 200, 30
+# Change of the stress, as a share, up to which the last profile's derivatives are those of the next: what tangents are
+# exact to. Smaller values ask the law more often.
+SAME = 1e-12
 # Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives, share of the last step, gap if
 # it is the one of the links' ratios, F (2), its five derivatives.
 LAST = 20
 # Share of the stress up to which the derivatives lead to the next profile.
 FAR = 0.3
-# Of the stress of sliding alone, until its law is asked.
-MOST_TRIALS = 5
+# Newton steps for the stress of sliding alone at most, and the one behind which its law is asked.
+MOST_TRIALS, ASKS = 8, 2
 # Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
 SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
@@ -228,7 +231,7 @@ def _follow(S, G_x, G_z, oil, points, last):
     scale, change = _scale(T_x, T_z, G_x, G_z), abs(by_x) + abs(by_z)
     if change <= FAR * scale:
         T_x, T_z = T_x + by_x, T_z + by_z
-    if change + abs(d_x) + abs(d_z) <= EXACT * scale and last[11] <= EXACT:
+    if change + abs(d_x) + abs(d_z) <= SAME * scale and last[11] <= SAME:
         last[12] = 0.0
         F_xs, F_zs, F_xx, F_xz, F_zz = last[15], last[16], last[17], last[18], last[19]
         F_x = last[13] + F_xs * dS + F_xx * d_x + F_xz * d_z
@@ -251,9 +254,9 @@ def _slide(S, oil, last):
         f, f_s = _fluidity(t * t, oil.table)
         f_s *= 2.0 * t * t
         step = (S - f * t) / (f + f_s)
-        if abs(step) <= EXACT * abs(t):
+        if abs(step) <= SAME * abs(t):
             break
-        t = t + step if k + 2 < MOST_TRIALS else couette_stress(S, oil)
+        t = couette_stress(S, oil) if k == ASKS else t + step
     last[:] = 0.0
     last[0], last[3], last[5], last[11] = S, t + step, 1.0 / (f + f_s), 1.0
     return t + step, f, f_s

@@ -30,9 +30,10 @@ import numpy as np
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
+from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
-from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
+from exudyn_ehd.film.lubricant.density_field import know_at, pressure_at, viscosity_at
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.compiled import factor, solve
@@ -118,7 +119,9 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         steps = 0
         if w.warm:
             self._prepare(vx, vz, cavity_pressure, mass_old, step)
-            ok, steps = self._newton(1.0)
+            # a film at rest starts from nothing, not from what is left of the last one
+            at_rest = vx == vz == 0.0 and not self.H_t.any()
+            ok, steps = (False, 0) if self.system.closes or at_rest else self._newton(1.0)
             if ok:
                 return self._finish(steps)
         self.forget()
@@ -211,7 +214,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             np.logical_or(w.active, fixed, out=self.full)
         if self.complementary:
             admit(*self.u, fixed, self.system.cavity_pressure)
-        ok, steps, self.exact, w.count, w.width = solve(
+        ok, steps, _, w.count, w.width = solve(
             self.u,
             self.trial,
             fixed,
@@ -256,14 +259,14 @@ class CompressibleFilmSolver(NewtonFilmSolver):
     def _finish(self, steps: int) -> tuple[Status, int]:
         """Clip what the closure clips; factors of the Couette flows on the links."""
         s, w = self.system, self.work
-        w.warm = True
+        w.warm, self.exact = True, False
+        know_at(s.linear_pressure, self.pressure_scale, self._floor, self.law.kernel_table, self.known)
         self._clip()
         if self.closure.conserves_mass:
             np.maximum(s.fill, 0.0, out=s.fill)
         elif self.edge is not None:
             self.edge.settle(w.active)
-            self.exact = self.exact and self.edge.factored
-        return Status.CONVERGED, steps
+        return status_of(self.system, Status.CONVERGED), steps
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
         """Scaled pressure and viscosity ratio of the last solution (n, m) with

@@ -1,4 +1,4 @@
-"""Flows at prescribed vertices, where the film beside them ends within a link."""
+"""Flows at prescribed vertices, where the film beside them ends within a link; shear at the ends beside a cavity."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.grid import FilmGrid
 
 
@@ -23,6 +24,31 @@ def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.n
         near |= links & np.roll(pressed, -1, axis) | np.roll(links & pressed, 1, axis)
     near &= ~s.fixed
     return np.where(near, s.linear_pressure, s.pressure), active | near
+
+
+def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int, np.ndarray]]:
+    """Columns of the ends and of the vertices beside them, and where (n,) an end holds what the film beside it does.
+
+    An end's half control volume is as empty as the cavity beside it, though its pressure is prescribed. Where a film
+    conserves mass under an end pressure above the cavity's, a full band lies along the end.
+    """
+    m = s.fixed.shape[1]
+    out = []
+    for end, beside in ((0, 1), (m - 1, m - 2)) if m > 2 else ():
+        at = s.fixed[:, end] & ~s.fixed[:, beside]
+        if conserves_mass:
+            at &= s.pressure[:, end] <= s.cavity_pressure
+        out.append((end, beside, at))
+    return out
+
+
+def shear_share(s: FilmSystem, active: np.ndarray, closure: Closure) -> np.ndarray:
+    """Share of a full film's shear that acts at each vertex (n, m)."""
+    conserves = closure.conserves_mass
+    share = s.fill.copy() if conserves else np.where(active | s.fixed, 1.0, closure.cavity_shear)
+    for end, beside, at in ends_of_cavities(s, conserves):
+        np.copyto(share[:, end], share[:, beside], where=at)
+    return share
 
 
 def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:

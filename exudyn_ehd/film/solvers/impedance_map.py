@@ -35,7 +35,7 @@ from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.status import FilmError, Status, require_integer, require_number
+from exudyn_ehd.status import FilmError, Status, require_count, require_number
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 FORMAT = 2
@@ -86,10 +86,10 @@ class ImpedanceMap:
     circumferential_pressure_flow = True
 
     def __post_init__(self) -> None:
-        require_integer("ImpedanceMap.n_theta", self.n_theta, at_least=64, hint="320 is a good start.")
-        require_integer("ImpedanceMap.n_z", self.n_z, at_least=4, hint="10 is a good start.")
-        require_integer("ImpedanceMap.n_eccentricity", self.n_eccentricity, at_least=8, hint="41 is a good start.")
-        require_integer("ImpedanceMap.n_direction", self.n_direction, at_least=8, hint="81 is a good start.")
+        require_count("ImpedanceMap.n_theta", self.n_theta, at_least=64, hint="320 is a good start.")
+        require_count("ImpedanceMap.n_z", self.n_z, at_least=4, hint="10 is a good start.")
+        require_count("ImpedanceMap.n_eccentricity", self.n_eccentricity, at_least=8, hint="41 is a good start.")
+        require_count("ImpedanceMap.n_direction", self.n_direction, at_least=8, hint="81 is a good start.")
         hint = "0.75 suits most bearings."
         require_number("ImpedanceMap.stretch", self.stretch, at_least=0.0, at_most=0.95, hint=hint)
         require_number(

@@ -13,7 +13,9 @@ from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.lagging_void import lag_void, outflow_of
 from exudyn_ehd.film.cavitation.line_newton import refine_factor
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine, weigh_flows
+from exudyn_ehd.film.cavitation.oil_line.newton import factor_on_curve
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
+from exudyn_ehd.film.cavitation.steady_oil import status_of, stays_dry
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
@@ -63,9 +65,7 @@ class FilmSolver:
         flux_effects: tuple[FluxEffect, ...] = (),
     ) -> None:
         shape = grid.shape
-        self.grid = grid
-        self.closure = closure
-        self.squeeze = squeeze
+        self.grid, self.closure, self.squeeze = grid, closure, squeeze
         self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
         self.area = grid.area
         self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
@@ -79,11 +79,9 @@ class FilmSolver:
         self.work = Workspace(*shape)
         self.flux_effects = flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
-        self.ones = np.ones(shape)
-        self.nothing = np.zeros(shape)
+        self.ones, self.nothing = np.ones(shape), np.zeros(shape)
         self.link_fields = np.zeros((5, *shape))
-        self.vx = 0.0
-        self.vz = 0.0
+        self.vx = self.vz = 0.0
         self.instant = self.lagging = False
         # whether there is a cavity, and whether no unknown pressure is below the cavity's
         self.ruptures = bool(np.isfinite(closure.cavity_pressure))
@@ -163,14 +161,14 @@ class FilmSolver:
         if self.closure.conserves_mass:
             self._set_storage(mass_old, step)
         was_warm = self.work.warm
-        steps = self._guess_from_coarse(mass_old, step) if self.coarse is not None and not was_warm else 0
+        steps = 0 if was_warm else self._guess_from_coarse(mass_old, step)
         status, fine_steps = self.closure.solve(s, self.work)
-        if status is Status.NOT_CONVERGED and was_warm and self.coarse is not None:
+        if was_warm and ((status is Status.NOT_CONVERGED and self.coarse is not None) or stays_dry(s)):
             # a start from another state can mislead where the film itself is benign
             self.forget()
             steps += fine_steps + self._guess_from_coarse(mass_old, step)
             status, fine_steps = self.closure.solve(s, self.work)
-        return status, steps + fine_steps
+        return status_of(s, status), steps + fine_steps
 
     def _set_links(self) -> None:
         """Conductances and Couette fluxes of the links, and the right-hand side."""
@@ -186,6 +184,7 @@ class FilmSolver:
 
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
         s = self.system
+        s.see_motion(mass_old is None, self.H_t, self.vx, self.vz)
         self.instant = mass_old is not None and step <= 0.0
         if mass_old is None:
             s.inverse_step = 0.0
@@ -249,8 +248,7 @@ class FilmSolver:
 
     def _guess_from_coarse(self, mass_old: np.ndarray | None, step: float) -> int:
         coarse = self.coarse
-        assert coarse is not None
-        if self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any():
+        if coarse is None or (self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any()):
             return 0  # the coarser grid has lost the supply and would starve
         coarse.H[:] = self.H[::2, ::2]
         coarse.HF[:] = self.H[1::2, ::2]
@@ -268,7 +266,9 @@ class FilmSolver:
     def _factored(self) -> Workspace:
         """The workspace, with the factor of the last solution itself."""
         if self.line is not None:
-            refine_factor(self.system, self.line, self.work, 1.0)
+            refine_factor(self.system, self.line, self.work)
+        if self.oil_line is not None:
+            factor_on_curve(self.system, self.oil_line, self.work)
         return self.work
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
@@ -281,7 +281,7 @@ class FilmSolver:
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` with the stored factor for rhs (k, count), in place."""
-        self.closure.adjoint(self.system, self.work, rhs)
+        self.closure.adjoint(self._factored, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""

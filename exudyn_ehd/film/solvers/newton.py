@@ -23,8 +23,8 @@ class Rule(NamedTuple):
     square: float = 1e-14
     # below it the change of a balance is rounding, and says nothing about a step
     silent: float = 1e-8
-    # an error so small leaves the factor that of the solution to the rounding of a tangent
-    exact: float = 1e-7
+    # change of the film since its factor, up to which that is the solution's: tangents are as exact
+    exact: float = 1e-13
     # a last step so small needs no other look at gaps and balances
     final: float = 1e-10
     # a factor whose steps shrink less than five times is slower than a new one

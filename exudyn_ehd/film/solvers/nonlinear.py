@@ -54,6 +54,7 @@ import numpy as np
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, contract_line
+from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
@@ -66,7 +67,7 @@ from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
 from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
-from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter, LandContact
 from exudyn_ehd.status import Status
 
 # Share of an oil's largest pressure at which a film that was not found is on its way beyond.
@@ -127,6 +128,8 @@ class NonlinearFilmSolver(NewtonFilmSolver):
             e.links = self.flux
         self.delta_old: np.ndarray | None = None
         self.contact_slope, self.deflection_inverse = np.zeros(grid.shape), 0.0
+        # the part of a vertex that the contact presses on
+        self.touching = contact.land if isinstance(contact, LandContact) else 1.0
 
     @property
     def beta(self) -> float:
@@ -184,7 +187,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
     def contact_by_pressure(self) -> np.ndarray:
         """d(contact pressure)/dP, Pa, at the unknown pressures (n, m) of the last solution; zero elsewhere."""
         e = self.elements
-        return np.where(self.work.active, e.contact_G * e.scale * e.gap_slopes.D_P, 0.0)
+        return np.where(self.work.active, self.touching * e.contact_G * e.scale * e.gap_slopes.D_P, 0.0)
 
     def smallest_gap(self) -> float:
         """Smallest scaled gap of the deformed surfaces."""
@@ -215,6 +218,9 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         s, g, e = self.system, self.grid, self.elements
         self.vx, self.vz, s.cavity_pressure = vx, vz, cavity_pressure
         e.take_rigid(self.squeeze)
+        if vx == vz == 0.0 and not e.rigid[2].any():
+            # a film at rest starts from nothing, not from what is left of the last one
+            self.work.warm = False
         self._set_times(mass_old, step)
         P = s.linear_pressure
         if self.closure.clips:
@@ -239,7 +245,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         if e.limiter is not None and e.contact is None and not e.true_gap.min() > 0.0:
             # the film between rough surfaces stays open where nothing holds them apart
             return Status.NO_FILM, steps
-        return Status.CONVERGED, steps
+        return status_of(self.system, Status.CONVERGED), steps
 
     def _start(self, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
         """Newton's method from no other film: (found, steps)."""
@@ -285,6 +291,8 @@ class NonlinearFilmSolver(NewtonFilmSolver):
             e.mass_old[:] = mass_old
         e.rates = Rates(mass, 0.0, 0.0, float(mass_old is None or self.instant))
         self.system.inverse_step = mass
+        self.system.see_motion(mass_old is None, e.rigid[2], self.vx, self.vz)
+        self.work.warm = self.work.warm and not self.system.closes
 
     def refresh_fixed(self) -> None:
         """Other prescribed vertices and cuts: the last factor is of no use."""
@@ -303,7 +311,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += e.gap_slopes.rate_t * (e.gaps.D - e.deflection_old) * self.deflection_inverse
         if e.contact is not None:
-            np.multiply(e.contact_G * e.scale, 1.0 + e.gap_slopes.D_r, out=self.contact_slope)
+            np.multiply(self.touching * e.contact_G * e.scale, 1.0 + e.gap_slopes.D_r, out=self.contact_slope)
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)

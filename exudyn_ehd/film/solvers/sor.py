@@ -37,7 +37,7 @@ from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.cavitation.active_set import clip_pressure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.status import Status, require_integer, require_number
+from exudyn_ehd.status import Status, require_count, require_number
 
 LARGEST_SWEEPS = 20_000
 # Beyond this sum of |P| (1/s) the sweeps have diverged.
@@ -84,8 +84,8 @@ class ClassicSOR:
     circumferential_pressure_flow = True
 
     def __post_init__(self) -> None:
-        require_integer("ClassicSOR.n_theta", self.n_theta, at_least=16, hint="96 is a good start.")
-        require_integer("ClassicSOR.n_z", self.n_z, at_least=4, hint="24 is a good start.")
+        require_count("ClassicSOR.n_theta", self.n_theta, at_least=16, hint="96 is a good start.")
+        require_count("ClassicSOR.n_z", self.n_z, at_least=4, hint="24 is a good start.")
         require_number("ClassicSOR.tolerance", self.tolerance, above=0.0)
         if self.relaxation is not None:
             hint = "None chooses one."

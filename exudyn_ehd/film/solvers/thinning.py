@@ -55,14 +55,6 @@ class ThinningFilmSolver(NonlinearFilmSolver):
             )
             self.coarse.line = self.coarse.system.line = None
 
-    def solve(
-        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
-    ) -> tuple[Status, int]:
-        """As `FilmSolver.solve`; a film at rest starts from nothing, not from what is left of the last one."""
-        if vx == vz == 0.0 and not self.H_t.any():
-            self.work.warm = False
-        return super().solve(vx, vz, cavity_pressure, mass_old, step)
-
     def _start(self, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
         """Newton's method from the film in which the sliding alone thins the oil; without it from a dry guess."""
         e, s = self.elements, self.system

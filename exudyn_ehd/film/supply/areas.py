@@ -4,8 +4,9 @@ Their edges act where they are (see `exudyn_ehd.film.supply.rows` and `exudyn_eh
 housing and, with ``rotating=True``, in the journal; those need the spin angle of the journal.
 
 With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its
-pressure acts on the journal; its shear counts as that of the land. What flows out of it is reported; with `ElrodAdams`
-supply, leakage and the film's change of content balance to rounding, the other closures lose oil at the film's rupture.
+pressure acts on the journal. The surfaces neither shear a film nor touch there; see `exudyn_ehd.film.supply.recess` for
+areas with a depth. What flows out of it is reported; with `ElrodAdams` supply, leakage and the film's change of content
+balance to rounding, the other closures lose oil at the film's rupture.
 With `SwiftStieber` on the default grid an area in the housing feeds mostly within 2 %, next to a cavity within 2.5 % of
 the larger of its flow and the bearing's leakage.
 
@@ -48,6 +49,9 @@ class AxialGroove:
         Gauge pressure, Pa.
     rotating : bool
         True: in the journal, turning with its spin.
+    depth : float or None
+        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
+        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 
     Examples
     --------
@@ -62,6 +66,7 @@ class AxialGroove:
     width_angle: float
     length: float | None = None
     pressure: float = 0.0
+    depth: float | None = None
     rotating: bool = False
 
     def __post_init__(self) -> None:
@@ -88,6 +93,9 @@ class CircumferentialGroove:
         Axial width, m.
     pressure : float
         Gauge pressure, Pa.
+    depth : float or None
+        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
+        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 
     Examples
     --------
@@ -100,6 +108,7 @@ class CircumferentialGroove:
     z: float = 0.0
     width: float
     pressure: float = 0.0
+    depth: float | None = None
 
     rotating = False
 
@@ -130,6 +139,9 @@ class Hole:
         Gauge pressure, Pa.
     rotating : bool
         True: in the journal, turning with its spin.
+    depth : float or None
+        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
+        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 
     Examples
     --------
@@ -143,6 +155,7 @@ class Hole:
     z: float = 0.0
     diameter: float
     pressure: float = 0.0
+    depth: float | None = None
     rotating: bool = False
 
     def __post_init__(self) -> None:
@@ -173,6 +186,9 @@ class Pocket:
         Gauge pressure, Pa.
     rotating : bool
         True: in the journal, turning with its spin.
+    depth : float or None
+        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
+        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 
     Examples
     --------
@@ -187,6 +203,7 @@ class Pocket:
     width_angle: float
     length: float
     pressure: float = 0.0
+    depth: float | None = None
     rotating: bool = False
 
     def __post_init__(self) -> None:
@@ -205,6 +222,9 @@ SupplyArea = AxialGroove | CircumferentialGroove | Hole | Pocket
 def _check_area(area: SupplyArea, **units: str) -> None:
     for argument, unit in {"pressure": "Pa", **units}.items():
         require_number(f"{type(area).__name__}.{argument}", getattr(area, argument), unit)
+    if area.depth is not None:
+        hint = "write depth=None for an area so deep that its shear does not count."
+        require_number(f"{type(area).__name__}.depth", area.depth, "m", above=0.0, hint=hint)
     if not isinstance(area.rotating, bool):
         raise InputError(
             f"{type(area).__name__}.rotating must be True (in the journal) or False (in the housing), got "

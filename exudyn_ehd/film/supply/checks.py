@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from exudyn_ehd.film.supply.areas import EDGE, AxialGroove, CircumferentialGroove, Hole, SupplyArea, axial_span, placed
+from exudyn_ehd.film.supply.recess import RECIRCULATION
 from exudyn_ehd.film.supply.rows import groove_spans
 from exudyn_ehd.status import InputError
 
@@ -55,6 +56,18 @@ def check_supply(
     for k, area in enumerate(areas):
         for i in range(k):
             _check_pair(i, areas[i], k, area, radius, step)
+
+
+def check_depths(supply: Sequence[SupplyArea], clearance: float) -> None:
+    """Raise `InputError` for areas too shallow for a uniform pressure, which shear their oil as much as lands."""
+    least = RECIRCULATION * clearance
+    for k, area in enumerate(supply):
+        if area.depth is not None and area.depth < least:
+            raise InputError(
+                f"JournalBearing.supply[{k}].depth must be at least {RECIRCULATION:g} radial clearances, {least:g} m, "
+                f"for a uniform pressure, got {area.depth:g} m; give a shallower one as a profile, and an area where "
+                "it is fed."
+            )
 
 
 def _check_extent(k: int, area: SupplyArea, radius: float, length: float) -> None:

@@ -26,6 +26,7 @@ from exudyn_ehd.film.supply.areas import (
     axial_span,
     placed,
 )
+from exudyn_ehd.film.supply.coverage import area_parts, row_parts
 from exudyn_ehd.film.supply.holes import SHORTEST, Circle, circle, strength, strengths
 
 
@@ -43,9 +44,13 @@ class SupplyMap:
     Attributes
     ----------
     grid : FilmGrid
-        The same with `FilmGrid.cuts`; itself with circumferential grooves alone.
+        The same with `FilmGrid.lands`, and with `FilmGrid.cuts` if there are others than circumferential grooves.
     masks : list of (n, m) bool arrays
         Vertices of every area at its last position.
+    parts : list of (n, m) arrays
+        Scaled area of every one at the vertices; a place that two cover counts for the first.
+    land : (n, m) array
+        Shares of the control volumes outside of all areas.
     rotating : bool
         Whether an area turns with the journal.
     """
@@ -53,13 +58,16 @@ class SupplyMap:
     def __init__(self, supply: tuple[SupplyArea, ...], grid: FilmGrid, around: bool = True) -> None:
         self.around = around
         whole = all(isinstance(area, CircumferentialGroove) for area in supply)
-        self.grid = grid if whole else dataclasses.replace(grid, cuts=np.ones((2, *grid.shape)))
+        cuts = None if whole else np.ones((2, *grid.shape))
+        self.grid = dataclasses.replace(grid, cuts=cuts, lands=grid.weight.copy())
         # without axial flow grooves have no ends
         length = (grid.z[-1] - grid.z[0]) * grid.reference_length
         self.supply = placed(supply, length) if grid.flows_along_z else supply
         self.rotating = any(area.rotating for area in supply)
         self.ends, self.plain_weight = grid.fixed.copy(), grid.weight.copy()
         self.masks = [np.zeros(grid.shape, dtype=np.bool_) for _ in supply]
+        self.rows = [row_parts(area, self.grid) for area in self.supply]
+        self.parts, self.land = [np.zeros(grid.shape) for _ in supply], np.ones(grid.shape)
         self.spin = 0.0
         self._place()
 
@@ -91,6 +99,12 @@ class SupplyMap:
             cut_links(covered, share, self.plain_weight, g.cuts, g.weight)
             for hole, column, factor in holes:
                 self._cut_hole(hole, column, factor)
+        self.land[:], g.shear_weight[:] = 1.0, self.plain_weight
+        for area, rows, part in zip(self.supply, self.rows, self.parts, strict=True):
+            covers, weight = area_parts(area, g, rows, self.spin)
+            part[:] = self.land * weight
+            self.land[:] *= 1.0 - covers
+            g.shear_weight[:] -= part
 
     def _hole(self, area: Hole) -> tuple[Circle, int, float]:
         """A hole on the grid at the present spin, the column next to its centre, and the factor of its links."""
@@ -138,14 +152,14 @@ class SupplyMap:
             P[mask] = value
 
     def flows(self, inflow: np.ndarray) -> np.ndarray:
-        """What every area feeds into the film, in the unit of ``inflow`` (n, m).
+        """What every area feeds into the film, in the unit of ``inflow`` (n, m)."""
+        return np.array([float(np.sum(inflow[area])) for area in self.parted()])
 
-        A shared vertex counts for the first area.
-        """
-        left = np.ones(inflow.shape, dtype=np.bool_)
-        out = np.empty(len(self.masks))
-        for k, mask in enumerate(self.masks):
-            out[k] = float(np.sum(inflow[mask & left]))
+    def parted(self) -> list[np.ndarray]:
+        """Vertices of every area (n, m); a shared vertex counts for the first area."""
+        left, out = np.ones(self.grid.shape, dtype=np.bool_), []
+        for mask in self.masks:
+            out.append(mask & left)
             left &= ~mask
         return out
 

@@ -1,4 +1,4 @@
-"""Wrench of contact pressures with its gradient, shear between rough surfaces; chain rule through a gap limiter.
+"""Wrench of contact pressures with its gradient; chain rule through a gap limiter.
 
 Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z
 (m,); basis e = (cos, sin, z cos, z sin, 1).
@@ -163,33 +163,3 @@ def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out)
         by_gap_out[k] = gap[k] * a[k] + rate[k] * b[k]
     for k in range(a.size):
         by_rate_out[k] = rate[k] * a[k]
-
-
-# Flat loops without checks for a division by zero, which the compiler vectorises.
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def couette_integral_law(H, weight, ratio, active, fixed, cavity_share):
-    """(C with the viscosity ratio in ``sum weight share ratio / H``, C over the unbroken film)."""
-    h, w, r, a, b = H.reshape(-1), weight.reshape(-1), ratio.reshape(-1), active.reshape(-1), fixed.reshape(-1)
-    whole = 0.0
-    unbroken = 0.0
-    for k in range(h.size):
-        s = w[k] * r[k] / h[k]
-        kept = s if a[k] | b[k] else 0.0
-        unbroken += kept
-        whole += s - kept
-    return unbroken + cavity_share * whole, unbroken
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def couette_gradient_ratio(H, weight, ratio, ratio_h, ratio_v, active, fixed, cavity_share, out):
-    """dC/dH of `couette_integral_law` -> out (n, m); returns dC/dv."""
-    h, w, a, b = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1)
-    r, r_h, r_v, gradient = ratio.reshape(-1), ratio_h.reshape(-1), ratio_v.reshape(-1), out.reshape(-1)
-    speed = 0.0
-    for k in range(h.size):
-        inverse = 1.0 / h[k]
-        density = w[k] * inverse
-        density = density if a[k] | b[k] else density * cavity_share
-        gradient[k] = density * (r_h[k] - r[k] * inverse)
-        speed += density * r_v[k]
-    return speed

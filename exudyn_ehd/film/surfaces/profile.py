@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator, RectBivariateSpline
+from scipy.interpolate import PchipInterpolator
 
 from exudyn_ehd.status import (
     InputError,
@@ -179,7 +179,11 @@ class AxialProfile:
 
 @dataclass(frozen=True, kw_only=True)
 class ProfileTable:
-    """Any profile of the bore over (theta, z), periodic in theta: cubic splines, linear below four points.
+    """Any profile of the bore over (theta, z), periodic in theta, by monotone cubics along z and then along theta.
+
+    Between two points the depth stays between theirs (F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980)
+    238), so that the table may have steps and kinks and its range is kept. A peak between two points is flattened: of
+    a wave with n points by ``1 - cos(pi / n)`` of its amplitude, 1.5 % for 18 and 0.4 % for 36.
 
     Parameters
     ----------
@@ -205,7 +209,7 @@ class ProfileTable:
         theta = _increasing("ProfileTable.angles", self.angles, 4, "rad")
         z = _increasing("ProfileTable.positions", self.positions, 2, "m")
         d = _finite("ProfileTable.depths", self.depths)
-        if theta[-1] - theta[0] >= 2.0 * math.pi:
+        if theta[-1] - theta[0] > 2.0 * math.pi - SMALLEST_STEP:
             raise InputError(
                 f"ProfileTable.angles must span less than 2 pi rad, got {theta[-1] - theta[0]:g}; leave out the "
                 f"repeated first angle, and give radians."
@@ -218,13 +222,14 @@ class ProfileTable:
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
         """Addition to the gap; see `OutOfRound.depth`."""
-        at, d = np.asarray(self.angles, dtype=float), np.asarray(self.depths, dtype=float)
-        along = np.asarray(self.positions, dtype=float)
-        turn = 2.0 * math.pi
-        wide = np.concatenate((at - turn, at, at + turn))
-        spline = RectBivariateSpline(wide, along, np.vstack((d, d, d)), kx=3, ky=min(3, along.size - 1), s=0)
-        near = at[0] + np.mod(theta - at[0], turn)
-        return spline(near[:, None], np.clip(z, along[0], along[-1])[None, :], grid=False)
+        at, turn = np.asarray(self.angles, dtype=float), 2.0 * math.pi
+        along, d = np.asarray(self.positions, dtype=float), np.asarray(self.depths, dtype=float)
+        rows = PchipInterpolator(along, d, axis=1)(np.clip(z, along[0], along[-1]))
+        # slopes depend on the next points alone: one more at the beginning and two at the end close the ring
+        around = at - at[0]
+        wide = np.concatenate((around[-1:] - turn, around, around[:2] + turn))
+        ring = PchipInterpolator(wide, np.concatenate((rows[-1:], rows, rows[:2])))
+        return np.asarray(ring(np.mod(theta - at[0], turn)))
 
 
 Profile = OutOfRound | Crown | EdgeRelief | AxialProfile | ProfileTable

@@ -24,17 +24,18 @@ and y; E = -int h u . grad p for the turn and the shifts along x and y.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
-from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.closures import Closure, SwiftStieber
+from exudyn_ehd.film.loads import end_flows
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
+from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, products
+from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, face_grid, products
 from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.status import Status
 
@@ -75,19 +76,6 @@ class FaceState:
     contact_load: float = np.nan
 
 
-class FaceFeed(NamedTuple):
-    """Derivatives about the inner edge of a face, SI units.
-
-    wrench : (6,) array, of the wrench to the edge's pressure
-    flow : float, of the flow through the edge to that pressure
-    by_motion : (9,) array, of that flow to the motion
-    """
-
-    wrench: np.ndarray
-    flow: float
-    by_motion: np.ndarray
-
-
 class FaceFilm:
     """Film on one face; the tangent is that of the last evaluation.
 
@@ -97,7 +85,7 @@ class FaceFilm:
     side : int
         1 for the upper face, -1 for the lower one.
     closure : Closure
-        One that does not conserve mass.
+        One that does not conserve mass; of faces with pads Swift-Stieber's line lies on vertices.
     viscosity : float
         Pa s.
     pressures : (float, float)
@@ -116,19 +104,24 @@ class FaceFilm:
         squeeze: bool = True,
     ) -> None:
         self.side, self.closure, self.squeeze = side, closure, float(squeeze)
-        self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, faces.n_theta, faces.n_r)
+        if faces.profile is not None and isinstance(closure, SwiftStieber):
+            # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
+            self.closure = closure = replace(closure, line_in_cells=False)
+        self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *face_grid(faces))
         self.scales = Scales(viscosity, faces.clearance, a.scale)
         self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)
         self.known = np.array([*pressures, closure.cavity_pressure]) / self.scales.pressure
         shape, grid = a.grid.shape, a.grid
-        link = np.zeros((shape[0], 1))
+        # on the links, and of the half control volumes behind and ahead of the vertices
+        link, sides = np.zeros((shape[0], 1)), np.zeros((2, shape[0], 1))
         if faces.profile is not None:
-            link += faces.profile.depth_at(grid.x_face)[:, None] / faces.clearance
-        # of steps the vertices on their edges are the mean of both sides
-        jump = link - np.roll(link, 1, axis=0)
-        self.link_depth, self.depth = link, link - 0.5 * jump
-        self.solver = FilmSolver(grid, closure, flux_effects=(AnnularFlow(a.square, 0.5 * jump),))
-        around = jump / grid.width_x[:, None] / a.r
+            quarters = 0.5 * a.sides * grid.width_x[:, None] * np.array([-1.0, 1.0])[:, None, None]
+            link = faces.profile.depth_at(grid.x_face)[:, None] / faces.clearance
+            sides = faces.profile.depth_at(grid.x[:, None] + quarters) / faces.clearance
+        self.link_depth, self.depth = link, (a.sides * sides).sum(axis=0)
+        self.steps = sides - self.depth
+        self.solver = FilmSolver(grid, closure, flux_effects=(AnnularFlow(a.square, a.sides, self.steps),))
+        around = (link - np.roll(link, 1, axis=0)) / grid.width_x[:, None] / a.r
         # u . grad d / 2 for the shifts along x and y
         self.shifted = 0.5 * np.array([-around * np.sin(grid.x)[:, None], around * np.cos(grid.x)[:, None]])
         # derivatives of the scaled gap to (zeta / c, bx R / c, by R / c)
@@ -149,15 +142,16 @@ class FaceFilm:
         if status is not Status.CONVERGED:
             return FaceState(status, np.full(6, np.nan), smallest)
         self._integrate(motion)
-        flows = k.c * k.R**2 * s.inflow().sum(axis=0)
+        (fx, fz, rate), (P, full), grid = s.couette_flows(), s.flow_pressures(), self.annulus.grid
+        inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
         return FaceState(
             status,
             self._wrench(),
             smallest,
             float(s.pressure.max()) * k.pressure,
             self._power(),
-            float(flows[0]),
-            -float(flows[-1]),
+            -k.c * k.R**2 * inner,
+            k.c * k.R**2 * outer,
             float((self.annulus.weight * self.contact).sum()) * k.R**2,
         )
 
@@ -171,10 +165,6 @@ class FaceFilm:
         """That the film of the last solution has (n, m), m."""
         return self.solver.H * self.scales.c
 
-    def set_inner_pressure(self, pressure: float) -> None:
-        """Pressure at the inner radius from the next evaluation on, Pa."""
-        self.known[0] = pressure / self.scales.pressure
-
     def _set_gap(self, motion: np.ndarray) -> float:
         """Gaps and the weighed rate into the solver's buffers; the smallest scaled gap of the surfaces."""
         s, k, a = self.solver, self.scales, self.annulus
@@ -186,15 +176,19 @@ class FaceFilm:
         s.H_t[:] = np.tensordot(self.rate, self.shape, 1)
         self.true_rate = s.H_t.copy()
         s.H_t += np.tensordot(self.shift, self.shifted, 1) - 0.5 * self.side * float(self.shift @ self.pose[1:])
-        smallest = min(float(s.H.min()), float(s.HF.min()))
+        smallest = min(float((s.H + self.steps.min(axis=0)).min()), float(s.HF.min()))
         self.limited = self.wall is not None and smallest < self.wall.onset
-        if self.wall is not None and self.limited:
-            self.wall.pressure(s.H, self.contact, self.contact_slope)
-            self.wall.limit(s.H, s.HF, s.H_t, self.slope, self.bend, self.face_slope)
-            self.true_rate *= self.slope
-        elif self.wall is not None:
+        if self.wall is not None:
             self.contact[:] = self.contact_slope[:] = self.bend[:] = 0.0
             self.slope[:] = self.face_slope[:] = 1.0
+        if self.wall is not None and self.limited:
+            pressure, slope = np.empty((2, *s.H.shape))
+            for share, step in zip(a.sides, self.steps, strict=True):
+                self.wall.pressure(s.H + step, pressure, slope)
+                self.contact += share * pressure
+                self.contact_slope += share * slope
+            self.wall.limit(s.H, s.HF, s.H_t, self.slope, self.bend, self.face_slope)
+            self.true_rate *= self.slope
         s.H_t *= a.square
         return smallest
 
@@ -205,9 +199,9 @@ class FaceFilm:
         self.loads = products(a.moments, pressed[None])[:, 0]
         self.rows = a.link_rows(s.H, s.HF)
         self.carried = products(self.rows, s.pressure[None])[:, 0]
-        share = np.where(s.work.active | a.grid.fixed, 1.0, self.closure.cavity_shear)
+        share = shear_share(s.system, s.work.active, self.closure)
         # on the links, whose gaps lie on one side of a step
-        self.sheared = a.weight * 0.5 * (share + np.roll(share, -1, axis=0)) / s.HF
+        self.sheared = a.link_weight * 0.5 * (share + np.roll(share, -1, axis=0)) / s.HF
         self.shear = self._shear_matrices(self.sheared[None])[0]
 
     def _shear_matrices(self, densities: np.ndarray) -> np.ndarray:
@@ -271,16 +265,11 @@ class FaceFilm:
             sens.cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
         return self._by_motion(sens)
 
-    def _adjoint(self, fields: np.ndarray, linear: bool = False) -> np.ndarray:
-        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m).
-
-        ``linear``: over the pressure of the film before it is cut off.
-        """
+    def _adjoint(self, fields: np.ndarray) -> np.ndarray:
+        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m)."""
         s, w, y = self.solver, self.solver.work, self.solver.system
         unknown = w.order[: w.count]
         rows = fields.reshape(len(fields), -1)[:, unknown]
-        if linear:
-            return s.adjoint(rows)
         rows *= w.active.reshape(-1)[unknown]
         if self.closure.clips and self.closure.line_in_cells:
             rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
@@ -305,28 +294,4 @@ class FaceFilm:
         scale = np.array([1.0, k.R, k.R]) / k.c
         return np.concatenate(
             (pose * scale, self.squeeze * through * scale, 0.5 * sens.speed[:, :1], shift / k.R), axis=1
-        )
-
-    def feed(self) -> FaceFeed:
-        """What the inner edge's pressure does in the last evaluation, and the motion to the flow through it."""
-        s, a, k = self.solver, self.annulus, self.scales
-        y, count = s.system, 7
-        # the flow is the sum of k_z (p_0 - p_1) + area dh/dt over the edge
-        links, fields = y.kz[:, 0], np.zeros((count, *a.grid.shape))
-        fields[:3], fields[3:6] = a.moments * a.weight, self.rows
-        edge = fields[:, :, 0].sum(axis=1)
-        fields[6, :, 1] = -links
-        edge[6] = links.sum()
-        P, pressed = s.flow_pressures()[0], self.closure.clips and self.known[0] > self.known[2]
-        lam = np.concatenate((self._adjoint(fields[:6]), self._adjoint(fields[6:], linear=pressed)))
-        by_pressure = (edge + lam[:, :, 1] @ links) / k.pressure
-        sens = s.sensitivities(lam[6:])
-        gap, slope = 0.5 * (s.H[:, 0] + s.H[:, 1]), None if s.flux is None else s.flux.gz_h[:, 0] / s.flux.gz[:, 0]
-        half = 0.5 * links * (P[:, 0] - P[:, 1]) * (3.0 / gap if slope is None else slope)
-        sens.cell[0, :, :2] += half[:, None]
-        sens.rate[0, :, 0] += s.squeeze * s.area[:, 0]
-        self._to_true_gap(sens)
-        flow = k.c * k.R**2
-        return FaceFeed(
-            self._weights() @ by_pressure[:6], flow * float(by_pressure[6]), flow * self._by_motion(sens)[0]
         )

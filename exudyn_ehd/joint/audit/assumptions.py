@@ -13,16 +13,20 @@ from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.switches import laminar, refined, turbulent
+from exudyn_ehd.joint.audit.samples import squeeze_rate
+from exudyn_ehd.joint.audit.switches import laminar, on_film, refined, turbulent
 from exudyn_ehd.joint.step_error import enough_steps
 
 # Grids this many times finer than needed cost time for nothing.
 TOO_FINE = 6.0
 # Grids that are so much finer than needed, and not coarser than the default, are not compared with finer ones.
 SURELY_FINE = 2.0
+# Intervals along z across a peak that its load needs: 1 % of it.
+ROWS = 3.0
 # Film thicknesses across the last interval along z: the pressure there rises by int dz / h^3, which the vertices at
 # its ends know to 2 % of the film thickness on the end up to here.
 NARROWS = 1.6
+INERTIA = "rho w c^2 / mu, w of spin or squeeze"
 
 
 def _reynolds(case: Case) -> float:
@@ -58,39 +62,57 @@ def turbulence(case: Case) -> Finding:
 
 
 def inertia(case: Case) -> Finding:
-    """Reduced Reynolds number."""
+    """Reynolds number of the rate at which the flow changes: by the spin in the gap, or by the squeeze."""
+    b, r, samples = case.bearing, case.record, case.samples
+    run = None if r is None else squeeze_rate(b, r.motion, r.time)
+    rates = [max(s.speed / b.journal_radius, s.squeeze_rate if run is None else run) for s in samples]
+    oscillating = max(rate / s.viscosity for rate, s in zip(rates, samples, strict=True))
     return finding(
         "fluid inertia",
-        "Re c / R",
-        _reynolds(case) * case.bearing.clearance_ratio,
+        INERTIA,
+        b.lubricant.density * b.radial_clearance**2 * oscillating,
         None,
         mattering="the Reynolds equation leaves the fluid's inertia out: take forces as estimates.",
     )
 
 
-def _grid(case: Case, name: str, field: str, effect: str, narrows: bool = False) -> Finding | None:
-    film = case.bearing.sized_film
+def _grid(case: Case, name: str, effect: str) -> Finding | None:
+    film, along = case.bearing.sized_film, name == "n_z"
     if isinstance(film, ImpedanceMap):
         return None
-    value, size = case.smallest(field), getattr(film, name)
+    limit, size, peaks = LIMITS[effect], getattr(film, name), [s.resolution for s in case.samples]
+    if along:
+        worst = max(peaks, key=lambda peak: peak.narrowing)
+        value, indicator = (
+            worst.narrowing,
+            f"growth of the film within an interval of its end, n_z = {size}",
+        )
+        across, needed = min(peak.rows for peak in peaks), ROWS
+        narrows = max(peak.growth for peak in peaks) > NARROWS
+    else:
+        worst = min(peaks, key=lambda peak: peak.columns)
+        value, indicator = worst.columns, f"intervals across the peak at half its height, n_theta = {size}"
+        across, needed, narrows = value, limit.value, False
     sizes = {"n_theta": film.n_theta, "n_z": film.n_z}
     default = replace(case.bearing, film=FiniteLength()).sized_film
-    needed = LIMITS[effect].value
-    plain = not narrows and value > SURELY_FINE * needed and size >= getattr(default, name)
+    plain = not narrows and across > SURELY_FINE * needed and size >= getattr(default, name)
     change = None if plain else case.films.change(refined(**sizes | {name: 2 * size}))
-    indicator = f"intervals across the peak at half its height, {name} = {size}"
     found = replace(finding(effect, indicator, value, None), change=change)
+    coarse = found.matters
     if change is not None and change.found and change.size > MATTERS:
         found = replace(found, matters=True)
     unit = 8 if name == "n_theta" else 2
-    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(value, 0.25)))
+    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(across, 0.25)))
     if found.matters:
         wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
         cause = "film narrows too fast towards its ends" if narrows else "pressure peak is too narrow"
+        if coarse and worst.wanted is not None:
+            # the grid that `steady` and runs name
+            return replace(found, advice=f"the {cause} for the grid: {worst.wanted!r}.", remedy=on_film(worst.wanted))
         advice = f"the {cause} for the grid: {name}={wanted}."
         return replace(found, advice=advice, remedy=refined(**sizes | {name: wanted}))
     wanted = max(wanted, 48 if name == "n_theta" else 6)
-    if value > TOO_FINE * needed and wanted < size:
+    if across > TOO_FINE * needed and wanted < size:
         coarser = refined(**sizes | {name: wanted})
         # a flexible bore constricts its film within less than the pressure's peak
         loss = None if case.bearing.bush is None else case.films.change(coarser)
@@ -102,14 +124,14 @@ def _grid(case: Case, name: str, field: str, effect: str, narrows: bool = False)
 
 def grid_columns(case: Case) -> Finding | None:
     """Columns across the pressure peak; an impedance map has its error sampled when it is built."""
-    return _grid(case, "n_theta", "columns", "grid around")
+    return _grid(case, "n_theta", "grid around")
 
 
 def grid_rows(case: Case) -> Finding | None:
-    """Rows across the pressure peak; the slices of a long bearing are no grid."""
+    """Rows next to the end where the pressure peaks; the slices of a long bearing are no grid."""
     if isinstance(case.bearing.film, LongBearing):
         return None
-    return _grid(case, "n_z", "rows", "grid along", narrows=case.largest("narrowing") > NARROWS)
+    return _grid(case, "n_z", "grid along")
 
 
 def supply_resolution(case: Case) -> Finding | None:

@@ -18,7 +18,7 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.joint.audit.changes import Comparison
 from exudyn_ehd.joint.audit.findings import Case, Finding
-from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator, with_ends
+from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
 from exudyn_ehd.joint.audit.switches import turbulent, two_dimensional
 from exudyn_ehd.joint.model.build import build_study_model
@@ -208,7 +208,7 @@ def audit_record(
     """
     # what faces do not go with may well act in the journal's film
     model = build_study_model(replace(bearing, thrust=None), 0.0)
-    states = with_ends(bearing, model, record, recorded_states(model, record))
+    states = recorded_states(model, record)
     return audit_states(model, states, record=record, liner=liner, faces=bearing.thrust, measure_time=measure_time)
 
 

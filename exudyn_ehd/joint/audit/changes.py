@@ -110,7 +110,6 @@ class Comparison:
         force, q = film.wrench[:2].copy(), _numbers(film)
         if not np.hypot(*force) > NO_LOAD * _reference(self.model.bearing, mine.motion):
             return None
-        mine.hold(other)
         if remembers:
             motion = its.motion[:MOTION_SIZE]
             return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)

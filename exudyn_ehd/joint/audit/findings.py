@@ -14,6 +14,7 @@ from exudyn_ehd.joint.audit.ringing import LIMIT
 from exudyn_ehd.joint.audit.samples import RecordedSteps, Sample
 from exudyn_ehd.joint.audit.switches import Switch, turbulent
 from exudyn_ehd.joint.balance.limits import HOT
+from exudyn_ehd.joint.balance.resolution import FEWEST, STEEPEST
 from exudyn_ehd.status import InputError
 
 
@@ -51,9 +52,10 @@ LIMITS = {
     "heat of thrust faces": Limit(0.1, "change of the viscosity, as for heating"),
     "Taylor vortices": Limit(41.2, "concentric journal: G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923) 289"),
     "turbulence": Limit(2000.0, "rho U c / mu of a Couette flow"),
-    "fluid inertia": Limit(1.0, "rho U c^2 / (mu R): inertia and viscous forces of one size"),
-    "grid around": Limit(4.0, "intervals: 1 % of the load, 3 to 6 % of the peak pressure", below=True),
-    "grid along": Limit(3.0, "intervals: as around", below=True),
+    # up to twice the forces of lubrication theory were measured at 10: ASME GT1984, V005T13A003
+    "fluid inertia": Limit(1.0, "rho w c^2 / mu: inertia takes a tenth of the viscous pressure of a swinging flow"),
+    "grid around": Limit(FEWEST, "intervals: 5 % of the peak pressure, `joint.balance.resolution`", below=True),
+    "grid along": Limit(STEEPEST, "times as thick a film: as around"),
     "supply resolution": Limit(1.0, "interval across the narrowest area, whose edges act where they are", below=True),
     "time step": Limit(0.05, "of the minimum film thickness"),
     "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.ringing`, which warns from four on"),

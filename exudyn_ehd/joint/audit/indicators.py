@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -13,7 +13,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit import assumptions, oil, surfaces
 from exudyn_ehd.joint.audit.findings import Case, Finding, finding, judged
-from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, time_mean
+from exudyn_ehd.joint.audit.samples import time_mean
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_TEMPERATURE_COEFFICIENT,
     cavity_pressure,
@@ -28,24 +28,6 @@ from exudyn_ehd.joint.audit.switches import (
     untouching,
     unworn,
 )
-from exudyn_ehd.joint.model.rigid import BearingModel
-
-
-def with_ends(
-    bearing: JournalBearing, model: BearingModel, record: RecordedSteps, states: Sequence[FilmState]
-) -> Sequence[FilmState]:
-    """Recorded states of a journal's film with the pressures at its ends, where it feeds the faces."""
-    if bearing.thrust is None or bearing.thrust.feed is None:
-        return states
-    # imported here: bearings whose films feed no faces need none of it
-    from exudyn_ehd.joint.feed.films import FedFilms
-    from exudyn_ehd.joint.thrust import ThrustModel
-
-    films, places = FedFilms(model, ThrustModel(bearing)), [float(record.axial_position[s.recorded]) for s in states]
-    return [
-        replace(s, ends=films.evaluate(s.motion, place, s.history, s.step, s.spin).pressures)
-        for s, place in zip(states, places, strict=True)
-    ]
 
 
 def faces_share(case: Case) -> Finding | None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.balance.resolution import Resolution, resolution
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import Status
@@ -17,6 +18,9 @@ from exudyn_ehd.status import Status
 # Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started: the
 # last ones, and so many a turn of the turns before, fewer in a flexible bore.
 REPLAYED, A_TURN, TURNS = 60, 80, (3.0, 1.0)
+# Smallest amplitude that a squeezing journal is taken to have at one instant, over the clearance: with a larger one the
+# frequency of journals that pass the centre is lower, with a smaller one it is higher.
+AMPLITUDE = 0.1
 # Gauge pressure below which oil at ambient pressure would have to carry tension, Pa.
 TENSION = -1e5
 
@@ -76,26 +80,16 @@ class RecordedSteps:
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record.
-
-    ``ends``: pressures (2,) at the film's ends, Pa; None: the bearing's.
-    """
+    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record."""
 
     motion: np.ndarray
     history: History | None = None
     step: float = 0.0
     spin: float = 0.0
     recorded: int | None = None
-    ends: np.ndarray | None = None
-
-    def hold(self, model: BearingModel) -> None:
-        """Give the film of a model the ends of this state."""
-        if self.ends is not None:
-            model.set_end_pressures(self.ends)
 
     def evaluate(self, model: BearingModel) -> Evaluation:
         """The film at this state."""
-        self.hold(model)
         return model.evaluate(self.motion, self.history, self.step, self.spin)
 
 
@@ -188,14 +182,12 @@ class Sample:
         Shares of the film's heat that walls take up.
     cavitated, tension : float
         Shares of the bore.
-    tilt_loss, squeeze_share : float
+    tilt_loss, squeeze_share, squeeze_rate : float
         See the functions of these names.
     deflection, shape : float
         Largest deflection of a liner and largest departure of the surfaces from cylinders, m.
-    columns, rows : float
-        Intervals of the grid across the pressure peak at half its height.
-    narrowing : float
-        Film thickness one interval before an end over that on the end, where the pressure peaks.
+    resolution : Resolution
+        Of the pressure peak by the grid.
     """
 
     speed: float
@@ -213,11 +205,10 @@ class Sample:
     tension: float
     tilt_loss: float
     squeeze_share: float
+    squeeze_rate: float
     deflection: float
     shape: float
-    columns: float
-    rows: float
-    narrowing: float
+    resolution: Resolution
 
 
 def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
@@ -230,7 +221,6 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
     pressure = film.oil.P * film.scales.pressure
     weight = g.weight / g.weight.sum()
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-    i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
     thermal = b.thermal
     to_bush, to_journal = _wall_shares(model, film)
     return Sample(
@@ -249,11 +239,10 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         tension=float(np.sum(weight[pressure < TENSION])),
         tilt_loss=tilt_loss(b, w.motion),
         squeeze_share=squeeze_share(b, w.motion),
+        squeeze_rate=squeeze_rate(b, w.motion[None]),
         deflection=q.get("bore_displacement", 0.0),
         shape=_shape(film),
-        columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
-        rows=intervals_at_half(pressure[i], int(j)),
-        narrowing=float(np.max(s.H[i, [1, -2]] / s.H[i, [0, -1]])),
+        resolution=resolution(film),
     )
 
 
@@ -325,20 +314,46 @@ def squeeze_share(bearing: JournalBearing, motion: np.ndarray) -> float:
     return v / total if total > 0.0 else 0.0
 
 
-def intervals_at_half(values: np.ndarray, peak: int) -> float:
-    """Intervals between the points on both sides of ``peak`` where ``values`` (n,) fall to half of it, interpolated."""
-    half = 0.5 * float(values[peak])
-    if not half > 0.0:
-        return float(values.size)
-    width = 0.0
-    for side in (values[peak::-1], values[peak:]):
-        below = np.flatnonzero(side < half)
-        if below.size == 0:
-            width += side.size - 1.0
-            continue
-        k = int(below[0])
-        width += k - float((half - side[k]) / (side[k - 1] - side[k]))
-    return width
+def squeeze_rate(bearing: JournalBearing, motions: np.ndarray, time: np.ndarray | None = None) -> float:
+    """`rate_of_squeeze`, 1/s, of motions (n, 10), at the end of the bearing where it is the larger one."""
+    rates = []
+    for half in (-0.5 * bearing.length, 0.5 * bearing.length):
+        place, velocity = (motions[:, k : k + 2] + half * motions[:, k + 2 : k + 4] for k in (0, 4))
+        wedge = 0.5 * np.abs(motions[:, 8]) * np.linalg.norm(place, axis=1)
+        rates.append(rate_of_squeeze(place, velocity, wedge, bearing.radial_clearance, time))
+    return max(rates)
+
+
+def rate_of_squeeze(
+    place: np.ndarray, velocity: np.ndarray, wedge: np.ndarray, clearance: float, time: np.ndarray | None
+) -> float:
+    """Acceleration a of the squeeze over the sources of the Reynolds equation, 1/s: a / (v + wedge).
+
+    Flow that swings at w between plates takes the pressure ``12 mu q / h^3 (1 + i Re / 10)``, Re = rho w h^2 / mu, up
+    to its first order in Re. So rho c^2 / mu times this rate is the Re of the squeeze, times its share of the sources
+    where the surfaces slide as well.
+
+    Parameters
+    ----------
+    place, velocity : (n, k) arrays
+        Of the axis or centre, m and m/s.
+    wedge : (n,) array
+        Amplitude of the sliding's source, m/s.
+    clearance : float
+        m.
+    time : (n,) array or None
+        s, of the steps of a run, whose means count: a is the difference of the velocities before and after a step,
+        which an alternation from step to step leaves alone. None: a single state, a = v^2 / e of a circular whirl about
+        the centre.
+    """
+    sources = np.linalg.norm(velocity, axis=1) + wedge
+    if time is not None and time.size > 2:
+        accelerations = np.linalg.norm(velocity[2:] - velocity[:-2], axis=1) / (time[2:] - time[:-2])
+        whole = time_mean(time[1:-1], sources[1:-1])
+        return time_mean(time[1:-1], accelerations) / whole if whole > 0.0 else 0.0
+    amplitude = np.maximum(np.linalg.norm(place, axis=1), AMPLITUDE * clearance)
+    accelerations = np.sum(velocity**2, axis=1) / amplitude
+    return float(np.max(accelerations / np.maximum(sources, 1e-300)))
 
 
 def _shape(film: SolvedFilm) -> float:

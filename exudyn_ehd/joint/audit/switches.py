@@ -186,6 +186,11 @@ def refined(n_theta: int, n_z: int) -> Switch:
     return partial(_on_grid, n_theta, n_z)
 
 
+def on_film(film: FiniteLength) -> Switch:
+    """With another grid of the film."""
+    return partial(replace, film=film)
+
+
 def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 

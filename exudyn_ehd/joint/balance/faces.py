@@ -17,9 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.balance.film import evaluate_at
-from exudyn_ehd.joint.feed.films import FedEvaluation, FedFilms
-from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
 from exudyn_ehd.status import FilmError, Status
 
@@ -43,18 +40,11 @@ class FacesShare:
         d wrench / d (motion, axial position).
     slope : (2, 2) array
         What they add to dF/d(x, y) of the journal's film, with an axial load at the place that follows (x, y).
-    own : (6, 11) array
-        d wrench / d (motion, axial position) of the faces alone; of fed ones ``tangent`` also has what their feed
-        changes in the journal's film.
-    fed : (k,) array or None
-        Flow that the journal's film gives every face, m3/s; None without ``feed``.
     """
 
     evaluation: ThrustEvaluation
     tangent: np.ndarray
     slope: np.ndarray
-    own: np.ndarray
-    fed: np.ndarray | None = None
 
 
 class FacesUnderLoad:
@@ -79,11 +69,8 @@ class FacesUnderLoad:
         self.model, self.options = ThrustModel(bearing), bearing.thrust
         self.position, self.load, self.size, self.where = position, load, size, where
 
-    def settle(self, motion: np.ndarray) -> None:
-        """Bring what the journal's film has to know of the faces to a motion."""
-
     def share(self, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray) -> FacesShare:
-        """The faces beside a film of this wrench (6,) and tangent (6, >= 4) at a motion, after `settle`.
+        """The faces beside a film of this wrench (6,) and tangent (6, >= 4) at a motion.
 
         Raises
         ------
@@ -92,7 +79,7 @@ class FacesUnderLoad:
         """
         found = self._found(motion, float(wrench[2]))
         own = found.tangent()
-        return FacesShare(found, own, self._slope(own, tangent), own)
+        return FacesShare(found, own, self._slope(own, tangent))
 
     def _slope(self, own: np.ndarray, film: np.ndarray) -> np.ndarray:
         """`FacesShare.slope` of what the faces add to the tangent (6, >= 4) of the film."""
@@ -133,51 +120,3 @@ class FacesUnderLoad:
         if found.status is not Status.CONVERGED:
             raise FilmError(no_film(found, self.where))
         return found, float(found.wrench[2]), float(found.tangent()[2, 10])
-
-
-class FedFacesUnderLoad(FacesUnderLoad):
-    """Faces that the journal's film feeds; arguments as for `FacesUnderLoad`, with the film's model."""
-
-    def __init__(
-        self,
-        model: BearingModel,
-        position: float,
-        load: float | None,
-        size: float,
-        where: str,
-    ) -> None:
-        super().__init__(model.bearing, position, load, size, where)
-        self.films = FedFilms(model, self.model)
-
-    def settle(self, motion: np.ndarray) -> None:
-        """Bring the ends of the journal's film to the pressures of the edges at a motion, and the place of the load."""
-        self._found(motion, 0.0)
-        journal, self._own = self._both.with_feed()
-        self._added = journal + self._own
-
-    def share(self, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray) -> FacesShare:
-        """As `FacesUnderLoad.share`, after `settle` at this motion."""
-        found = self._both
-        return FacesShare(found, self._added, self._slope(self._added, tangent), self._own, found.given)
-
-    def _at(self, motion: np.ndarray, place: float) -> tuple[ThrustEvaluation, float, float]:
-        """As `FacesUnderLoad._at`, with the force of the journal's film."""
-        found = self._both = require_fed(self.films, motion, place, self.where)
-        force = float(found.wrench[2] + found.journal.wrench[2])
-        return found, force, 0.0 if self.load is None else float(found.tangent()[2, 10])
-
-
-def require_fed(films: FedFilms, motion: np.ndarray, position: float, where: str) -> FedEvaluation:
-    """Both films at a motion (10,) and an axial position; `FilmError` if there are none."""
-    found = films.evaluate(motion, position)
-    if found.journal.film is None:
-        evaluate_at(films.model, motion, where)
-    if found.status is not Status.CONVERGED:
-        raise FilmError(no_film(found, where))
-    if not found.settled:
-        raise FilmError(
-            f"{where}: no pressures found at which the journal's film gives its thrust faces what they take; the "
-            f"nearest are {found.pressures} Pa, with {found.given} and {found.taken} m3/s. A finer film grid may have "
-            "them; ThrustFaces.inner_pressures with JournalBearing.end_pressures needs no search."
-        )
-    return found

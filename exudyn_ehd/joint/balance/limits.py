@@ -108,6 +108,18 @@ def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
     return True
 
 
+def too_hot(T: Temperature, carried: float) -> str:
+    """What the heat has to do with a load that no film carries, and how much it does."""
+    if T is None:
+        return ""
+    most = f" Followed from smaller loads, the film carries at least {carried:.4g} N." if carried else ""
+    return (
+        f"{most} The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film "
+        "thins faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
+        "supply of oil or a housing_conductance raises it."
+    )
+
+
 def advice(status: Status, bearing: object) -> str:
     """What to do about a failed evaluation of this bearing; `Status.advice` where the bearing changes nothing."""
     if status is Status.NO_FILM and isinstance(getattr(bearing, "bush", None), ElasticLiner):

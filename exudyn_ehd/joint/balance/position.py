@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.film import ACCELERATED, DEPTH, LARGEST_CHANGE, evaluate_at, foreseen, is_settled
-from exudyn_ehd.joint.balance.limits import HOTTEST, is_above
+from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
@@ -20,9 +20,13 @@ if TYPE_CHECKING:
     from exudyn_ehd.joint.balance.faces import FacesShare, FacesUnderLoad
 
 LARGEST_LOAD_STEPS = 100
-LARGEST_CREEP_STEPS = 300
-# Steps of Newton's method that may pass without the unbalance falling to a tenth of its smallest.
-PATIENCE = 25
+LARGEST_DAMPED_STEPS = 300
+# Steps that may pass without the unbalance falling to this share of what it was, of Newton's method and of a damped
+# one, which is slower where a film starves. More steps, and shares nearer to 1, give up later.
+PATIENCE, FALLS, FALLS_DAMPED = 25, 0.1, 0.9
+# Second start of damped steps, eccentricity ratio in the direction of the load: inside, where neither a gap is thin nor
+# a cavity large. Larger ones are nearer to both.
+INSIDE = 0.3
 # Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
 LARGEST_EFFORT = 6000
 STEP_HALVINGS = 8
@@ -71,7 +75,8 @@ class Carried:
 class LoadSearch:
     """Search for the position in which the steady film of a model carries a load.
 
-    Newton's method. Where a temperature follows the position, both are sought together first, `heated`. Where that
+    Newton's method, and where it fails damped steps, first from the same place, then from inside the bearing. Where a
+    temperature follows the position, both are sought together first, `heated`. Where that
     fails and no film is known yet, the load grows from a quarter of it, `climb`; where this does too, the temperature
     settles in every position. The tangent at a held temperature misses what the temperature
     adds; Broyden's update of that part, D, from the forces of successive positions replaces it::
@@ -89,6 +94,8 @@ class LoadSearch:
         Film solves after which it gives up.
     faces : FacesUnderLoad, optional
         Films on the end faces, which carry their part.
+    size : float, optional
+        Force that the residual is divided by, N; by default that of the load.
     """
 
     def __init__(
@@ -98,10 +105,12 @@ class LoadSearch:
         where: str,
         effort: int = LARGEST_EFFORT,
         faces: FacesUnderLoad | None = None,
+        size: float | None = None,
     ) -> None:
         self.model, self.force, self.where, self.effort, self.faces = model, force, where, effort, faces
-        self.size, self.carried = float(np.hypot(*force)), 0.0
+        self.size, self.carried = float(np.hypot(*force)) if size is None else size, 0.0
         self.count, self.first = 0, model.parts.evaluations.count
+        self.strongest = (0.0, 0.0)
         self._history: History | None = None
         self._follows = np.zeros((2, 2))
 
@@ -126,22 +135,45 @@ class LoadSearch:
             # a search from the last of the films that follow from smaller loads takes long and finds none
             most = 0 if 0.0 < self.carried < self.size else most
         found = self.newton(self._start(place), tolerance, most)
-        if self.residual(found) > tolerance and self.carried == 0.0:
-            self._follows = np.zeros((2, 2))
-            held_back = 10.0 * self.size / b.radial_clearance
-            found = self.newton(self._start(motion), tolerance, LARGEST_CREEP_STEPS, held_back)
+        for start in (motion, self.loaded(motion, INSIDE)) if self.carried == 0.0 else ():
+            if self.residual(found) > tolerance:
+                found = self.damped(start, tolerance)
         if found.film.serial != self.model.parts.evaluations.count:
             found = self.at(found.motion)
         if self.residual(found) > tolerance:
             raise FilmError(
                 f"{self.where}: no position found that carries {self.size:.4g} N in {self.count} steps; the nearest "
                 f"is off by {self.residual(found):.2g} of the load, at eccentricity ratio "
-                f"{np.hypot(*found.motion[:2]) / b.radial_clearance:.4f}. A load this high may need "
-                "asperity=GreenwoodTripp(...) or contact=RegularisedWall(...), or a finer film grid; a supply area in "
-                "the loaded zone or a starved film may carry no such load at any position: look at ehd.steady(...) "
-                f"around there.{_hot(found, self.carried)}"
+                f"{np.hypot(*found.motion[:2]) / b.radial_clearance:.4f}. {self._remedy()} A supply area in the loaded "
+                "zone or a starved film may carry no such load at any position: look at ehd.steady(...) around "
+                f"there.{too_hot(found.film.temperature, self.carried)}"
             )
         return found
+
+    def loaded(self, motion: np.ndarray, ratio: float) -> np.ndarray:
+        """A motion (10,) with the journal moved along the load, by a share of the gap that its tilt leaves."""
+        b, motion = self.model.bearing, motion.copy()
+        room = max(1.0 - 0.5 * b.length * float(np.hypot(*motion[2:4])) / b.radial_clearance, 0.0)
+        motion[:2] = ratio * room * b.radial_clearance * self.force / self.size
+        return motion
+
+    def damped(self, motion: np.ndarray, tolerance: float) -> Carried:
+        """Where damped steps lead from a motion (10,); see `newton`."""
+        self._follows = np.zeros((2, 2))
+        held_back = 10.0 * self.size / self.model.bearing.radial_clearance
+        return self.newton(self._start(motion), tolerance, LARGEST_DAMPED_STEPS, held_back)
+
+    def _remedy(self) -> str:
+        """What to try for a load that was not found, by the largest that films on the way have carried."""
+        if self.strongest[0] > self.size:
+            return (
+                f"On the way a film has carried more, {self.strongest[0]:.4g} N at eccentricity ratio "
+                f"{self.strongest[1]:.4f}."
+            )
+        return (
+            "A load this high may need asperity=GreenwoodTripp(...) or contact=RegularisedWall(...), or a finer film "
+            "grid."
+        )
 
     def heated(self, motion: np.ndarray, tolerance: float, rounds: int = HEATED_ROUNDS) -> np.ndarray:
         """Motion (10,) in which a film with the temperature that it gives itself carries the load, which is kept.
@@ -249,11 +281,11 @@ class LoadSearch:
     def at(self, motion: np.ndarray) -> Carried:
         """The steady film at a motion (10,), which is kept."""
         self.count += 1
-        if self.faces is not None:
-            self.faces.settle(motion)
         evaluation, film = evaluate_at(self.model, motion, self.where, self._history)
         self._history = film.history
         unbalance, tangent, share = evaluation.wrench[:2] + self.force, evaluation.steady_tangent(), None
+        ratio = float(np.hypot(*motion[:2])) / self.model.bearing.radial_clearance
+        self.strongest = max(self.strongest, (float(np.hypot(*evaluation.wrench[:2])), ratio))
         if self.faces is not None:
             share = self.faces.share(motion, evaluation.wrench, tangent)
             unbalance += share.evaluation.wrench[:2]
@@ -283,21 +315,28 @@ class LoadSearch:
     ) -> Carried:
         """Newton's method from a place on, until the unbalance is below ``tolerance`` of the load, or ``most`` steps.
 
-        It also ends where it makes no progress, or reaches no film. With a resistance r, N/m, the journal creeps
-        against it, ``(r I - dF/dx) step = unbalance``: r falls as the unbalance does, and a step that increases the
-        unbalance is taken back and r grows. Slow and sure where Newton's method jumps over a film that starves or
-        touches.
+        It also ends where it makes no progress, or reaches no film. With a resistance r, N/m, it is damped after
+        Levenberg (1944) and Marquardt (1963): with K = -dF/dx and the unbalance U
+
+            (K^T K + r^2 I) step = K^T U
+
+        goes downhill in |U|^2 for r large enough, whatever K; r falls as |U| does, and a step that increases it is
+        taken back and r grows. Slow and sure where Newton's method jumps over a film that starves or touches, and where
+        a film without a cavity turns the journal across the load.
         """
         residuals: list[float] = []
         highest = 1e12 * resistance
         for _ in range(most):
             residuals.append(self.residual(place))
-            stuck = not resistance and len(residuals) > PATIENCE and residuals[-1] > 0.1 * residuals[-1 - PATIENCE]
+            falls = FALLS_DAMPED if resistance else FALLS
+            stuck = len(residuals) > PATIENCE and residuals[-1] > falls * residuals[-1 - PATIENCE]
             if residuals[-1] <= tolerance or stuck or self._spent() or resistance > highest:
                 break
             try:
-                slope = resistance * np.eye(2) - place.slope - self._follows
-                reached = self._moved(place, np.linalg.solve(slope, place.unbalance))
+                K, step = -place.slope - self._follows, place.unbalance
+                if resistance:
+                    K, step = K.T @ K + resistance**2 * np.eye(2), K.T @ step
+                reached = self._moved(place, np.linalg.solve(K, step))
             except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
                 if not resistance:
                     break
@@ -307,19 +346,6 @@ class LoadSearch:
             else:
                 place, resistance = reached, resistance / 5.0
         return place
-
-
-def _hot(place: Carried, carried: float) -> str:
-    """What the heat has to do with a load that no film carries, and how much it does."""
-    T = place.film.temperature
-    if T is None:
-        return ""
-    most = f" Followed from smaller loads, the film carries at least {carried:.4g} N." if carried else ""
-    return (
-        f"{most} The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film "
-        "thins faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
-        "supply of oil or a housing_conductance raises it."
-    )
 
 
 def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:

@@ -28,13 +28,10 @@ from exudyn_ehd.film.heat.across import (
 from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.joint.heat.heat_balance import STAGNANT
+from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT
 from exudyn_ehd.joint.heat.temperature import ViscosityField
 from exudyn_ehd.joint.heat.walls import Between, WalledTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
-
-# Exchange that mixes the oil over the height of a supply area, in the film's largest flow.
-MIXED = 1e4
 
 
 class FluidityField(ViscosityField):
@@ -79,8 +76,7 @@ class PairBetween(Between):
     def __init__(self, thermal: CubicTemperature, film: SolvedFilm, step: float) -> None:
         super().__init__(thermal, film, step)
         assert film.walls is not None and film.walls.across is not None
-        self.pairs, across = thermal.band(film.grid.shape, 2), film.walls.across
-        largest = float(max(np.abs(self.flows.x).max(), np.abs(self.flows.z).max(), self.store.max()))
+        self.pairs, across, largest = thermal.band(film.grid.shape, 2), film.walls.across, self.largest()
         largest_lost = float(np.abs(self.own).max())
         self._carry(thermal.fluidity, np.array([self.old, *across]))
         kept = self.store + STAGNANT * largest
@@ -101,30 +97,37 @@ class PairBetween(Between):
     def _carry(self, field: FluidityField, old: np.ndarray) -> None:
         """What flows carry, with the temperatures ``old`` (4, n, m) of the step's start for the limiter."""
         film, flows = self.film, self.flows
-        q, y, fill = film.solver.pressure, film.solver.system, flows.convected
+        q, y = film.solver.pressure, film.solver.system
         at, own = at_heights(self.surface), flow_shapes(field.vertices)
         held = self.store if self.step > 0.0 else np.full(q.shape, np.inf)
         limiter = start_heights(old), film.grid.link_z, held
-        below = flows.outside[..., None] * own.pressed_below + flows.found[..., None] * own.slides_below
-        content, self.ends = flows.outside + flows.found, np.zeros((2, 2, *self.own.shape))
-        for axis, (k, f, fluid) in enumerate(((y.kx, flows.fx, field.along), (y.kz, flows.fz, field.across))):
-            driven, sliding = k * (q - np.roll(q, -1, axis)), f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis))
-            carry(axis, driven, sliding, flow_shapes(fluid), at, limiter, self.ends[axis], below, content)
+        made = flows.found - flows.lost
+        below = flows.outside[..., None] * own.pressed_below + made[..., None] * own.slides_below
+        content, self.ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
+        for axis, (k, whole, fluid) in enumerate(((y.kx, flows.x, field.along), (y.kz, flows.z, field.across))):
+            driven = k * (q - np.roll(q, -1, axis))
+            carry(axis, driven, whole - driven, flow_shapes(fluid), at, limiter, self.ends[axis], below, content)
+        stirred = self.stirred()
+        self.ends[:, 0, 0, ..., 0] += stirred
+        self.ends[:, 1, 0, ..., 0] -= stirred
         leaves, loses = (weighed(flow, at) for flow in (own.pressed, own.slides))
+        if flows.areas:
+            # what areas take is mixed over the height
+            leaves[:, np.logical_or.reduce(flows.areas)] = np.eye(2, 4)[:, None] * [[[1.0]], [[0.0]]]
         self.takes, uniform = (leaves[0], loses[0]), np.ones((*q.shape, HEIGHTS.size, 4))
-        self.brings = self.found * weighed(own.slides, uniform)[..., 0]
+        self.brings = flows.found * weighed(own.slides, uniform)[..., 0]
         self.own[0, ..., 0] += content
         self.own[1, ..., 1] += content / 3.0
         self.own[1] -= 2.0 * weighed(below - content[..., None] * HEIGHTS, at)[0]
-        self.own += self.leaving[..., None] * leaves + self.lost[..., None] * loses
+        self.own += flows.leaving[..., None] * leaves + flows.lost[..., None] * loses
 
     def solve(self) -> None:
         """Factor the system, which `between` and `change` use."""
         p = self.pairs
         band_of_pairs(self.ends, self.own, p.number, p.lower, p.upper)
         p.factor()
-        if self.back > 0.0:
-            self.returning = self.pairs.solve(self.back * self.brings)
+        if self.flows.back > 0.0:
+            self.returning = self.pairs.solve(self.flows.back * self.brings)
 
     def between(self, at: list[np.ndarray]) -> np.ndarray:
         """Mean and tilt (2, n, m), K, with temperatures ``at`` outside both surfaces."""
@@ -144,7 +147,7 @@ class PairBetween(Between):
             flow = _of(own, outside) + _of(other, np.roll(outside, -1, axis))
             rest -= flow - np.roll(flow, 1, axis + 1)
         x = self.pairs.solve(rest)
-        if self.back > 0.0:
+        if self.flows.back > 0.0:
             back = self._mixed(_fields(self.returning, [np.zeros((1, 1))] * 2))
             x = x + self._mixed(_fields(x, at)) / (1.0 - back) * self.returning
         return x
@@ -165,9 +168,9 @@ class PairBetween(Between):
         """Heat in, convected and stored, W, with mean and tilt ``x`` (2, n, m) at the end."""
         rise = _fields(x, at) - np.array([self.supply, 0.0, self.supply, self.supply])
         leaving, lost = (_of(takes, rise) for takes in self.takes)
-        out = self.sums(x[0])
-        convected = float(np.sum(self.leaving * leaving + self.lost * lost))
-        return out | {"convected": self.scale * (convected - self.back * self._mixed(rise) * self.total_found)}
+        out, flows = self.sums(x[0]), self.flows
+        convected = float(np.sum(flows.leaving * leaving + flows.lost * lost))
+        return out | {"convected": self.scale * (convected - flows.back * self._mixed(rise) * flows.total_found)}
 
 
 def _fields(x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:

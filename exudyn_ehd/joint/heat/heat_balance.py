@@ -18,6 +18,9 @@ from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
 STAGNANT = 1e-14
+# Exchange over every link within a supply area, in the film's largest flow. Smaller: areas are mixed less well, their
+# temperatures differ by up to a share n_theta / MIXED of their rise. Larger: more round-off, 1e-16 MIXED of that rise.
+MIXED = 1e4
 
 
 class BandSolver:
@@ -79,68 +82,65 @@ class HeatBalance:
         self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
         self.old = temperature_of(film)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
-        self.heat, self.flows = heat, OilFlows(film)
-        self.entering, self.leaving = np.maximum(self.flows.outside, 0.0), np.maximum(-self.flows.outside, 0.0)
-        if thermal.carry_over < 1.0 and film.parts.supply is not None:
-            exchanged = (1.0 / thermal.carry_over - 1.0) * _arriving(self.flows, film.parts.supply.masks)
-            self.entering, self.leaving = self.entering + exchanged, self.leaving + exchanged
-        self.found, self.lost = np.maximum(self.flows.found, 0.0), np.maximum(-self.flows.found, 0.0)
-        self.total_found, total_lost = float(self.found.sum()), float(self.lost.sum())
-        back = min(self.total_found, total_lost) / self.total_found if self.total_found > 0.0 else 0.0
-        self.back = thermal.carry_over * back
-        self.weight = self.lost / total_lost if total_lost > 0.0 else self.lost
+        self.heat, self.flows = heat, OilFlows(film, thermal.carry_over)
+        self.weight = self.flows.lost / (self.flows.total_lost or 1.0)
         self.store = area * self.flows.content / step if step > 0.0 else np.zeros(shape)
         self.follows = thermal.follows(self.old, heat / self.scale, self.store)
+
+    def largest(self) -> float:
+        """Largest of the flows and of the storage."""
+        return max(self.flows.largest, float(self.store.max()))
+
+    def stirred(self) -> np.ndarray:
+        """Exchange (2, n, m) over the links in theta and z that mixes the supply areas."""
+        links = np.zeros((2, *self.store.shape))
+        for area in self.flows.areas:
+            links[0] += area & np.roll(area, -1, axis=0)
+            links[1, :, :-1] += area[:, :-1] & area[:, 1:]
+        return MIXED * self.flows.largest * links
 
     def factor(self, walls: np.ndarray) -> None:
         """Factor the system with heat transfer ``walls`` to the surfaces, in units of ``scale``."""
         flows, store = self.flows, self.store
-        rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
-        diagonal = self.follows + store + self.entering + self.found + walls + rigid
+        rigid = STAGNANT * self.largest()
+        diagonal = self.follows + store + flows.entering + flows.found + walls + rigid
         held = store if self.step > 0.0 else np.full(store.shape, np.inf)
-        slopes = np.empty((5, store.size))
-        transport_slopes(flows.x, flows.z, diagonal, self.old, self.film.grid.link_z, held, slopes)
+        slopes, links = np.empty((5, store.size)), (flows.x, flows.z)
+        transport_slopes(*links, diagonal, self.old, self.film.grid.link_z, held, slopes)
+        if flows.areas:
+            stirred = self.stirred()
+            slopes[:4:2] += stirred.reshape(2, -1)
+            slopes[1:4:2] -= stirred.reshape(2, -1)
+            links = links[0] + stirred[0], links[1] + stirred[1]  # also where nothing flows
         self.band = band = self.thermal.band(store.shape, 1)
-        assemble(flows.x, flows.z, slopes, band.number, band.order, band.size, band.lower, band.upper)
+        assemble(*links, slopes, band.number, band.order, band.size, band.lower, band.upper)
         band.factor()
         self.given = self.heat / self.scale + (store + rigid + self.follows) * (self.old - self.supply)
 
     def temperatures(self, gain: np.ndarray) -> np.ndarray:
         """Temperatures where the surfaces give ``gain``, in K times ``scale``, to a film at the supply temperature."""
-        T0, self.returning = self.band.solve(np.array([self.given + gain, self.back * self.found]))
+        T0, self.returning = self.band.solve(np.array([self.given + gain, self.flows.back * self.flows.found]))
         mixed = 0.0
-        if self.back > 0.0:
+        if self.flows.back > 0.0:
             mixed = float(np.sum(self.weight * T0)) / (1.0 - float(np.sum(self.weight * self.returning)))
         return self.supply + T0 + mixed * self.returning
 
     def response(self, gain: np.ndarray) -> np.ndarray:
         """Change of `temperatures`, which have been asked for, by a change of ``gain``."""
         change = self.band.solve(gain[None])[0]
-        if self.back > 0.0:
+        if self.flows.back > 0.0:
             mixed = float(np.sum(self.weight * change)) / (1.0 - float(np.sum(self.weight * self.returning)))
             change += mixed * self.returning
         return change
 
     def sums(self, T: np.ndarray) -> dict[str, float]:
         """Heat in, convected and stored, W, with these temperatures at the end."""
-        rise, area = T - self.supply, self.film.solver.area
+        rise, area, flows = T - self.supply, self.film.solver.area, self.flows
         mixed = float(np.sum(self.weight * rise))
         stored = float(np.sum(self.store * (T - self.old))) if self.step > 0.0 else 0.0
-        convected = float(np.sum((self.leaving + self.lost) * rise)) - self.back * mixed * self.total_found
+        convected = float(np.sum((flows.leaving + flows.lost) * rise)) - flows.back * mixed * flows.total_found
         return {
             "heat_in": float(np.sum(self.heat - self.scale * self.follows * (T - self.old))),
             "convected": self.scale * convected,
-            "stored": self.scale * (stored + float(np.sum(area * self.flows.rate * rise))),
+            "stored": self.scale * (stored + float(np.sum(area * flows.rate * rise))),
         }
-
-
-def _arriving(flows: OilFlows, masks: list[np.ndarray]) -> np.ndarray:
-    """Flow from the film into the vertices of supply areas (n, m)."""
-    inside = np.logical_or.reduce(masks)
-    after = np.roll(inside, -1, axis=0)
-    out = np.roll(np.where(after & ~inside, np.maximum(flows.x, 0.0), 0.0), 1, axis=0)
-    out += np.where(inside & ~after, np.maximum(-flows.x, 0.0), 0.0)
-    enters, leaves = ~inside[:, :-1] & inside[:, 1:], inside[:, :-1] & ~inside[:, 1:]
-    out[:, 1:] += np.where(enters, np.maximum(flows.z[:, :-1], 0.0), 0.0)
-    out[:, :-1] += np.where(leaves, np.maximum(-flows.z[:, :-1], 0.0), 0.0)
-    return out

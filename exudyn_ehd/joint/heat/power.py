@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.film.heat.energy import content_rate, film_flows, outside_flows
+from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, outside_flows
+from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 
@@ -72,68 +73,137 @@ def _by_touching(film: SolvedFilm, slope: np.ndarray, rate: np.ndarray, contact:
     return -float(np.sum(film.grid.weight * (contact + (1.0 - slope) * film.oil.P) * rate))
 
 
-class Exchange:
+class OilFlows:
     """Flows of a solved film, oil that enters it from outside, and the rate of its content, in units of c R^2.
+
+    The ends and the supply areas belong to the outside: what flows round in them neither enters nor leaves the film.
+
+    An end's half control volume holds the void of the film beside it. Full beside a cavity, as its pressure is
+    prescribed, it would take in cold oil where the gap opens and give hot oil off where the gap closes.
+
+    A supply area is a well-mixed volume. With the flow Q that the film presses into it, of the mean temperature T, the
+    net feed N of fresh oil at the supply temperature T_s, and X that flushes it, all that flows out of it has
+
+        T_mix = (Q T + (N + X) T_s) / (Q + N + X),        X = (1 / carry_over - 1) Q,
+
+    the heat balance of a groove with hot oil carried over (H. Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). An
+    area that takes oil, N < 0, mixes Q and X alone, and what it takes leaves with T_mix. In a film without axial flow,
+    whose oil has no other way out, areas do not mix: oil that pressure drives into one leaves, and that from one is
+    fresh.
 
     Of a compressible film, flows and contents are masses over the density at ambient pressure.
 
+    Parameters
+    ----------
+    film : SolvedFilm
+    carry_over : float
+        See `exudyn_ehd.film.heat.options`.
+
     Attributes
     ----------
-    fill, rate, outside : (n, m) arrays
-        Film fraction, times the density ratio; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies.
+    rate, content : (n, m) arrays
+        d(fill H)/dt, 1/s; content of the storage term (scaled gap, times the density ratio).
     x, z : (n, m) arrays
         Over the links i -> i+1 and j -> j+1.
-    balance : (n, m) array
-        What leaves a vertex over its links, or is stored there.
-    fx, fz, convected : (n, m) arrays
-        Couette flows of the links before they take the upstream value of ``convected`` along.
+    outside : (n, m) array
+        What enters at the ends and at supplies.
+    entering, leaving : (n, m) arrays
+        At the supply temperature, and at that of the film; the difference is ``outside``. Of an area that mixes only
+        the sums over its vertices count, and vertices may have negative values of ``leaving``.
+    found, lost : (n, m) arrays
+        Where a cavitation model does not conserve mass: oil that it makes, and oil that it drops.
+    back : float
+        Share of ``found`` that has the mixed temperature of ``lost``, the rest being fresh oil.
+    areas : list of (n, m) bool arrays
+        Vertices of the areas that mix.
     """
 
-    def __init__(self, film: SolvedFilm) -> None:
-        s, y = film.solver, film.solver.system
+    def __init__(self, film: SolvedFilm, carry_over: float) -> None:
+        s, y, supply = film.solver, film.solver.system, film.parts.supply
         conserves, fixed = s.closure.conserves_mass, film.grid.fixed
-        self.fill, self.convected = s.fill if conserves else s.ones, s.carried
-        self.fx, self.fz = y.fx, y.fz
-        oil = film.parts.compressible
+        fill, fx, fz, carried, oil = s.fill if conserves else s.ones, y.fx, y.fz, s.carried, film.parts.compressible
         if oil is not None:
             # these flows hold the upstream film fraction and the links' density already
-            self.fx, self.fz, _ = oil.couette_flows()
-            self.fill, self.convected = oil.rho * self.fill, s.ones
-        self.stepped = conserves and y.inverse_step > 0.0 and not s.instant
-        inverse_step = y.inverse_step if self.stepped else 0.0
-        self.rate = content_rate(s.H, s.H_t, self.fill, y.mass_old, inverse_step, s.squeeze)
+            fx, fz, _ = oil.couette_flows()
+            fill, carried = oil.rho * fill, s.ones
+        stepped = conserves and y.inverse_step > 0.0 and not s.instant
+        self.rate = content_rate(s.H, s.H_t, fill, y.mass_old, y.inverse_step if stepped else 0.0, s.squeeze)
+        self.content = y.mass_old.copy() if stepped else fill * s.H
+        self.x, self.z, balance = np.empty((3, *film.grid.shape))
+        film_flows(s.pressure, carried, y.kx, y.kz, fx, fz, self.x, self.z, balance)
+        if conserves:
+            self._void_the_ends(film, stepped)
+        balance += s.area * self.rate
         unbroken = np.ones_like(fixed) if conserves else s.work.active | fixed
-        self.x, self.z, self.balance = np.empty((3, *film.grid.shape))
-        film_flows(s.pressure, self.convected, y.kx, y.kz, self.fx, self.fz, self.x, self.z, self.balance)
-        self.balance += s.area * self.rate
-        self.outside = outside_flows(self.z, self.balance, fixed, unbroken)
+        self.outside = outside_flows(self.z, balance, fixed, unbroken)
+        if conserves and film.grid.flows_along_z:
+            self._flow_around(film, fx)
+        self.areas = supply.parted() if supply is not None and film.grid.flows_along_z else []
+        if supply is not None and self.areas and not conserves:
+            # films that end within a link of an area; what this leaves of the balance is the cavity's
+            inside = np.logical_or.reduce(self.areas)
+            np.copyto(self.outside, s.inflow(ended=not supply.rotating), where=inside)
+        found = s.nothing if conserves else balance - self.outside
+        self.found, self.lost = np.maximum(found, 0.0), np.maximum(-found, 0.0)
+        self.total_found, self.total_lost = float(self.found.sum()), float(self.lost.sum())
+        self.back = carry_over * min(1.0, self.total_lost / self.total_found) if self.total_found > 0.0 else 0.0
+        self.entering = np.maximum(self.outside, 0.0)
+        for area in self.areas:
+            self.entering[area] = max(0.0, float(self.outside[area].mean()))
+        if carry_over < 1.0 and supply is not None:
+            self.entering += (1.0 / carry_over - 1.0) * self._arriving(np.logical_or.reduce(supply.masks))
+        self.leaving = self.entering - self.outside
 
     @property
-    def leaving(self) -> float:
-        """Sum of what leaves."""
-        return -float(np.minimum(self.outside, 0.0).sum())
+    def exchanged(self) -> float:
+        """Flow that leaves a film of one temperature, and is replaced by oil of the supply temperature."""
+        return float(self.leaving.sum()) + self.total_lost - self.back * self.total_found
+
+    @property
+    def largest(self) -> float:
+        """Largest flow over a link."""
+        return float(max(np.abs(self.x).max(), np.abs(self.z).max()))
+
+    def _void_the_ends(self, film: SolvedFilm, stepped: bool) -> None:
+        """Give the ends' control volumes the void of the vertices beside them."""
+        s = film.solver
+        old = film.history.void if stepped and film.history is not None else None
+        for end, beside, at in ends_of_cavities(s.system, True):
+            if old is None:
+                share = np.where(at, s.fill[:, beside], 1.0)
+                self.rate[:, end] *= share
+                self.content[:, end] *= share
+            else:
+                void, lacked = (np.where(at, v[:, beside], 0.0) for v in (s.H - s.content, old))
+                self.rate[:, end] -= (void - lacked) * s.system.inverse_step
+                self.content[:, end] = np.maximum(self.content[:, end] - lacked, 0.0)
+
+    def _flow_around(self, film: SolvedFilm, fx: np.ndarray) -> None:
+        """Let nothing enter by what flows round in the ends' control volumes."""
+        s = film.solver
+        for end, beside, _ in ends_of_cavities(s.system, True):
+            if not film.grid.fixed[:, end].all():
+                continue
+            pressed = self.z[:, 0].copy() if end == 0 else -self.z[:, beside]
+            stored, squeezed = (s.area[:, end] * rate[:, end] for rate in (self.rate, s.H_t))
+            full = (s.fill[:, beside] >= 1.0) & (s.pressure[:, end] > s.system.cavity_pressure)
+            flow = np.empty_like(pressed)
+            end_flows_around(fx[:, end].copy(), pressed, stored, squeezed, full, flow, self.outside[:, end])
+            self.x[:, end] = flow
+
+    def _arriving(self, inside: np.ndarray) -> np.ndarray:
+        """Flow from the film into the vertices ``inside`` supply areas (n, m)."""
+        after = np.roll(inside, -1, axis=0)
+        out = np.roll(np.where(after & ~inside, np.maximum(self.x, 0.0), 0.0), 1, axis=0)
+        out += np.where(inside & ~after, np.maximum(-self.x, 0.0), 0.0)
+        enters, leaves = ~inside[:, :-1] & inside[:, 1:], inside[:, :-1] & ~inside[:, 1:]
+        out[:, 1:] += np.where(enters, np.maximum(self.z[:, :-1], 0.0), 0.0)
+        out[:, :-1] += np.where(leaves, np.maximum(-self.z[:, :-1], 0.0), 0.0)
+        return out
 
 
-class OilFlows(Exchange):
-    """`Exchange` of a film with what its energy equation asks for in addition.
-
-    Attributes
-    ----------
-    found : (n, m) array
-        Entering in addition, where a cavitation model does not conserve mass; negative where it loses oil.
-    content : (n, m) array
-        Content of the storage term (scaled gap, times the density ratio).
-    """
-
-    def __init__(self, film: SolvedFilm) -> None:
-        super().__init__(film)
-        s, y = film.solver, film.solver.system
-        self.content = y.mass_old if self.stepped else self.fill * s.H
-        self.found = s.nothing if s.closure.conserves_mass else self.balance - self.outside
-
-
-def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
-    """Power that film and contacts turn into heat, W, and the flow that leaves, in units of c R^2.
+def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float]:
+    """Power that film and contacts turn into heat, W, and `OilFlows.exchanged`.
 
     What a link carries dissipates its own power: what sliding puts in, and what the flow loses of its pressure. Summed
     over the links by parts, with the cavity's pressure pc, the inflow S from outside and the content's rate,
@@ -143,17 +213,17 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     which holds none of the powers that store and give back: where nothing changes in time it is `Powers.loss` plus the
     work on the oil, to rounding. Oil that cavities find or lose has their pressure and does no work, also where a
     rupture line crosses a cell. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows and
-    content are masses. The flow that leaves is that of `Exchange`, less what a supply area takes back from the film and
-    gives to it again; in a long bearing, whose oil has no other way out, all of it.
+    content are masses.
     """
-    flows, oil = Exchange(film), film.parts.compressible
+    flows, oil = OilFlows(film, carry_over), film.parts.compressible
     P, cavity = film.oil.P, np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
     pressure = P - cavity if oil is None else oil.flow_work(P) - oil.flow_work(cavity)
-    work = float(np.sum(pressure * (flows.outside - film.solver.area * flows.rate)))
+    entering = flows.outside - film.solver.area * flows.rate
+    for area in flows.areas:
+        entering[area] += flows.found[area] - flows.lost[area]
+    work = float(np.sum(pressure * entering))
     power = film.scales.pressure * film.parts.flow_scale
-    areas = film.parts.supply.masks if film.parts.supply is not None and film.grid.flows_along_z else ()
-    back = sum(min(np.maximum(side * flows.outside[at], 0.0).sum() for side in (1.0, -1.0)) for at in areas)
-    return powers(film).sliding + power * (work + _end_work(film)), flows.leaving - float(back)
+    return powers(film).sliding + power * (work + _end_work(film)), flows.exchanged
 
 
 def _end_work(film: SolvedFilm) -> float:

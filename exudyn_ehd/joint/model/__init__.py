@@ -6,6 +6,7 @@ build           the only place that asks whether an effect is present
 build_flexible  the same for flexible bushes
 compile         kernels compiled before the first step
 rigid           rigid journal in a rigid bore
+centre          one-sided derivatives at the exact centre
 flexible        elastic bore
 impedance       fitted map
 effects         profile, roughness, contact; oil laws

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.model.compile import compile_kernels
-from exudyn_ehd.joint.model.effects import collect_rheology, liner_of, surface_effects
+from exudyn_ehd.joint.model.effects import collect_rheology, surface_effects
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.seams import Effects, shear_product
@@ -29,7 +30,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         shear_factor=shear_product(oil.shear_factor, surfaces.shear_factor),
         thermal=oil.thermal,
         density=oil.density,
-        liner=liner_of(bearing),
+        liner=bearing.bush if isinstance(bearing.bush, ElasticLiner) else None,
         uneven_drag=surfaces.uneven_drag or oil.uneven_drag,
     )
 

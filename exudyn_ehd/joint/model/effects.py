@@ -9,13 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
@@ -23,17 +21,10 @@ from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature
 from exudyn_ehd.joint.model.parts import grid_of
 from exudyn_ehd.joint.seams import Effects, GapTerm, PressureLaw, Wear, shear_product
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.status import InputError
 
 
 def surface_effects(bearing: JournalBearing, start_angle: float) -> Effects:
-    """Scaled effects of profile, wear, roughness and asperities, on the grid that starts at ``start_angle``.
-
-    Raises
-    ------
-    InputError
-        For options that exclude or contradict each other.
-    """
+    """Scaled effects of profile, wear, roughness and asperities, on the grid that starts at ``start_angle``."""
     c = bearing.radial_clearance
     gap_terms: list[GapTerm] = []
     wear = None
@@ -42,7 +33,6 @@ def surface_effects(bearing: JournalBearing, start_angle: float) -> Effects:
         if bearing.profiles:
             gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
         if bearing.wear is not None:
-            _check_wear(bearing)
             wear = WearDepth(bearing.wear, grid.shape, c)
             gap_terms.append(WearTerm(wear))
     if bearing.asperity is None and bearing.roughness is None:
@@ -62,7 +52,6 @@ class WearTerm:
 
 
 def _rough_effects(bearing: JournalBearing) -> Effects:
-    _check(bearing)
     c = bearing.radial_clearance
     contact = None if bearing.asperity is None else AsperityContact(bearing.asperity, c)
     if bearing.roughness is None:
@@ -77,53 +66,6 @@ def _rough_effects(bearing: JournalBearing) -> Effects:
     )
 
 
-def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
-    """The bearing's elastic liner, if it can be solved with the other options.
-
-    Raises
-    ------
-    InputError
-        For options that a liner does not go with.
-    """
-    if not isinstance(bearing.bush, ElasticLiner):
-        return None
-    if not isinstance(bearing.film, FiniteLength):
-        raise InputError(
-            f"JournalBearing.bush=ElasticLiner(...) can't be combined with film={type(bearing.film).__name__}(): its "
-            "film is solved in two dimensions; leave one of the two out."
-        )
-    return bearing.bush
-
-
-def _check_wear(bearing: JournalBearing) -> None:
-    if bearing.asperity is None:
-        raise InputError(
-            "JournalBearing.wear=ArchardWear(...) needs a contact pressure to wear with; give the bearing "
-            "asperity=GreenwoodTripp(...), or leave wear out."
-        )
-
-
-def _check(bearing: JournalBearing) -> None:
-    asperity, roughness = bearing.asperity, bearing.roughness
-    if bearing.contact is not None:
-        raise InputError(
-            "JournalBearing.contact=RegularisedWall(...) and the gap of rough surfaces (asperity, roughness) "
-            "exclude each other: both say which gap the film sees where surfaces touch; keep "
-            "asperity=GreenwoodTripp(...) and leave out the wall."
-        )
-    if asperity is not None and roughness is not None and asperity.composite_roughness != roughness.composite_roughness:
-        raise InputError(
-            f"PatirCheng.composite_roughness ({roughness.composite_roughness:g} m) must equal "
-            f"GreenwoodTripp.composite_roughness ({asperity.composite_roughness:g} m); they describe the same surfaces."
-        )
-    sigma = (roughness if asperity is None else asperity).composite_roughness  # type: ignore[union-attr]
-    if not 4.0 * sigma < bearing.radial_clearance:
-        raise InputError(
-            f"JournalBearing: the composite roughness {sigma:g} m must be below a quarter of the radial clearance "
-            f"{bearing.radial_clearance:g} m; it is the standard deviation of the heights, in metres."
-        )
-
-
 def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
     """Scaled wear depth at the end of a solved film's step."""
     contacts, history = film.parts.contacts, film.history
@@ -136,13 +78,7 @@ def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
 
 
 def collect_rheology(bearing: JournalBearing) -> Effects:
-    """Laws of the lubricant and the thermal effect of a bearing.
-
-    Raises
-    ------
-    InputError
-        For a thermal effect whose lubricant has no temperature law, or a journal's wall thicker than the journal.
-    """
+    """Laws of the lubricant and the thermal effect of a bearing."""
     oil, thermal = bearing.lubricant, bearing.thermal
     effects = Effects(pressure_law=transform_law(oil))
     if isinstance(effects.pressure_law, CompressibleLaw):
@@ -158,17 +94,11 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
         effects = replace(effects, flux=(turbulent,), shear_factor=turbulent)
     if thermal is None:
         return effects
-    if oil.temperature_law is None:
-        raise InputError(
-            f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on "
-            'temperature, got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
-        )
     if isinstance(thermal, LumpedThermal):
         lumped = LumpedTemperature(thermal, bearing)
         if turbulent is not None:
             turbulent.field = lumped.field = ViscosityField()
         return replace(effects, thermal=lumped)
-    _check_field(bearing, thermal)
     if thermal.across == 2:
         # imported here: other films have no profile across them
         from exudyn_ehd.joint.heat.across import CubicTemperature, FluidityField
@@ -193,21 +123,6 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     kind = WalledTemperature if thermal.across == 1 else CubicTemperature
     walled = kind(thermal, bearing, field, grid_of(bearing).shape)
     return replace(effects, thermal=walled, gap_terms=(Growth(walled),) if walled.grows else ())
-
-
-def _check_field(bearing: JournalBearing, thermal: FilmEnergy) -> None:
-    """Refuse a temperature field that does not go with the bearing."""
-    if thermal.across == 2 and bearing.lubricant.shear_law is not None:
-        raise InputError(
-            f"FilmEnergy.across=2 does not go with Lubricant.shear_law={type(bearing.lubricant.shear_law).__name__}(): "
-            "both change the viscosity across the film, and either leaves out the other's profile; take across=1, or "
-            "leave the shear_law out."
-        )
-    if thermal.journal is not None and thermal.journal.thickness > bearing.journal_radius * (1.0 + 1e-12):
-        raise InputError(
-            f"FilmEnergy.journal=Conduction(thickness={thermal.journal.thickness:g} m) is thicker than the journal, "
-            f"whose radius is {bearing.journal_radius:g} m; a solid journal's thickness is its radius."
-        )
 
 
 def transform_law(lubricant: Lubricant) -> PressureLaw | None:

@@ -27,6 +27,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent
 from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
+from exudyn_ehd.joint.model.centre import is_central, tangents_beside
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (
@@ -99,6 +100,8 @@ class ElasticEvaluation(Evaluation):
 
     def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
         """d wrench / d motion (6, 10) with the bore following slowly; as `Evaluation.steady_tangent`."""
+        if is_central(self):
+            return tangents_beside(self).mean(axis=0)
         elasticity = self.model.elasticity
         tangent = elasticity.tangent(self) if rough is None else elasticity.refined_tangent(self)
         if tangent is None:

@@ -9,14 +9,17 @@ import numpy as np
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
+    couette_integral_law,
     couette_integral_ratio,
     end_forces,
     journal_wrench,
     pressure_integrals,
     slope_integrals,
 )
-from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench, couette_integral_law
-from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.film.solvers.edge_flows import shear_share
+from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
+from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench
+from exudyn_ehd.joint.seams import Effects, ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
     ExtraGap,
@@ -85,6 +88,7 @@ def film_loads(
     extra: ExtraGap | None,
     pressing: ContactFields | None,
     limited: LimiterFields | None,
+    recess: RecessShear | None = None,
 ) -> Loads:
     """Loads of the film that ``parts.solver`` holds."""
     s, g, P = parts.solver, parts.grid, oil.P
@@ -101,6 +105,8 @@ def film_loads(
         extra_theta += drag[0]
         extra_z += drag[1]
     couette, couette_unbroken = _couette(parts, oil.ratio)
+    if recess is not None:
+        couette, couette_unbroken = (c + float(recess.density.sum()) for c in (couette, couette_unbroken))
     wrench, ends = np.empty(6), end_forces(s.H, scales.ends)
     s_theta = journal_wrench(
         journal.pose,
@@ -120,19 +126,39 @@ def film_loads(
     if pressing is not None:
         contact = np.zeros(6)
         _add_contacts(parts, journal, pressing, contact, wrench)
-    return Loads(wrench, contact, integrals, couette, couette_unbroken, s_theta)
+    return Loads(wrench, contact, integrals, couette, couette_unbroken, s_theta, recess)
+
+
+def recess_of(
+    parts: FilmParts,
+    scales: Scales,
+    journal: JournalMotion,
+    thermal: ThermalEffect | None,
+    temperature: float | np.ndarray | None,
+) -> RecessShear | None:
+    """Shear of the oil in supply areas at a film temperature, K; None where it does not count."""
+    supply = parts.supply
+    if supply is None or all(area.depth is None for area in supply.supply):
+        return None
+    b, R, c = parts.bearing, parts.grid.reference_length, parts.bearing.radial_clearance
+    viscosity = np.asarray(b.lubricant.viscosity)
+    if thermal is not None and temperature is not None:
+        viscosity = viscosity * thermal.viscosity_ratio(temperature)
+    oil = viscosity * R**2 / (c * scales.shear), b.lubricant.density * R / viscosity
+    return recess_shear([area.depth for area in supply.supply], supply.parts, c, journal.omega, oil)
 
 
 def _couette(parts: FilmParts, ratio: np.ndarray | None) -> tuple[float, float]:
     """Integrals of the Couette shear: of all of the film, and of its unbroken part."""
     s, g = parts.solver, parts.grid
     if s.closure.conserves_mass:
+        share = shear_share(s.system, s.work.active, s.closure)
         if ratio is None:
-            return couette_integral_fill(s.H, g.weight, s.fill)
-        return couette_integral_ratio(s.H, g.weight, ratio, s.fill, s.fill >= 1.0)
+            return couette_integral_fill(s.H, g.shear_weight, share)
+        return couette_integral_ratio(s.H, g.shear_weight, ratio, share, share >= 1.0)
     if ratio is None:
-        return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
-    return couette_integral_law(s.H, g.weight, ratio, s.work.active, g.fixed, s.closure.cavity_shear)
+        return couette_integral(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear)
+    return couette_integral_law(s.H, g.shear_weight, ratio, s.work.active, g.fixed, s.closure.cavity_shear)
 
 
 def _add_contacts(

@@ -10,6 +10,7 @@ from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply.cuts import SupplyMap
+from exudyn_ehd.film.surfaces.contact import Contact, LandContact
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import ContactFields, Evaluations, FilmParts, LimiterFields
 
@@ -39,13 +40,16 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     grid = grid_of(bearing, start_angle, open_ring)
     supply = _supply_map(bearing, grid)
     grid = grid if supply is None else supply.grid
+    touching: list[Contact] = list(effects.contacts)
+    if supply is not None:
+        touching = [LandContact(contact, supply.land) for contact in effects.contacts]
     liner: NonlinearFilmSolver | None = None
     if effects.liner is not None:
         liner = NonlinearFilmSolver(
             grid,
             bearing.closure,
             squeeze=bearing.squeeze,
-            contact=next(iter(effects.contacts), None),
+            contact=next(iter(touching), None),
             limiter=effects.limiter,
             flux_effects=effects.flux,
             oil=effects.pressure_law,
@@ -61,9 +65,8 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     )
     nonlinear = solver if isinstance(solver, (CompressibleFilmSolver, NonlinearFilmSolver)) else None
     contacts = None
-    if effects.contacts:
-        friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in effects.contacts]
-        contacts = ContactFields(grid.shape, friction, max(f.presses_below for f in effects.contacts))
+    if touching:
+        contacts = ContactFields(grid.shape, touching)
         if liner is not None:
             # contact and film gap on a liner come out of its film solve
             contacts.P, contacts.slope = [liner.contact_pressure], [liner.contact_slope]

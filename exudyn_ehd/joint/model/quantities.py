@@ -31,11 +31,12 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
                      + sum (p - pc) outflow - pc dV/dt - w sum p h ds,
 
     with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It
-    follows from Reynolds' equation times p - pc, summed by parts; only the heat is left if ends and cavity are at
-    gauge 0. The last term is the pressure on the ends' cross section, which the journal's wrench carries.
-    Compressible oil takes its elastic energy along: p - pc becomes the integral of dp / (rho / rho_0), the outflow
-    the mass flow over rho_0, and the rate of the energy that the film holds is added. What bends an elastic bore is
-    not in it: that is the bush's. Nor is the power that solids take up and give back,
+    follows from Reynolds' equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge
+    0. The shear's term is that of the lands; supply areas with a depth have the one of `exudyn_ehd.film.supply.recess`.
+    The last term is the pressure on the ends' cross section, which the journal's wrench carries. Compressible oil takes
+    its elastic energy along: p - pc becomes the integral of dp / (rho / rho_0), the outflow the mass flow over rho_0,
+    and the rate of the energy that the film holds is added. What bends an elastic bore is not in it: that is the
+    bush's. Nor is the power that solids take up and give back,
 
         stored_power = int (p + p_c) d(delta)/dt - (p_c + (1 - dh/dg) p) dg/dt dA
 

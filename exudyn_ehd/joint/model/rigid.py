@@ -19,8 +19,9 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
+from exudyn_ehd.joint.model.centre import is_central, tangents_beside
 from exudyn_ehd.joint.model.effects import worn_depth
-from exudyn_ehd.joint.model.loads import film_loads, oil_fields
+from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of
 from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
 from exudyn_ehd.joint.plain_film import is_plain, solve_plain
@@ -72,10 +73,13 @@ class Evaluation:
         """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
 
         ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes
-        nothing.
+        nothing. At the exact centre the mean of films beside it (`exudyn_ehd.joint.model.centre`).
         """
-        film = self._current()
-        return np.full((6, MOTION_SIZE), np.nan) if film is None else wrench_tangent(film, slow_motion)
+        if (film := self._current()) is None:
+            return np.full((6, MOTION_SIZE), np.nan)
+        return (
+            tangents_beside(self, slow_motion).mean(axis=0) if is_central(self) else wrench_tangent(film, slow_motion)
+        )
 
     def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
         """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.
@@ -86,11 +90,9 @@ class Evaluation:
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
-        film = self._current()
+        film, p = self._current(), self.model.parts
         if film is None:
-            return {"minimum_gap": self.minimum_gap} | eccentricities(
-                self.model.parts, self.motion[:4] * self.model.parts.pose_scale
-            )
+            return {"minimum_gap": self.minimum_gap} | eccentricities(p, self.motion[:4] * p.pose_scale)
         return quantities(film)
 
     def history(self) -> History | None:
@@ -101,8 +103,7 @@ class Evaluation:
         RuntimeError
             If there is no film.
         """
-        film = self._current()
-        if film is None:
+        if (film := self._current()) is None:
             raise RuntimeError(f"Evaluation.history: {self.status.name}, without a film there is no history to keep.")
         return self.model.next_history(film)
 
@@ -158,11 +159,6 @@ class BearingModel:
             p.liner.beta = self.effects.liner.compliance * pressure / c
         if p.nonlinear is not None:
             p.nonlinear.pressure_scale = pressure
-
-    def set_end_pressures(self, pressures: np.ndarray) -> None:
-        """Pressures (2,) at both ends from the next evaluation on, Pa, in place of the bearing's."""
-        self._known[:2] = pressures
-        self._set_viscosity(self.viscosity_ratio)
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""
@@ -257,7 +253,8 @@ class BearingModel:
             smallest = p.liner.smallest_gap()
             if p.contacts is not None:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
-        loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited)
+        recess = recess_of(p, self.scales, journal, self.effects.thermal, temperature)
+        loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited, recess)
         film = SolvedFilm(
             p,
             self.grid,
@@ -337,9 +334,7 @@ class BearingModel:
     def _press(self, f: ContactFields, smallest: float) -> ContactFields | None:
         """Pressures of the contacts at the true gap; None where the surfaces are too far apart for any."""
         if smallest < f.presses_below:
-            f.acting = True
-            for k, contact in enumerate(self.effects.contacts):
-                contact.pressure(self.solver.H, f.P[k], f.slope[k])
+            f.press(self.solver.H)
             return f
         if f.acting:
             f.clear()
@@ -369,9 +364,7 @@ class BearingModel:
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
         if p.liner is not None:
             p.liner.delta_old = None if history is None else history.deflection
-        kept = None
-        if history is not None and history.void is not None:
-            kept = self.solver.keep(history.void, step)
+        kept = None if history is None or history.void is None else self.solver.keep(history.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
         self.solver.lag(None if history is None else history.outflow, step)
         status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)

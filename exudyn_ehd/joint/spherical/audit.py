@@ -18,13 +18,13 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
-from exudyn_ehd.joint.audit.assumptions import SURELY_FINE
+from exudyn_ehd.joint.audit.assumptions import INERTIA, SURELY_FINE
 from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.changes import MATTERS
-from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, finding, judged
+from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, Limit, finding, judged
 from exudyn_ehd.joint.audit.oil import piezoviscosity
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.samples import TENSION, intervals_at_half, time_mean
+from exudyn_ehd.joint.audit.samples import TENSION, rate_of_squeeze, time_mean
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
     TYPICAL_ROUGHNESS,
@@ -33,6 +33,7 @@ from exudyn_ehd.joint.audit.switches import (
     Switch,
     swift_stieber,
 )
+from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.changes import BallComparison
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
@@ -41,6 +42,8 @@ from exudyn_ehd.status import FilmError
 
 # Asperities carry from so many roughnesses on; a typical wall begins there, at most at this share of the clearance.
 TOUCHING, THIN = 4.0, 0.1
+# Intervals across a ball's pressure peak from which on its load is within 1 %.
+ACROSS = {"columns": Limit(4.0, "intervals", below=True), "rows": Limit(3.0, "intervals", below=True)}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -71,6 +74,13 @@ def squeeze_share(motion: np.ndarray) -> float:
     return v / total if total > 0.0 else 0.0
 
 
+def squeeze_rate(bearing: SphericalBearing, motions: np.ndarray, time: np.ndarray | None = None) -> float:
+    """`exudyn_ehd.joint.audit.samples.rate_of_squeeze`, 1/s, of motions (n, 11)."""
+    place, velocity, spin = (motions[:, part] for part in (PLACE, VELOCITY, SPIN))
+    wedge = 0.5 * np.linalg.norm(np.cross(place, spin), axis=1)
+    return rate_of_squeeze(place, velocity, wedge, bearing.radial_clearance, time)
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Sample:
     """Numbers of one film: m/s, m3/s, m, Pa, W; ``cavitated`` and ``tension`` are shares of the socket."""
@@ -82,6 +92,7 @@ class _Sample:
     power_loss: float
     contact_share: float
     squeeze_share: float
+    squeeze_rate: float
     deflection: float
     cavitated: float
     tension: float
@@ -109,6 +120,7 @@ def _sample(model: SphericalModel, found: SphericalEvaluation) -> _Sample:
         power_loss=q["power_loss"],
         contact_share=q["contact_load"] / max(load, q["contact_load"], 1e-300),
         squeeze_share=squeeze_share(motion),
+        squeeze_rate=squeeze_rate(b, motion[None]),
         deflection=steel * radius * max(q["peak_pressure"], 0.0),
         cavitated=float(share[~film.unbroken].sum()),
         tension=float(share[p < TENSION].sum()),
@@ -254,14 +266,15 @@ def _cavities(case: _BallCase) -> list[Finding]:
 
 def _flow(case: _BallCase) -> list[Finding]:
     b = case.bearing
-    thin = b.radial_clearance / b.ball_radius
+    thin, record = b.radial_clearance / b.ball_radius, case.record
+    rate = case.largest("squeeze_rate") if record is None else squeeze_rate(b, record.motion, record.time)
     Re = b.lubricant.density * case.largest("speed") * b.radial_clearance / b.lubricant.viscosity
     return [
         finding("turbulence", "Re = rho U c / mu", Re, None, mattering="beyond the laminar film: friction is too low."),
         finding(
             "fluid inertia",
-            "Re c / R",
-            Re * thin,
+            INERTIA,
+            max(Re * thin, b.lubricant.density * rate * b.radial_clearance**2 / b.lubricant.viscosity),
             None,
             mattering="the Reynolds equation leaves the fluid's inertia out: take forces as estimates.",
         ),
@@ -295,8 +308,8 @@ def _grid(case: _BallCase, name: str, count: str, effect: str) -> Finding:
     size, value = getattr(case.bearing, name), case.smallest(count)
     indicator = f"intervals across the peak at half its height, {name} = {size}"
     finer = partial(replace, **{name: 2 * size})
-    change = None if value > 2.0 * SURELY_FINE * LIMITS[effect].value else case.films.change(finer)
-    found = replace(finding(effect, indicator, value, None), change=change)
+    change = None if value > 2.0 * SURELY_FINE * ACROSS[count].value else case.films.change(finer)
+    found = replace(finding(effect, indicator, value, None, limit=ACROSS[count]), change=change)
     if change is not None and change.found:
         found = replace(found, matters=change.size > MATTERS)
     if not found.matters:

@@ -11,7 +11,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftSti
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.joint.spherical.patch import sphere_patch
-from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_type, require_vector
+from exudyn_ehd.status import InputError, require_count, require_number, require_numbers, require_type, require_vector
 
 # Least width of a patch, and least colatitude of its open end from either pole, rad.
 LEAST_ANGLE = 0.05
@@ -98,8 +98,8 @@ class SphericalBearing:
                 f"{LEAST_ANGLE} and end <= {end:.5g}, got {self.socket_angles!r}; use math.radians for degrees."
             )
         object.__setattr__(self, "socket_angles", (first, last))
-        require_integer(f"{name}.n_phi", self.n_phi, at_least=16)
-        require_integer(f"{name}.n_chi", self.n_chi, at_least=4)
+        require_count(f"{name}.n_phi", self.n_phi, at_least=16)
+        require_count(f"{name}.n_chi", self.n_chi, at_least=4)
         require_type(f"{name}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld)
         if self.cavitation.line_in_cells or self.cavitation.cavity_pressure > 0.0:
             raise InputError(

@@ -43,6 +43,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.solved_film import History
@@ -250,7 +251,7 @@ class SphericalModel:
     def _share(self) -> np.ndarray:
         """Share (n m,) of a full film's Couette shear."""
         s = self.solver
-        return np.where(s.work.active | self.grid.fixed, 1.0, self.bearing.cavitation.cavity_shear).ravel()
+        return shear_share(s.system, s.work.active, s.closure).ravel()
 
     def _oil(self) -> tuple[np.ndarray, np.ndarray | float, np.ndarray | float] | None:
         """Scaled pressure, viscosity ratio and its derivative to the unknown; None where no pressure is high enough."""

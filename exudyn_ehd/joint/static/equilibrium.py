@@ -6,20 +6,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.steadiest import steadiest
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.centre import evaluate_beside, is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
-from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
+from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
@@ -35,11 +37,14 @@ ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
 # What is left inside the cells where nothing cancels.
 LEFT_IN_CELLS = 0.007
 LEFT_OUT = (
-    "equilibrium: with ElrodAdams on a flexible bore or journal damping, whirl_ratio and critical_mass leave out how "
-    "the cavity's oil follows: the damping is that of a sudden velocity, and a mass was 1.7 times too large on a ring "
-    "that hardly yields; position and stiffness hold. Take SwiftStieber(), a rigid bore or an ElasticLiner for these."
+    "equilibrium: with ElrodAdams on a flexible bore or journal damping, whirl_ratio and critical_mass are nan: they "
+    "leave out how the cavity's oil follows; position and stiffness hold. Take SwiftStieber(), a rigid bore or an "
+    "ElasticLiner for them."
 )
 LOADS = {"smallest": 1e-30, "largest": 1e15}
+# Without a load, what counts as one for the residual: share of L D mu omega / psi^2. A smaller one asks for a more
+# exact position, which round-off ends at 1e-16 of that force.
+NO_LOAD = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,21 +63,21 @@ class EquilibriumResult:
         journal and a liner follow without inertia. See ``settled_stiffness`` for the other limit.
     frequency : float
         rad/s, of the small motions for which K and C hold. 0 where they do not depend on it, for the slow motions of
-        surfaces that yield, and with `ElrodAdams` on a flexible bore; with `ElrodAdams` on others that of the whirl
-        threshold, or half the spin if there is none.
+        surfaces that yield; with `ElrodAdams` that of the whirl threshold, or half the spin if there is none.
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
         Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at
-        any.
+        any. With `ElrodAdams` on a flexible bore or journal it is nan, as are ``damping``, ``whirl_ratio`` and the
+        error: how the cavity's oil follows there is not known.
     critical_mass_error : float
         Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
-        the grid does not tell whether the bearing is stable at any mass, and with `ElrodAdams` on a flexible bore or
-        journal, whose delays it leaves out. Of all results the critical mass feels the grid most: on the default film
-        within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture line on the vertices within some
-        20 % and several times.
+        the grid does not tell whether the bearing is stable at any mass. Of all results the critical mass feels the
+        grid most: on the default film within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture
+        line on the vertices within some 20 % and several times.
     residual : float
-        Largest component of film force + load in x and y, divided by the load there.
+        Largest component of film force + load in x and y, divided by the load there; without one by 1e-5 of
+        ``L D mu omega / psi^2``.
     iterations : int
         Positions tried, each with a film solve; with ``thermal`` temperatures are tried along with them. A flexible
         bore settles at each of them.
@@ -174,8 +179,8 @@ def equilibrium(
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
-    the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a
-    falling resistance.
+    the bearing and costs nothing near the solution. Where it fails, damped steps of
+    Levenberg and Marquardt lead there, first from the same guess, then from inside the bearing.
 
     With `ElrodAdams` stiffness and damping depend on the frequency of the motion, because the cavity's oil follows
     with a delay. The threshold is solved for with both at its own frequency, and these are the ones returned; others
@@ -183,9 +188,8 @@ def equilibrium(
     `EquilibriumResult.settled_stiffness` lets it follow. On a liner, a flexible bore or journal the stiffness is that
     of the steady film and the damping that of a slow motion; they follow quick ones with a delay, which the threshold
     and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` on a liner all of it holds at the threshold's
-    frequency; on a flexible bore the cavity's oil does not follow, the damping is that of a sudden velocity, and a
-    UserWarning says so. An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed
-    state.
+    frequency; on a flexible bore or journal damping and threshold are nan, and a UserWarning says why. An `ANCFBush`
+    strains as in `steady`, and stiffness and damping are those about its deformed state.
 
     Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
     of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
@@ -193,8 +197,11 @@ def equilibrium(
     along it are ``film.faces.axial_stiffness`` and ``axial_damping``. The tilt is given: a journal that moments tilt
     is one of a system, `SolveEquilibrium`.
 
-    Where asperities touch or the film heats, several positions may carry a load. The search starts where a full film
-    would and returns the one that it comes to; `stribeck` follows a branch over the speed.
+    Where asperities touch, the film heats, or supply areas, tilt and starved parts cut it, several positions may carry
+    a load. The search starts where a film with a cavity would carry it and returns the position that it comes to. Where
+    the stiffness is not positive definite there, it looks for others from the load's side, with supply areas, tilt and
+    `ElrodAdams`: a UserWarning names those that it knows, and the steadiest is returned. `stribeck` follows a branch
+    over the speed.
 
     Parameters
     ----------
@@ -203,7 +210,9 @@ def equilibrium(
     speed : float
         Relative spin, rad/s, not 0.
     load : (float, float)
-        Force on the journal in x and y, N, not zero.
+        Force on the journal in x and y, N. Without one, (0, 0), the journal lies at the exact centre of a bearing that
+        is the same in all directions. A film that ruptures has one-sided derivatives there; stiffness and damping are
+        those a little off the centre, `exudyn_ehd.joint.model.centre`.
     tilt : (float, float)
         Slopes (bx, by), held fixed, rad.
     axial_position : float
@@ -218,10 +227,10 @@ def equilibrium(
     Raises
     ------
     InputError
-        For a zero load or speed, an inlet that a moving journal can't have, an axial load without faces or at a given
-        axial position.
+        For zero speed, an inlet that a moving journal can't have, supply areas that turn with the journal, an axial
+        load without faces or at a given axial position.
     FilmError
-        If no equilibrium was found.
+        If no equilibrium was found, or if it is the exact centre and stiffness and damping depend on the direction.
 
     Examples
     --------
@@ -239,26 +248,27 @@ def equilibrium(
     omega = require_number("equilibrium: speed", speed, "rad/s")
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
     place = require_number("equilibrium: axial_position", axial_position, "m")
-    size = float(np.hypot(*force))
-    if size == 0.0 or omega * bearing.journal_radius == 0.0:
-        raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
+    if omega * bearing.journal_radius == 0.0:
+        raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
-    require_size("equilibrium: load", size, "N", **LOADS)
-    if isinstance(bearing.inlet, MaximumGap):
-        raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
-    require_oil(bearing, "equilibrium")
+    size = float(np.hypot(*force))
+    if size == 0.0:
+        size = NO_LOAD * bearing.reference_force(omega)
+    else:
+        require_size("equilibrium: load", size, "N", **LOADS)
+    require_rest(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
     faces = _faces(model, place, axial_load, size)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
-    search = LoadSearch(model, force, "equilibrium", faces=faces)
-    found = search.find(motion)
+    search = LoadSearch(model, force, "equilibrium", faces=faces, size=size)
+    found = steadiest(search, search.find(motion))
     small = _small_motions(model, found)
     film = result_at(model, found.motion, "equilibrium", found.film.history)
     if found.faces is not None:
         from exudyn_ehd.joint.static.thrust import result_of
 
-        film = replace(film, faces=result_of(found.faces.evaluation, found.faces.own, found.faces.fed))
+        film = replace(film, faces=result_of(found.faces.evaluation, found.faces.tangent))
     return EquilibriumResult(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
@@ -285,25 +295,32 @@ class _SmallMotions(NamedTuple):
 def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     """Of a position whose film is the model's last."""
     evaluation, omega = found.evaluation, abs(float(found.motion[8]))
+    central = is_central(evaluation)
+    if central:
+        require_derivatives(evaluation, "equilibrium")
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
-    left_out = model.remembers_mass and model.flexible
-    if model.remembers_mass and not left_out:
+    if model.remembers_mass and model.flexible:
+        warn_user(LEFT_OUT, UserWarning)
+        unknown = math.nan
+        return _SmallMotions(-tangent[:2, :2], np.full((2, 2), unknown), 0.0, unknown, unknown, unknown, None)
+    if model.remembers_mass:
         response = FilmResponse(film, tangent)
     else:
-        if left_out:
-            warn_user(LEFT_OUT, UserWarning)
-        K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
+        # on a liner the damping is that of a slow motion, which it follows
+        slow = evaluation.tangent(slow_motion=True) if model.parts.liner is not None else tangent
+        K, C = -tangent[:2, :2], -slow[:2, 4:6]
         if found.faces is not None:
             K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
-        if yields and not model.remembers_mass:
-            response = yielding_response(evaluation, K, C)
+        if yields:
+            beside = cast("Evaluation", evaluate_beside(evaluation)) if central else evaluation
+            response = yielding_response(beside, K, C)
     ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
     there = Z.real, Z.imag / frequency
-    error = math.inf if left_out else critical_mass_error(model.bearing, *there)
+    error = critical_mass_error(model.bearing, *there)
     if isinstance(response, FilmResponse):
         return _SmallMotions(*there, frequency, ratio, mass, error, response)
     return _SmallMotions(K, C, 0.0, ratio, mass, error, response)
@@ -317,7 +334,7 @@ def _faces(model: BearingModel, position: float, load: float | None, across: flo
     if bearing.thrust is None and position == 0.0 and not load:
         return None
     # imported here: a bearing without faces needs none of it
-    from exudyn_ehd.joint.balance.faces import FacesUnderLoad, FedFacesUnderLoad
+    from exudyn_ehd.joint.balance.faces import FacesUnderLoad
     from exudyn_ehd.joint.static.thrust import require_faces
 
     require_faces(bearing, "equilibrium", axial_position=position, axial_load=load)
@@ -327,23 +344,7 @@ def _faces(model: BearingModel, position: float, load: float | None, across: flo
             "is held along the axis, or finds its place under a load; leave one out."
         )
     size = math.hypot(across, load or 0.0)
-    if bearing.thrust is not None and bearing.thrust.feed is not None:
-        return FedFacesUnderLoad(model, position, load, size, "equilibrium")
     return FacesUnderLoad(bearing, position, load, size, "equilibrium")
-
-
-def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:
-    """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner.
-
-    See `equilibrium`.
-    """
-    model = evaluation.model
-    if model.parts.liner is not None:
-        return evaluation.tangent(slow_motion=True)
-    if not model.remembers_mass:
-        return tangent
-    sudden = model.evaluate(evaluation.motion, evaluation.history())
-    return sudden.steady_tangent(sudden.steady_tangent())
 
 
 def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
@@ -145,8 +146,7 @@ class SteadyResult(Film, FilmPictures):
         """
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
-        ends = self.bearing.end_pressures if self.faces is None else self.faces.ends(self.bearing)
-        model = build_study_model(replace(self.bearing, thrust=None, end_pressures=ends), start)
+        model = build_study_model(replace(self.bearing, thrust=None), start)
         near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
@@ -169,7 +169,11 @@ def steady(
 
     An `ANCFBush` is in static equilibrium with the film, at any strain, as in a joint. A `ModalBush` is linear; where
     its bore yields by more than 1 % of the wall, a `StrainWarning` says so. Films with more than 3 GPa, or a
-    mean of more than 1 GPa with their contact, which neither oil nor steel bears, give an `OverloadWarning`.
+    mean of more than 1 GPa with their contact, which neither oil nor steel bears, give an `OverloadWarning`. Films
+    whose pressure peak the grid does not resolve to some 5 % give a `GridWarning` with a grid that does.
+
+    Supply areas in the journal (``rotating=True``) stand where they were described. The film is that of the instant at
+    which they pass there; oil content and temperature, and what follows with a delay, are those of standing areas.
 
     Parameters
     ----------
@@ -233,8 +237,23 @@ def steady(
     from exudyn_ehd.joint.static.thrust import faces_at, require_faces
 
     require_faces(bearing, "steady", axial_position=place)
-    faces = faces_at(model, motion, place, "steady")
+    faces = faces_at(bearing, motion, place, "steady")
     return replace(result_at(model, motion, "steady"), faces=faces)
+
+
+def require_rest(bearing: JournalBearing, where: str) -> None:
+    """Raise `InputError` for a bearing in which a journal under a constant load has no position of rest."""
+    if isinstance(bearing.inlet, MaximumGap):
+        raise InputError(f"{where}: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
+    for k, area in enumerate(bearing.supply):
+        if area.rotating:
+            raise InputError(
+                f"{where}: JournalBearing.supply[{k}] turns with the journal (rotating=True): the film changes with "
+                "the angle, so that a journal under a constant load has no position of rest. Run a joint until its "
+                "orbit repeats: ehd.SolveDynamic(..., until_periodic=ehd.UntilPeriodic(period=...)) with the time of "
+                "one turn as period; or put the area into the housing (rotating=False)."
+            )
+    require_oil(bearing, where)
 
 
 def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:
@@ -283,6 +302,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     force = math.hypot(wrench[0], wrench[1])
     refuse_pressed_through(model.bearing, q["minimum_gap"], where)
     warn_of_overload(model.bearing, peak, force, where)
+    warn_of_grid(film, where)
     reference = model.bearing.reference_force(motion[8])
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:

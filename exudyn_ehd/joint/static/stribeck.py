@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import warn_of_heat
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
-from exudyn_ehd.joint.static.steady import require_oil
+from exudyn_ehd.joint.static.steady import require_rest
 from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible, require_type
 
 LARGEST_HALVINGS = 8
@@ -114,8 +115,8 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     Raises
     ------
     InputError
-        For a load or speeds that are not positive, an inlet that a moving journal can't have, or a film that conserves
-        mass and has no source of oil.
+        For a load or speeds that are not positive, an inlet that a moving journal can't have, supply areas that turn
+        with the journal, or a film that conserves mass and has no source of oil.
     FilmError
         If no equilibrium was found at a speed.
 
@@ -135,9 +136,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
             f"stribeck: speeds must be finite numbers > 0 rad/s, got {speeds!r}; np.geomspace(...) spreads them well."
         )
     require_plausible("stribeck: speeds", speeds, values)
-    if isinstance(bearing.inlet, MaximumGap):
-        raise InputError("stribeck: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
-    require_oil(bearing, "stribeck")
+    require_rest(bearing, "stribeck")
     if bearing.asperity is not None:
         slow = NO_TRANSITION * float(values.min()) * bearing.journal_radius
         bearing = replace(bearing, asperity=replace(bearing.asperity, transition_speed=slow))
@@ -148,7 +147,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     motion = np.zeros(10)
     motion[:2] = first_guess(bearing, last, search.force, np.zeros(2))
     rows: list[dict[str, float | np.ndarray]] = [{}] * values.size
-    told = False
+    told = coarse = False
     found: Carried | None = None
     for k in order:
         found = _follow(search, found, motion, last, float(values[k]))
@@ -156,6 +155,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
         film = found.evaluation.film
         assert film is not None
         told = told or warn_of_heat(film.temperature, film.grid, f"stribeck at {last:.4g} rad/s")
+        coarse = coarse or warn_of_grid(film, f"stribeck at {last:.4g} rad/s")
         rows[k] = _row(found.evaluation, last, size)
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return StribeckResult(speeds=values, **columns)

@@ -7,9 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.balance.faces import require_fed
-from exudyn_ehd.joint.feed.films import FedFilms
-from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status
@@ -32,28 +29,24 @@ class ThrustResult:
     minimum_gap, peak_pressure, power_loss, contact_load : float
         m, Pa, W, N, of all faces.
     edge_pressures : (k,) array
-        Pa at the inner radius of every face, the lower one first; with ``feed`` those that the flows have led to.
-    feed : (k,) array or None
-        m3/s that the journal's film gives every face: what that takes in, or less where the edge has the pressure of
-        the bearing's end; None without ``feed``.
+        Pa at the inner radius of every face, the lower one first.
     inflow, outflow : (k,) arrays
         m3/s that every face takes in at its inner radius, and gives away at its outer one.
     theta, r : (n,), (m,) arrays
         Grid, rad and m.
     pressure, gap : (k, n, m) arrays
-        Of every face, Pa (gauge) and m; the lower one first.
+        Of every face, Pa (gauge) and m; the lower one first. On edges of pads the gap is the mean of both sides.
     tangent : (6, 11) array
-        Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units;
-        with ``feed`` the edges' pressures follow.
+        Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units.
 
     Examples
     --------
     After the example of `ThrustFaces`:
 
     >>> print(film.faces)
-    <ThrustResult: axial force -3.88 kN, minimum film thickness 20 µm, peak pressure 2.9 MPa, power loss 577 W>
+    <ThrustResult: axial force -3.93 kN, minimum film thickness 20 µm, peak pressure 2.93 MPa, power loss 578 W>
     >>> film.faces.pressure.shape  # faces, theta, r
-    (2, 96, 11)
+    (2, 136, 15)
     """
 
     axial_position: float
@@ -68,7 +61,6 @@ class ThrustResult:
     power_loss: float
     contact_load: float
     edge_pressures: np.ndarray
-    feed: np.ndarray | None
     inflow: np.ndarray
     outflow: np.ndarray
     theta: np.ndarray = field(repr=False)
@@ -77,16 +69,6 @@ class ThrustResult:
     gap: np.ndarray = field(repr=False)
     tangent: np.ndarray = field(repr=False)
 
-    def ends(self, bearing: JournalBearing) -> tuple[float, float]:
-        """Pressures at the ends of the journal's film, Pa."""
-        lower, upper = bearing.end_pressures
-        if self.feed is None or bearing.thrust is None:
-            return lower, upper
-        return (
-            float(self.edge_pressures[0]) if bearing.thrust.lower else lower,
-            float(self.edge_pressures[-1]) if bearing.thrust.upper else upper,
-        )
-
     def __repr__(self) -> str:
         gap, peak = shown("length", self.minimum_gap), shown("pressure", self.peak_pressure)
         force, loss = shown("force", self.axial_force), shown("power", self.power_loss)
@@ -94,17 +76,9 @@ class ThrustResult:
         return f"<ThrustResult: axial force {force}, {film}>"
 
 
-def faces_at(model: BearingModel, motion: np.ndarray, position: float, where: str) -> ThrustResult:
-    """Films on the faces of a bearing with ``thrust`` at a motion (10,); `FilmError` if there are none.
-
-    The ends of the journal's film are brought to the pressures at which it feeds them.
-    """
-    assert model.bearing.thrust is not None
-    faces = ThrustModel(model.bearing)
-    if model.bearing.thrust.feed is not None:
-        fed = require_fed(FedFilms(model, faces), motion, position, where)
-        return result_of(fed, fed.with_feed()[1], fed.given)
-    found = faces.evaluate(motion, position)
+def faces_at(bearing: JournalBearing, motion: np.ndarray, position: float, where: str) -> ThrustResult:
+    """Films on the faces of a bearing with ``thrust`` at a motion (10,); `FilmError` if there are none."""
+    found = ThrustModel(bearing).evaluate(motion, position)
     if found.status is not Status.CONVERGED:
         raise FilmError(no_film(found, where))
     return result_of(found, found.tangent())
@@ -121,8 +95,8 @@ def require_faces(bearing: JournalBearing, where: str, **arguments: float | None
         )
 
 
-def result_of(found: ThrustEvaluation, tangent: np.ndarray, fed: np.ndarray | None = None) -> ThrustResult:
-    """The result of the last evaluation of its model, with its tangent (6, 11), and the flows (k,) that feed it."""
+def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
+    """Result of the last evaluation of its model, with its tangent (6, 11)."""
     model, values, first = found.model, found.quantities(), found.model.faces[0]
     return ThrustResult(
         axial_position=found.position,
@@ -137,7 +111,6 @@ def result_of(found: ThrustEvaluation, tangent: np.ndarray, fed: np.ndarray | No
         power_loss=values["thrust_power_loss"],
         contact_load=values["thrust_contact_load"],
         edge_pressures=np.array([face.known[0] * face.scales.pressure for face in model.faces]),
-        feed=fed,
         inflow=np.array([state.inflow for state in found.states]),
         outflow=np.array([state.outflow for state in found.states]),
         theta=first.annulus.grid.x,

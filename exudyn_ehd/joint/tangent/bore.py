@@ -196,12 +196,12 @@ def couette_field(film: SolvedFilm) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
     s, g, oil = film.solver, film.grid, film.oil
     if oil.ratio is not None and oil.ratio_h is not None:
-        field = g.weight * film.share() / s.H * (oil.ratio_h - oil.ratio / s.H)
+        field = g.shear_weight * film.share() / s.H * (oil.ratio_h - oil.ratio / s.H)
     elif s.closure.conserves_mass:
-        field = -g.weight * s.fill / s.H**2
+        field = -g.shear_weight * film.share() / s.H**2
     else:
         field = np.empty(g.shape)
-        couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, field)
+        couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, field)
     return field if film.limited is None else field * film.limited.slope
 
 

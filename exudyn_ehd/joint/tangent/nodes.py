@@ -23,6 +23,7 @@ from scipy.sparse import csr_matrix, diags, vstack
 from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import balance_change
+from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.joint.bore.columns import column_forces, put_sparse
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
@@ -127,7 +128,8 @@ class TractionChange:
         active = w.active.ravel()[self.places]
         # of pressure and of the density of Couette shear to the unknown at their vertex
         self.pressure = np.where(active, 1.0 if oil.P_q is None else oil.P_q.ravel()[self.places], 0.0)
-        couette = self._share_slope(film, active) * (scale * W / H)[self.places]
+        sheared = scale * g.shear_weight.ravel() / H
+        couette = self._share_slope(film, active) * sheared[self.places]
         self.couette = speeds[:, None] * couette
         self.load = load_weights(film) * film.scales.force
         self.by_slope = -6.0 * scale * W * H
@@ -142,14 +144,19 @@ class TractionChange:
         self.speed[2, :, 1] = density / R
         if oil.ratio_v is not None:
             # the shear factor knows the scaled speed omega / 2
-            thinning = 0.5 * scale * W / H * (film.share() * oil.ratio_v).ravel()
+            thinning = 0.5 * sheared * (film.share() * oil.ratio_v).ravel()
             self.speed[1:, :, 0] += speeds[:, None] * thinning
+        if film.loads.recess is not None:
+            self.speed[1:, :, 0] += speeds[:, None] * (scale * film.loads.recess.by_spin.ravel())
         # of the density of Couette shear to the unknowns at all vertices, (n m, count)
         self.thins: list[csr_matrix] | None = None
         by_others = film.shear_by_unknowns()
         if by_others is not None:
-            density = diags((scale * W / H) * film.share().ravel()) @ by_others[:, self.places]
+            density = diags(sheared * film.share().ravel()) @ by_others[:, self.places]
             self.thins = [csr_matrix(speed * density) for speed in speeds]
+        if film.solver.closure.conserves_mass:
+            ends = diags(sheared) @ _ends_by_fills(film)
+            self.thins = [s * ends + (0.0 if self.thins is None else self.thins[c]) for c, s in enumerate(speeds)]
         if film.pressing is not None:
             self._add_contacts(film, film.pressing)
 
@@ -208,10 +215,26 @@ class TractionChange:
         return out
 
 
+def _ends_by_fills(film: SolvedFilm) -> csr_matrix:
+    """Derivatives (n m, count) of share times viscosity ratio at the ends to the fills of the vertices beside them."""
+    g, w = film.grid, film.solver.work
+    at, ratio = np.arange(g.fixed.size).reshape(g.shape), film.solver.ones if film.oil.ratio is None else film.oil.ratio
+    rows, columns, values, number = [], [], [], np.full(g.shape, -1)
+    number.reshape(-1)[w.order[: w.count]] = np.arange(w.count)
+    for end, beside, at_cavity in ends_of_cavities(film.solver.system, True):
+        free = at_cavity & (number[:, beside] >= 0) & ~w.active[:, beside]
+        rows.append(at[free, end])
+        columns.append(number[free, beside])
+        values.append(ratio[free, end])
+    place = np.concatenate(rows), np.concatenate(columns)
+    return csr_matrix((np.concatenate(values), place), shape=(at.size, w.count))
+
+
 def _density(film: SolvedFilm) -> np.ndarray:
-    """W share ratio / H (n m,)."""
-    field = film.grid.weight * film.share() / film.solver.H
-    return (field if film.oil.ratio is None else field * film.oil.ratio).ravel()
+    """W share ratio / H on the lands, and the shear in recesses (n m,)."""
+    field = film.grid.shear_weight * film.share() / film.solver.H
+    field = field if film.oil.ratio is None else field * film.oil.ratio
+    return (field if film.loads.recess is None else field + film.loads.recess.density).ravel()
 
 
 def _extra_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ from numba import njit
 
 from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.banded.substitution import solve_ldl
-from exudyn_ehd.film.cavitation.line_newton import refine_line, solve_corrected
+from exudyn_ehd.film.cavitation.line_newton import refine_line
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_of, line_weights
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_pose
@@ -33,7 +33,7 @@ def is_plain(film: SolvedFilm) -> bool:
         and film.extra is None
         and film.limited is None
         and film.pressing is None
-        and s.grid.cuts is None
+        and p.supply is None
         and not p.uneven_drag
     )
 
@@ -43,7 +43,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
     s, p, g, w, scales, out = film.solver, film.parts, film.grid, film.journal, film.scales, np.empty((6, MOTION_SIZE))
     y, line, work = s.system, s.line, s.work
     known = (0, 0.0, True) if line is None else (work.count if line.own_links else 0, line.peak, line.exact)
-    exact = _plain_tangent(
+    _plain_tangent(
         y.fields,
         None if line is None else line.blocks,
         work.factor,
@@ -60,15 +60,16 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         out,
     )
     if line is not None:
-        line.own_links, line.exact = True, exact
+        line.own_links = line.exact = True
     return out
 
 
 @njit(cache=True, nogil=True)
 def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, speeds, squeeze, pose, scales, out):
-    """Returns whether the factor is exact, as `refine_line`; ``known``: its ``first``, ``peak`` and last answer.
+    """Write the tangent.
 
-    ``film``: ``FilmSystem.fields``.
+    ``film``: ``FilmSystem.fields``; ``known``: ``first`` and ``peak`` of `refine_line`, and whether the factor is that
+    of the solution.
     """
     film, factor, fields, sets, at, mesh, out = lend((film, factor, fields, sets, at, mesh, out))
     order, _, number, band, inv_diag = factor
@@ -79,13 +80,10 @@ def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, spee
     cos_x, sin_x, _, _, z = at
     vx, vz, flow_x, cavity_shear = speeds
     if line is not None and not exact:
-        exact = refine_line((kx, kz, b), line_of(line), factor, count, width, first, peak, 0.0)
+        refine_line((kx, kz, b), line_of(line), factor, count, width, first, peak)
     lam = np.empty((4, count))
     load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
-    if line is None or exact:
-        solve_ldl(band, inv_diag, count, width, lam)
-    else:
-        solve_corrected(band, inv_diag, count, width, line_of(line)[7], lam)
+    solve_ldl(band, inv_diag, count, width, lam)
     link_derivatives(P, H, HF, None, None, None, None, None, vx, vz, flow_x, mesh, link_fields)
     columns = np.empty((10, count))
     motion_columns(order, count, link_fields, ones, by_rate, by_gap, at, columns)
@@ -103,4 +101,3 @@ def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, spee
     contract_pose(field, cos_x, sin_x, z, by_pose)
     dc[:4] = by_pose[0]
     wrench_gradient(gradient, dc, np.zeros((2, 10)), np.zeros(4), *pose[:2], pose[2], *scales, out)
-    return exact

@@ -11,17 +11,19 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs
+from exudyn_ehd.film.loads import (
+    couette_gradient,
+    couette_gradient_ratio,
+    load_adjoint_rhs,
+    shear_adjoint_rhs,
+    slope_adjoint_rhs,
+)
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
+from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.surfaces.contact_wrench import (
-    chain_links,
-    contact_tangent,
-    contact_weights,
-    couette_gradient_ratio,
-)
+from exudyn_ehd.film.surfaces.contact_wrench import chain_links, contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import (
     add_drag_by_pose,
@@ -97,7 +99,7 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     couette = _couette_direct(film, dc)
     fills = true_fills(film)
     if fills is not None:
-        dc += by_fills(film, fills, _ratio(film) * film.grid.weight / film.solver.H)[:, 0]
+        dc += by_fills(film, fills, _ratio(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film))[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
     _contract_couette(film, couette, dc)
     if pulls_unevenly(film.parts, film.limited):
@@ -243,10 +245,21 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     if s.oil_line is not None:
         # at the line the fill follows the pressure
         by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
-    shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
-    by_others = film.gather_shear(g.weight * film.share() / s.H)
+    shear_adjoint_rhs(w.order, w.count, g.shear_weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
+    by_others = film.gather_shear(g.shear_weight * film.share() / s.H)
     if by_others is not None:
         row += by_others.reshape(-1)[w.order[: w.count]]
+    if s.closure.conserves_mass:
+        rise = 0.0 if s.oil_line is None else s.oil_line.rise
+        row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
+
+
+def shear_of_ends(film: SolvedFilm) -> np.ndarray:
+    """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
+    density, out = _ratio(film) * film.grid.shear_weight / film.solver.H, np.zeros(film.grid.shape)
+    for end, beside, at in ends_of_cavities(film.solver.system, True):
+        out[at, beside] += density[at, end]
+    return out
 
 
 def _ratio(film: SolvedFilm) -> np.ndarray:
@@ -257,15 +270,17 @@ def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:
     """dC/d(film gap) (1, n, m) at fixed pressure and fill; adds the direct gradient to the speeds to ``dc`` (10,)."""
     s, g, oil = film.solver, film.grid, film.oil
     gradient = np.empty((1, *g.shape))
+    if film.loads.recess is not None:
+        dc[8] += 2.0 * film.loads.recess.by_spin.sum()  # vx = omega / 2
     if oil.ratio is not None and oil.ratio_h is not None and oil.ratio_v is not None:
         if s.closure.conserves_mass:
-            density = g.weight * film.share() / s.H
+            density = g.shear_weight * film.share() / s.H
             gradient[0] = density * (oil.ratio_h - oil.ratio / s.H)
             dc[8] += float(np.sum(density * oil.ratio_v))
         else:
             dc[8] += couette_gradient_ratio(
                 s.H,
-                g.weight,
+                g.shear_weight,
                 oil.ratio,
                 oil.ratio_h,
                 oil.ratio_v,
@@ -275,9 +290,9 @@ def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:
                 gradient[0],
             )
     elif s.closure.conserves_mass:
-        gradient[0] = -g.weight * s.fill / s.H**2
+        gradient[0] = -g.shear_weight * film.share() / s.H**2
     else:
-        couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
+        couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
     return gradient
 
 

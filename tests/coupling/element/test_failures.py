@@ -51,6 +51,31 @@ def test_pressures_over_what_a_material_bears(peak, mean, share):
     assert failures.absurd(0.5, row, trial) is None
 
 
+def test_tilt_is_the_first_advice_where_the_journal_touches_by_it():
+    """And none where it is eccentric, or where its ends are far from the bore, in every message of a place."""
+    rng = np.random.default_rng(2)
+    failures, c, half = Failures("big end", BEARING), BEARING.radial_clearance, 0.5 * BEARING.length
+    row = make_row(0.5, np.zeros(10), (0.0, 0.0), np.zeros(6), {})
+    row[PEAK_PRESSURE] = 1.1 * HIGHEST_PEAK
+    for _ in range(100):
+        (mid, tilt), (a, b), motion = rng.uniform(0.0, 1.2, 2), rng.uniform(0.0, 6.3, 2), np.zeros(10)
+        motion[:4] = (
+            *(c * mid * np.array([np.cos(a), np.sin(a)])),
+            *(c / half * tilt * np.array([np.cos(b), np.sin(b)])),
+        )
+        largest = max(np.hypot(*(motion[:2] + s * half * motion[2:4])) for s in (-1.0, 1.0)) / c
+        tilts = largest > 2.0 * mid and largest > 0.8
+        trial = Trial([], [], None, 0.0, None, motion, motion, None)
+        trial.status = ehd.Status.NO_FILM
+        for text in (failures.overloaded(0.5, row, motion), str(failures.no_film(0.5, trial, explicit=False))):
+            assert ("tilt=ehd.Held()" in text) == tilts
+            if tilts:
+                others = [
+                    text.find(part) for part in ("contact=", "ehd.SolveDynamic", "check masses", "reduce the load")
+                ]
+                assert text.find("tilt=ehd.Held()") < min(place for place in others if place >= 0)
+
+
 def test_films_that_oil_does_not_bear_are_told_once_and_end_the_run_where_there_is_no_oil():
     film = SimpleNamespace(grid=build_model(BEARING).grid)
     trial = Trial(

@@ -136,9 +136,13 @@ def test_single_step_run_after_changed_initial_values_forgets_the_old_start():
 
 def test_history_before_and_after_assemble():
     mbs, joint, _ = scene(toy.ToyFilm())
-    assert len(joint.history.time) == 0
+    with pytest.warns(UserWarning, match=r"its history is empty before a run; run a solver first"):
+        history = joint.history
+    assert len(history.time) == 0 and "run a solver first" in repr(history)
     mbs.Assemble()
-    assert joint.history.time.tolist() == [0.0]
+    assert joint.history.time.tolist() == [0.0] and "initial state, without a run" in repr(joint.history)
+    mbs.SolveDynamic(scenes.settings(1e-4, 1))
+    assert "2 steps" in repr(joint.history)
 
 
 def test_a_history_is_that_of_the_run_whatever_is_done_to_the_system_behind_it():

@@ -46,6 +46,26 @@ def test_a_symmetric_rotor_is_two_single_bearings():
     assert abs(vibration.imag) / speed == pytest.approx(single.whirl_ratio, rel=1e-8)
 
 
+def test_a_vertical_rotor_at_the_exact_centre_has_the_coefficients_of_a_slight_load():
+    """Without a load, and with one that moves it by 1e-5 of the clearance."""
+    fine = bearing(film=ehd.FiniteLength())
+    free, loaded = (
+        ehd.SolveEquilibrium(shaft(weight=weight, film=fine)[0], [SPEED]) for weight in (0.0, 1e-5 * WEIGHT)
+    )
+    assert np.abs(free.motion[0, :, :2]).max() < 1e-9 * CLEARANCE
+    for name in ("stiffness", "damping"):
+        centre, near = (getattr(r, name)[0, :, :2, :2] for r in (free, loaded))
+        # one direction of the slight load against the mean: the grid's error, below 2e-3
+        np.testing.assert_allclose(centre, near, rtol=0.0, atol=2e-3 * np.abs(near).max())
+
+
+def test_a_vertical_rotor_at_the_exact_centre_of_unfed_grooves_has_no_coefficients():
+    groove = ehd.AxialGroove(angle=1.0, width_angle=0.3)
+    mbs = shaft(weight=0.0, film=bearing(supply=(groove,)))[0]
+    with pytest.raises(ehd.FilmError, match=r"joint '.*': at the exact centre"):
+        ehd.SolveEquilibrium(mbs, [SPEED])
+
+
 def test_eigenvalues_are_those_of_the_rigid_rotor_on_its_coefficients(reference):
     """m e'' = f, Jt and i Omega Jp by hand, from K and C (4, 4) of the films about the centre of mass."""
     for k, speed in enumerate(reference.speeds):

@@ -100,6 +100,10 @@ def test_input():
         joint.place_in_equilibrium(load=(0, -LOAD), speed="fast")
     with pytest.raises(ehd.InputError, match="does not turn"):
         joint.place_in_equilibrium(load=(0, -LOAD), speed=0.0)
+    turning = dataclasses.replace(PLAIN, supply=(ehd.Hole(angle=1.0, diameter=0.006, pressure=1e5, rotating=True),))
+    mbs, joint = scene(turning, planar=True)
+    with pytest.raises(ehd.InputError, match=r"supply\[0\] turns with the journal"):
+        joint.place_in_equilibrium(load=(0, -LOAD))
     mbs = scenes.new_system()
     ground, body = mbs.CreateGround(), scenes.add_body(mbs, "2D")
     joint = ehd.CreateLubricatedJoint(

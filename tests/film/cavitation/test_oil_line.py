@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.heat.power import heat_and_leakage, powers
+from exudyn_ehd.joint.heat.power import heat_and_exchange, powers
 from exudyn_ehd.joint.model.build import build_model, build_study_model
 from exudyn_ehd.status import Status
 from tests.film.cavitation.test_rupture_line import _coefficients, _films, _random_film
@@ -300,9 +300,10 @@ def test_heat_is_the_power_of_the_motion():
     for _ in range(5):
         e, a = C * rng.uniform(0.3, 0.95), rng.uniform(0.0, 2.0 * np.pi)
         film = model.evaluate(np.array([e * np.cos(a), e * np.sin(a), 0, 0, 0, 0, 0, 0, 300.0, 0.0])).film
-        pressed_out = -bearing.cavitation.cavity_pressure * film.parts.flow_scale * heat_and_leakage(film)[1]
+        pressed_out = -bearing.cavitation.cavity_pressure * film.parts.flow_scale * heat_and_exchange(film, 1.0)[1]
         assert (model.solver.oil_line.fields.s < 1.0).any()
-        assert abs(heat_and_leakage(film)[0] / powers(film).loss - 1.0) < 1e-11 + abs(pressed_out / powers(film).loss)
+        heat, loss = heat_and_exchange(film, 1.0)[0], powers(film).loss
+        assert abs(heat / loss - 1.0) < 1e-11 + abs(pressed_out / loss)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.joint.heat.power import Exchange, heat_and_leakage, powers
+from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, powers
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import Status
 
@@ -214,9 +214,9 @@ def test_heat_is_the_power_of_the_motion():
     for _ in range(5):
         e, a = 25e-6 * rng.uniform(0.3, 0.95), rng.uniform(0.0, 2.0 * np.pi)
         film = model.evaluate(np.array([e * np.cos(a), e * np.sin(a), 0, 0, 0, 0, 0, 0, 300.0, 0.0])).film
-        pressed_out = -bearing.cavitation.cavity_pressure * film.parts.flow_scale * -np.sum(Exchange(film).outside)
+        pressed_out = -bearing.cavitation.cavity_pressure * film.parts.flow_scale * -np.sum(OilFlows(film, 1.0).outside)
         assert np.any(model.solver.line.s < 1.0)
-        assert heat_and_leakage(film)[0] == pytest.approx(powers(film).loss - pressed_out, rel=1e-9)
+        assert heat_and_exchange(film, 1.0)[0] == pytest.approx(powers(film).loss - pressed_out, rel=1e-9)
 
 
 def test_what_does_not_know_the_line_is_refused(make_bearing):

@@ -7,7 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid, slider_grid
-from exudyn_ehd.joint.heat.power import heat_and_leakage, powers
+from exudyn_ehd.joint.heat.power import heat_and_exchange, powers
 from exudyn_ehd.joint.model.build import build_model
 from tests.film.cavitation.test_rupture_line import _coefficients
 
@@ -170,7 +170,7 @@ def test_heat_is_the_power_of_the_motion():
         model = _model(**CASES[name])
         film = model.evaluate(np.array([0.6 * C, 0.4 * C, 0, 0, 0, 0, 0, 0, 300.0, 0.0])).film
         assert np.any(model.solver.line.s < 1.0)
-        assert heat_and_leakage(film)[0] == pytest.approx(powers(film).loss, rel=1e-8)
+        assert heat_and_exchange(film, 1.0)[0] == pytest.approx(powers(film).loss, rel=1e-8)
 
 
 def test_a_film_of_any_gap_with_a_density():

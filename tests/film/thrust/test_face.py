@@ -196,6 +196,28 @@ def test_pads(shape, error):
     assert errors[0][0] > 3 * errors[1][0]
 
 
+@pytest.mark.parametrize("shape", (ehd.TaperLand, ehd.StepLand))
+def test_edges_between_equal_columns(shape):
+    """Force, damping and torque of pads that fit into no equal columns against an independent film on their edges."""
+    profile, omega, speed = shape(pads=7, depth=25e-6, share=0.7), 250.0, 1e-4
+
+    def gap(theta, r):
+        return C + profile.depth_at(theta) + 0 * r
+
+    def independent(k, rate):
+        return reference_film(
+            gap, lambda theta, r: rate + 0 * theta + 0 * r, omega, 20 * k, 16 * k, ri=RO / 2, clips=True, parts=7
+        )
+
+    # of order one, as in `test_pads`
+    still, up, down = (2 * independent(2, rate) - independent(1, rate) for rate in (0.0, speed, -speed))
+    film = _film(_faces(profile=profile), closure=ehd.SwiftStieber())
+    found = film.evaluate(_motion(omega=omega)).wrench
+    assert found[[2, 5]] == pytest.approx(still[[0, 3]], rel=5e-3)
+    # the grid is 0.8 % off, and the extrapolation 0.2 %
+    assert film.tangent()[2, 3] == pytest.approx((up[0] - down[0]) / (2 * speed), rel=0.01)
+
+
 CLOSURES = {
     "full": ehd.FullSommerfeld(),
     "gumbel": ehd.Gumbel(cavity_pressure=-2e4),
@@ -229,32 +251,6 @@ def test_tangent(closure, profile):
                 # truncation of central differences and rounding over 1e-6, of smooth states
                 assert np.all(error < 1e-6 * np.abs(tangent).max(axis=1))
         assert wall is None or touched
-
-
-@pytest.mark.parametrize("closure", CLOSURES)
-def test_inner_edge(closure):
-    """Flow through it and wrench: central differences of its pressure, and of the flow of the motion, wall included."""
-    rng = np.random.default_rng(3)
-    faces = _faces(profile=PROFILES["step"], contact=ehd.RegularisedWall(onset=15e-6, pressure=1e7), n_theta=40, n_r=6)
-    film = _film(faces, -1, CLOSURES[closure], (2e5, 0.0))
-    for zeta in (0.2, 0.9):
-        motion = rng.uniform(-1, 1, FACE_SIZE) * SCALE * np.array([0.5, 0.3, 0.3, *[1.0] * 6])
-        motion[0] = zeta * C
-        film.set_inner_pressure(2e5)
-        film.evaluate(motion)
-        feed = film.feed()
-        d = rng.normal(size=FACE_SIZE) * SCALE
-        plus, minus = (film.evaluate(motion + k * 1e-6 * d).inflow for k in (1, -1))
-        assert feed.by_motion @ d == pytest.approx(
-            (plus - minus) / 2e-6, abs=1e-6 * np.abs(feed.by_motion * SCALE).max()
-        )
-        states = []
-        for pressure in (2e5 + 1.0, 2e5 - 1.0):
-            film.set_inner_pressure(pressure)
-            states.append(film.evaluate(motion))
-        assert (states[0].inflow - states[1].inflow) / 2 == pytest.approx(feed.flow, rel=1e-6)
-        change = (states[0].wrench - states[1].wrench) / 2
-        assert change == pytest.approx(feed.wrench, abs=1e-6 * np.abs(feed.wrench).max())
 
 
 @pytest.mark.parametrize("closure", CLOSURES)
@@ -348,3 +344,12 @@ def test_refused(wrong):
     good = {"inner_radius": 0.025, "outer_radius": RO, "clearance": C}
     with pytest.raises(ehd.InputError, match="ThrustFaces"):
         ehd.ThrustFaces(**good | wrong)
+
+
+def test_edges_beside_a_cavity_shear_what_it_holds():
+    """0.4 %: the error of second order on ten rows; edges that are full there make 3 %."""
+    losses = []
+    for rows in (10, 40):
+        film = _film(_faces(0.65, n_r=rows), closure=ehd.SwiftStieber(cavity_shear=0.0))
+        losses.append(film.evaluate(_motion(bx=0.6 * C / RO, omega=300.0)).power_loss)
+    assert losses[0] == pytest.approx(losses[1], rel=0.004)

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.audit import findings
 from exudyn_ehd.joint.audit.audit import audit_record
-from exudyn_ehd.joint.audit.samples import RecordedSteps, intervals_at_half, squeeze_share, tilt_loss
+from exudyn_ehd.joint.audit.samples import RecordedSteps, squeeze_rate, squeeze_share, tilt_loss
 from exudyn_ehd.joint.audit.switches import steel_ring
+from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
 from tests.sampling import but_slow, sample
@@ -440,6 +442,44 @@ def test_step_of_a_record_against_the_gap(cavitation):
         check_readable(found)
 
 
+def test_inertia_of_a_flow_that_swings_between_plates():
+    """What the limit of the row says: inertia takes Re / 10 of the viscous pressure, Re = rho w h^2 / mu up to 1."""
+    for reynolds in (1e-3, 1.0):
+        k = 0.5 * np.sqrt(1j * reynolds)  # velocity profile 1 - cosh(k y) / cosh(k) over the half height
+        pressure = 1j * reynolds / (1.0 - np.tanh(k) / k) / 12.0  # over that of the viscous flow
+        # the next terms of the series: of size Re^2
+        assert pressure == pytest.approx(1.0 + 0.1j * reynolds, abs=2e-3 * reynolds**2)
+
+
+def test_dampers_have_the_inertia_of_their_squeeze():
+    """Whirls and vibrations of any ellipse, with any spin: at an instant, and over a run."""
+    rng = np.random.default_rng(3)
+    for _ in range(40):
+        c, mu, w = 10.0 ** rng.uniform(-5.0, -3.8), 10.0 ** rng.uniform(-3.0, -1.0), 10.0 ** rng.uniform(1.0, 3.5)
+        made = bearing(radial_clearance=c, lubricant=ehd.Lubricant(viscosity=mu), cavitation=ehd.FullSommerfeld())
+        eps, per_rate = rng.uniform(0.1, 0.9), 870.0 * c * c / mu
+        whirl = audit(made, eps=eps, speed=0.0, velocity=(0.0, eps * c * w))["fluid inertia"]
+        assert whirl.value == pytest.approx(per_rate * w, rel=1e-9)
+        assert whirl.matters is (per_rate * w > 1.0)
+        # means over two turns of an ellipse less the first and last of 400 steps
+        t = np.linspace(0.0, 4.0 * math.pi / w, 401)
+        motion, axes, tilted = np.zeros((401, 10)), rng.uniform(0.0, 0.5, 2) * eps * c, rng.integers(2)
+        swing = np.column_stack((axes[0] * np.cos(w * t), axes[1] * np.sin(w * t)))
+        speed = w * np.column_stack((-axes[0] * np.sin(w * t), axes[1] * np.cos(w * t)))
+        first, per = (2, 0.5 * made.length) if tilted else (0, 1.0)
+        motion[:, first : first + 2], motion[:, first + 4 : first + 6] = swing / per, speed / per
+        assert squeeze_rate(made, motion, t) == pytest.approx(w, rel=0.01)
+        # velocities that an integrator throws to and fro from step to step count as velocities alone
+        thrown = motion.copy()
+        thrown[:, first + 4 : first + 6] += 0.3 * w * axes / per * (-1.0) ** np.arange(401)[:, None]
+        assert 0.8 * w < squeeze_rate(made, thrown, t) < 1.01 * w
+        # beside a wedge: by the share of the squeeze in the sources
+        motion[:, 8] = rng.uniform(-4.0, 4.0) * w
+        moving, wedge = np.linalg.norm(speed, axis=1), 0.5 * abs(motion[0, 8]) * np.linalg.norm(swing, axis=1)
+        share = np.trapezoid(moving, t) / np.trapezoid(moving + wedge, t)
+        assert squeeze_rate(made, motion, t) == pytest.approx(w * share, rel=0.01)
+
+
 def test_worst_states_are_found():
     made = bearing()
     motion, time = orbit(20)
@@ -477,7 +517,7 @@ def load(made, eps):
 def test_advised_grids_carry_the_load(n_theta, eps, measured):
     """Both "too coarse" and "finer than needed" name a grid that is neither."""
     made = bearing(film=ehd.FiniteLength(n_theta=n_theta, n_z=12))
-    advised = int(audit(made, eps=eps)["grid around"].advice.split("n_theta=")[1].split(" ")[0].rstrip("."))
+    advised = int(re.search(r"n_theta=(\d+)", audit(made, eps=eps)["grid around"].advice)[1])
     followed = bearing(film=ehd.FiniteLength(n_theta=advised, n_z=12))
     finding = audit(followed, eps=eps)["grid around"]
     assert not finding.matters and not finding.unneeded

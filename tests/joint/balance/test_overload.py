@@ -27,7 +27,7 @@ def test_steady_films_warn_from_where_no_material_bears_them():
 def test_a_film_that_a_load_has_found_warns_once():
     with pytest.warns(ehd.OverloadWarning, match="equilibrium: ") as told:
         ehd.equilibrium(BEARING, speed=300.0, load=(0.0, -2e6))
-    assert len(told) == 1
+    assert sum(w.category is ehd.OverloadWarning for w in told) == 1
 
 
 def wall(**options):

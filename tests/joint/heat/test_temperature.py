@@ -292,7 +292,7 @@ def test_no_way_out_for_the_heat_is_an_error():
 def test_input_errors_name_what_is_missing():
     plain = dataclasses.replace(OIL, temperature_law=None)
     with pytest.raises(ehd.InputError, match=r"needs a lubricant whose viscosity depends on temperature"):
-        build_model(bearing(ehd.LumpedThermal(supply_temperature=SUPPLY), lubricant=plain))
+        bearing(ehd.LumpedThermal(supply_temperature=SUPPLY), lubricant=plain)
     with pytest.raises(ehd.InputError, match=r"JournalBearing\.thermal must be LumpedThermal"):
         bearing("lumped")
     with pytest.raises(ehd.InputError, match=r"LumpedThermal\.supply_temperature must be > 0 K"):

@@ -14,8 +14,9 @@ from exudyn_ehd.joint.model.quantities import supply_flows
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams()]
 GRID = ehd.FiniteLength(n_theta=48, n_z=8)
 SUPPLY = (
-    ehd.Pocket(angle=1.2, width_angle=0.5, length=0.02, pressure=2e5),
-    ehd.Hole(angle=4.0, z=0.005, diameter=0.012, pressure=5e4),
+    ehd.Pocket(angle=1.2, width_angle=0.5, length=0.02, pressure=2e5, depth=2e-4),
+    # turbulent at MOTION
+    ehd.Hole(angle=4.0, z=0.005, diameter=0.012, pressure=5e4, depth=5e-2),
 )
 MOTION = np.array([8e-6, -12e-6, 1e-4, -2e-4, 2e-4, 1e-3, 5e-3, -8e-3, 150.0, 0.02])
 

@@ -404,6 +404,9 @@ def test_damping_on_a_liner_follows_slow_motions(cavitation, laws):
         assert np.abs(film_alone[:5, k] - damping[:5, k]).max() > 0.05 * size
 
 
+CLASSIC = {"film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -412,12 +415,32 @@ def test_damping_on_a_liner_follows_slow_motions(cavitation, laws):
         ({"asperity": ASPERITY, "roughness": ehd.PatirCheng(composite_roughness=1e-6)}, "must equal"),
         ({"roughness": ehd.PatirCheng(composite_roughness=6e-6)}, "quarter of the radial clearance"),
         ({"bush": LINER, "film": ehd.ShortBearing()}, "ShortBearing"),
-        ({"profile": ehd.Crown(drop=-25e-6)}, "closes the gap"),
+        (
+            {
+                "roughness": ehd.PatirCheng(composite_roughness=SIGMA),
+                "film": ehd.ClassicSOR(),
+                "cavitation": ehd.Gumbel(),
+            },
+            "ClassicSOR.*no roughness",
+        ),
+        ({"turbulence": ehd.NgPan(), "film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}, "ClassicSOR.*no roughness"),
+        (
+            {
+                "lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson()),
+                "film": ehd.ShortBearing(),
+            },
+            "density_law must be None with film=ShortBearing",
+        ),
     ],
 )
-def test_refused_combinations(options, message):
+def test_combinations_are_refused_when_described(options, message):
     with pytest.raises(ehd.InputError, match=message):
-        build_model(bearing(**options))
+        bearing(**options)
+
+
+def test_profile_that_closes_the_gap_is_refused():
+    with pytest.raises(ehd.InputError, match="closes the gap"):
+        build_model(bearing(profile=ehd.Crown(drop=-25e-6)))
 
 
 @pytest.mark.parametrize("name", ["asperity", "roughness", "profile", "wear", "bush"])

@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import root
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.audit import squeeze_share
+from exudyn_ehd.joint.spherical.audit import squeeze_rate, squeeze_share
 from exudyn_ehd.joint.spherical.model import PLACE, SphericalModel
 
 R, C = 0.015, 30e-6
@@ -160,6 +160,22 @@ def test_shares_of_the_squeeze():
     assert squeeze_share(motion) == 0.0
     motion[:3], motion[4:7], motion[8:] = (1e-5, 0, 0), (0, 0, 1e-4), (0, 20.0, 0)
     assert squeeze_share(motion) == pytest.approx(0.5)
+
+
+def test_inertia_of_the_squeeze():
+    """A ball that whirls about its centre at w: rho w c^2 / mu; over a run the same."""
+    c, mu, w = 40e-6, 1e-3, 2e3
+    ball = dataclasses.replace(bearing(viscosity=mu), radial_clearance=c)
+    expected = ball.lubricant.density * w * c * c / mu
+    t = np.linspace(0.0, 2.0 * np.pi / w, 201)
+    motion = np.zeros((201, 11))
+    motion[:, 0], motion[:, 1] = 0.3 * c * np.cos(w * t), 0.3 * c * np.sin(w * t)
+    motion[:, 4:6] = w * motion[:, [1, 0]] * [-1.0, 1.0]
+    film = ehd.steady_spherical(ball, place=motion[0, :3], velocity=motion[0, 4:7], angular_velocity=(0, 0, 0))
+    found = film.audit()["fluid inertia"]
+    assert found.value == pytest.approx(expected, rel=1e-9) and found.matters
+    # differences over two of 200 steps
+    assert squeeze_rate(ball, motion, t) == pytest.approx(w, rel=1e-3)
 
 
 def test_a_place_without_a_film():

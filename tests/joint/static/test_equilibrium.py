@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.position import LoadSearch
+from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
@@ -151,7 +151,6 @@ class TestEquilibrium:
     @pytest.mark.parametrize(
         "wrong",
         [
-            {"load": (0.0, 0.0)},
             {"speed": 0.0},
             {"load": (1.0,)},
             {"load": (math.nan, 1.0)},
@@ -166,6 +165,28 @@ class TestEquilibrium:
     def test_refuses_the_maximum_gap_inlet(self, make_bearing):
         with pytest.raises(ehd.InputError, match="Periodic"):
             ehd.equilibrium(make_bearing(1.0, inlet=ehd.MaximumGap()), speed=SPEED, load=(1.0, 0.0))
+
+    @pytest.mark.parametrize("closure", [*CLOSURES, ehd.ElrodAdams()])
+    def test_refuses_areas_that_turn_with_the_journal(self, make_bearing, closure):
+        """Of any kind, next to areas in the housing, in all that look for a position of rest."""
+        rng = np.random.default_rng(3)
+        still = ehd.CircumferentialGroove(z=-0.011, width=0.001, pressure=1e5)
+        for kind in (ehd.Hole, ehd.Pocket, ehd.AxialGroove):
+            size = {
+                ehd.Hole: {"diameter": 0.005},
+                ehd.Pocket: {"width_angle": 0.4, "length": 0.01},
+                ehd.AxialGroove: {"width_angle": 0.4, "length": 0.01},
+            }[kind]
+            area = kind(angle=rng.uniform(0.0, 6.0), pressure=2e5, rotating=True, **size)
+            bearing = make_bearing(1.0, cavitation=closure, supply=(still, area))
+            point = ehd.EquilibriumPoint(bearing=bearing, speed=SPEED, load=(0.0, -10.0))
+            for name, search in (
+                ("equilibrium", lambda b=bearing: ehd.equilibrium(b, speed=SPEED, load=(0.0, -10.0))),
+                ("equilibrium", lambda p=point: p({})),
+                ("stribeck", lambda b=bearing: ehd.stribeck(b, load=10.0, speeds=[SPEED])),
+            ):
+                with pytest.raises(ehd.InputError, match=rf"{name}: JournalBearing.supply\[1\] turns .*UntilPeriodic"):
+                    search()
 
     def test_a_hopeless_tilt_is_an_error(self, make_bearing):
         with pytest.raises(ehd.FilmError, match="equilibrium"):
@@ -205,6 +226,116 @@ class TestWhirlThreshold:
         for m in (1e-3, 1.0, 1e3):
             s = np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [-K / m, -C / m]]))
             assert (s.real.max() > 0.0) == (threshold == 0.0)
+
+
+def random_loads(seed):
+    """A bearing under end pressures, or with a groove anywhere and starved, and a place and load of its film.
+
+    End pressures from a hundredth to a hundred times mu omega / psi^2, from films that are half cavity to full ones; a
+    supply from a thousandth to three times that; either spin, L/D 0.25 to 1, tilt by up to 0.9 of what closes the gap.
+    """
+    rng = np.random.default_rng([seed, 77])
+    R, c, L = 0.03, 30e-6, 0.03 * float(rng.choice([0.5, 1.0, 2.0]))
+    closure = (*CLOSURES, ehd.SwiftStieber(line_in_cells=False), ehd.ElrodAdams())[seed % 4]
+    speed = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(1.5, 3.0))
+    unit = 0.02 * abs(speed) * (R / c) ** 2
+    ends, supply = unit * 10.0 ** rng.uniform(-2.0, 2.0), ()
+    if seed % 8 >= 4:
+        ends *= 1e-4
+        size = {"width_angle": rng.uniform(0.2, 1.2), "length": 0.9 * L}
+        pressure = unit * 10.0 ** rng.uniform(-3.0, 0.5)
+        supply = (ehd.AxialGroove(angle=rng.uniform(0.0, 6.0), pressure=max(pressure, ends), **size),)
+    bearing = ehd.JournalBearing(
+        journal_radius=R,
+        length=L,
+        radial_clearance=c,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        end_pressures=(ends, ends),
+        cavitation=closure,
+        supply=supply,
+        film=FILM,
+    )
+    e, (a, b) = rng.uniform(0.2, 0.95), rng.uniform(0.0, 2.0 * math.pi, 2)
+    tilt = (seed % 3 == 0) * rng.uniform(0.0, 0.9) * (1.0 - e) * 2.0 * c / L * np.array([math.cos(b), math.sin(b)])
+    film = ehd.steady(bearing, speed=speed, eccentricity_ratio=e, direction=a, tilt=tuple(tilt))
+    return bearing, {"speed": speed, "load": tuple(-film.force[:2]), "tilt": tuple(tilt)}, film
+
+
+def carries(seed):
+    """The position found carries the load, to the closures' rounding next to supply areas."""
+    bearing, asked, film = random_loads(seed)
+    found = ehd.equilibrium(bearing, **asked)
+    assert np.abs(found.film.force - film.force)[:2].max() < 1e-8 * np.hypot(*film.force[:2]), seed
+    return np.hypot(*(found.position - film.motion[:2])) < 1e-4 * bearing.radial_clearance
+
+
+@pytest.mark.filterwarnings("ignore:.*the load is carried at:UserWarning")
+def test_random_loads_are_found():
+    """Those of films that end pressures keep from cavitating turn the journal across the load."""
+    same = [carries(seed) for seed in range(24)]
+    # several positions carry some loads of starved films
+    assert sum(same) >= 21
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*the load is carried at:UserWarning")
+def test_many_random_loads_are_found():
+    lost = 0
+    for seed in range(24, 424):
+        try:
+            carries(seed)
+        except ehd.FilmError:
+            lost += 1
+    # starved films of ElrodAdams; damped steps end in a valley of the unbalance
+    assert lost <= 2
+
+
+def test_of_several_positions_the_steadiest_is_returned_and_all_are_named():
+    """Of a load on a groove; stiffness from forces of films beside the position."""
+    bearing, asked, _ = random_loads(191)
+    load, c = np.array(asked["load"]), bearing.radial_clearance
+    with pytest.warns(
+        UserWarning, match=r"carried at .* 0\.0006, 0\.6080, .*; returned is 0\.6080, .* positive definite"
+    ):
+        found = ehd.equilibrium(bearing, **asked)
+
+    def force(x):
+        e, angle = float(np.hypot(*x)) / c, math.atan2(x[1], x[0])
+        at = {"speed": asked["speed"], "tilt": asked["tilt"], "eccentricity_ratio": e, "direction": angle}
+        return ehd.steady(bearing, **at).force[:2]
+
+    np.testing.assert_allclose(force(found.position), -load, rtol=0, atol=1e-7 * np.hypot(*load))
+    steps = 1e-4 * c * np.eye(2)
+    K = np.array([force(found.position - s) - force(found.position + s) for s in steps]).T / (2e-4 * c)
+    assert np.linalg.eigvalsh(K + K.T)[0] > 0.0
+    np.testing.assert_allclose(K, found.settled_stiffness, rtol=0, atol=1e-3 * np.abs(K).max())
+    # the search alone comes to the first of them
+    search = LoadSearch(build_model(bearing), load, "test")
+    motion = np.zeros(10)
+    motion[2:4], motion[8] = asked["tilt"], asked["speed"]
+    motion[:2] = first_guess(bearing, asked["speed"], load, motion[2:4])
+    first = search.find(motion)
+    assert np.hypot(*first.motion[:2]) < 1e-3 * c
+    assert np.linalg.eigvalsh(-first.slope - first.slope.T)[0] < 0.0
+
+
+@pytest.mark.parametrize("closure", [*CLOSURES, ehd.SwiftStieber(line_in_cells=False), ehd.ElrodAdams()])
+@pytest.mark.parametrize("e", (0.72, 0.76))
+def test_loads_of_full_films_under_high_end_pressures(closure, e):
+    """Without a cavity the force is normal to the eccentricity, and the stiffness nearly that of a turn."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.03,
+        length=0.03,
+        radial_clearance=30e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        end_pressures=(4e7, 4e7),
+        cavitation=closure,
+    )
+    film = ehd.steady(bearing, speed=300.0, eccentricity_ratio=e, direction=-1.2)
+    assert film.pressure.min() > 1e7
+    assert np.abs(film.force[:2] @ film.motion[:2]) < 1e-6 * np.hypot(*film.force[:2]) * 30e-6
+    found = ehd.equilibrium(bearing, speed=300.0, load=tuple(-film.force[:2]))
+    np.testing.assert_allclose(found.position, film.motion[:2], atol=1e-8 * 30e-6)
 
 
 def test_load_on_a_groove_that_starves_the_film_ends_with_an_error_that_says_so():

@@ -23,6 +23,7 @@ MORE = OPTIONS | {
             friction_coefficient=0.12,
         )
     },
+    "recess": {"supply": (ehd.AxialGroove(angle=2.0, width_angle=0.5, length=0.04, pressure=1e5, depth=3e-4),)},
     "elrod thinning": {
         "cavitation": ehd.ElrodAdams(cavity_pressure=-1e5),
         "lubricant": ehd.Lubricant(viscosity=9e-3, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7)),
@@ -57,6 +58,11 @@ def plain(film):
     )
     area = g.weight * R**2
     out *= area
+    if film.parts.supply is not None:
+        sheared, part = (g.lands - g.weight) * R**2, film.parts.supply.parts[0] * R**2
+        depth = film.parts.bearing.supply[0].depth
+        for k, v in enumerate(speeds):
+            out[k] += mu * v * (sheared / h * share + part * 4.0 / depth)
     if film.pressing is not None:
         for (friction, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):
             v = np.array(speeds)

@@ -89,12 +89,15 @@ class OilLine:
         Of ``fields``.
     late : (n, m) array
         ``late`` of `exudyn_ehd.film.reynolds.links.Coefficients` with what flows carry less than the fill.
+    exact : bool
+        Whether the factor is that of the last solution.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
         self.fields = Curve(*np.zeros((11, shape[0] * shape[1])))
         self.fields.s[:] = 1.0
         self.rise, self.late = self.fields.rise.reshape(shape), np.zeros(shape)
+        self.exact = False
 
     def gradients(
         self,

@@ -12,9 +12,11 @@ from exudyn_ehd.film.banded.assemble import assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_one
+from exudyn_ehd.film.banded.workspace import Workspace
+from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.cavity_transport import factor_transport, solve_transport
 from exudyn_ehd.film.cavitation.lagging_void import hold_back
-from exudyn_ehd.film.cavitation.oil_line.curve import FILLED, add_curve, curve_terms, lack
+from exudyn_ehd.film.cavitation.oil_line.curve import FILLED, OilLine, add_curve, curve_terms, lack
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
 from exudyn_ehd.film.reynolds.links import flow_direction
 
@@ -280,6 +282,35 @@ def solve_on_curve(film, late, b, inverse_step, mass_old, pc, full, curve, order
                 break
             film_balance(P, fill, None, terms, lacks)
     return False, MOST_STEPS, count, width, convected
+
+
+def factor_on_curve(s: FilmSystem, line: OilLine, work: Workspace) -> None:
+    """Make the factor that of the last solution, of which Newton's method leaves that of the film one step before."""
+    if line.exact:
+        return
+    factors = work.lower, work.upper, work.inv_diag, work.transport
+    _, work.count, work.width, work.convected = _factor_solution(
+        s.coefficients,
+        s.inverse_step,
+        s.mass_old,
+        s.cavity_pressure,
+        work.active,
+        line.fields,
+        work.order,
+        work.number,
+        factors,
+        work.unknowns,
+        s.pressure,
+        s.fill,
+    )
+    line.exact = True
+
+
+@njit(cache=True, nogil=True)
+def _factor_solution(film, inverse_step, mass_old, pc, full, curve, order, number, factors, x, P, fill):
+    """`_factor` with the film's own terms."""
+    terms, directions = film_terms(film, inverse_step, mass_old), (flow_direction(film.fx), flow_direction(film.fz))
+    return _factor(film, terms, inverse_step, mass_old, pc, full, curve, directions, order, number, factors, x, P, fill)
 
 
 @njit(cache=True)

@@ -20,6 +20,7 @@ import numpy as np
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.rupture_line import LEAST, Line, LineGradients, RuptureLine, line_terms, to_true_gap
 from exudyn_ehd.film.reynolds.links import LinkFlux
+from exudyn_ehd.film.solvers.newton import RULE
 
 
 class GapChain(NamedTuple):
@@ -91,7 +92,7 @@ class FilmLine(RuptureLine):
         c = places[: places[-1]]
         place = np.maximum(s[c], LEAST)
         own = k[c] * (1.0 - place) / place
-        return bool(np.all(np.abs(shift[c] - own) <= 1e-9 * (k[c] + own)) and np.count_nonzero(shift) == c.size)
+        return bool(np.all(np.abs(shift[c] - own) <= RULE.exact * (k[c] + own)) and np.count_nonzero(shift) == c.size)
 
     def weights(self, places: np.ndarray) -> np.ndarray:
         """As `RuptureLine.weights`, of a film with this density, on its liner."""

@@ -1,0 +1,64 @@
+"""Several positions that carry one load: which of them a journal keeps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.joint.balance.position import INSIDE, Carried, LoadSearch
+from exudyn_ehd.status import FilmError, warn_user
+
+# Start on the load's side, where the film is thinnest: eccentricity ratio. Larger ones are nearer to a closed gap.
+LOADED = 0.9
+# Distance over the clearance up to which two positions are one.
+SAME_PLACE = 1e-3
+STEADINESS = (
+    "has a negative determinant: a journal leaves it",
+    "is not positive definite: whether a journal stays is the damping's matter",
+    "is positive definite",
+)
+
+
+def steadiest(search: LoadSearch, found: Carried, tolerance: float = 1e-8) -> Carried:
+    """The position found, or a steadier one that carries the load too; a warning names all that are known.
+
+    A journal stays where the stiffness K is positive definite, and leaves a place where its determinant is
+    negative, whatever the damping. Others are looked for from the load's side and from inside: where K is not
+    positive definite, and supply areas, tilt or a memory of the oil may give the load several positions.
+
+    Parameters
+    ----------
+    search : LoadSearch
+    found : Carried
+    tolerance : float
+        Of the unbalance of others, over the load.
+    """
+    b = search.model.bearing
+    several = bool(b.supply) or search.model.remembers_mass or bool(np.any(found.motion[2:4]))
+    steady = _steadiness(found)
+    if search.model.effects.thermal is not None or steady == 2 or (steady == 1 and not several):
+        return found
+    places = [found]
+    for ratio in (LOADED, INSIDE):
+        try:
+            other = search.damped(search.loaded(found.motion, ratio), tolerance)
+        except FilmError:
+            continue
+        away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)
+        if away > SAME_PLACE * b.radial_clearance and search.residual(other) <= tolerance:
+            places.append(other)
+    best = max(places, key=_steadiness)
+    if len(places) > 1 or _steadiness(best) == 0:
+        ratios = [f"{np.hypot(*place.motion[:2]) / b.radial_clearance:.4f}" for place in places]
+        warn_user(
+            f"{search.where}: the load is carried at the eccentricity ratios {', '.join(ratios)}; returned is "
+            f"{ratios[places.index(best)]}, where the stiffness matrix {STEADINESS[_steadiness(best)]}.",
+            UserWarning,
+        )
+    return search.at(best.motion)
+
+
+def _steadiness(place: Carried) -> int:
+    """Index in `STEADINESS` of a place."""
+    if np.all(np.linalg.eigvalsh(-place.slope - place.slope.T) > 0.0):
+        return 2
+    return int(np.linalg.det(place.slope) > 0.0)
