@@ -98,7 +98,7 @@ class SphericalFilmElement(FilmElement):
         motion = trial.motion[[0, 1, 2, 4, 5, 6, 8, 9, 10, 3]]
         ratio = float(np.linalg.norm(motion[:3])) / self.model.bearing.radial_clearance
         wrench, quantities = trial.evaluation.wrench, trial.evaluation.quantities()
-        row = make_row(time, motion, (ratio, ratio), wrench, quantities, load=self.steps.load)
+        row = make_row(time, motion, (ratio, ratio), wrench, quantities, load=self.outer.load)
         if self.steps.tangent is not None:
             row[PACK] = pack_of_ball(self.steps.tangent)
         return row

@@ -53,12 +53,12 @@ NO_ERROR = np.zeros(10)
 SMALLEST_GAP_SHARE = 1e-3
 # Cosine of the turn of a peak in a step beyond which it has jumped.
 JUMP = 0.9
-# Departure of a load from a line at the state before, share of the one at a state, below which it has jumped there.
-SUDDEN = 0.5
-# The same for a step that is repeated: coarse steps of mechanisms have loads that set in nearly as fast.
-CERTAIN = 0.1
-# Share of the largest error of the gap that a jump anywhere in a step may make.
-LARGEST_JUMP = 0.5
+# A load has jumped in a step if its departure from a straight line, times the step, outgrows that of the step before:
+# that one is less than this share of it. A larger share repeats steps of smooth loads, a smaller one misses jumps of
+# loads that vary. Measured on 181 random jumps: 92 % of the errors are told at 0.5 to 2.5 of their size at 0.3 and 0.5,
+# 90 % at 0.2. Repeated steps of a four-bar mechanism without jumps: none at 0.05 to 0.3, five at 0.5, with 1.6 times
+# the evaluations of films and five times the error.
+SUDDEN = 0.3
 # What a step has missed over what it may miss, from which it is repeated.
 REFUSED = 8.0
 # What a step may miss of the error that is left, and of the largest one at least.
@@ -184,7 +184,6 @@ def next_error(
     length: float,
     largest: float,
     deflection: np.ndarray | None = None,
-    jump: np.ndarray | None = None,
     *,
     ball: bool = False,
 ) -> tuple[np.ndarray, float]:
@@ -207,8 +206,6 @@ def next_error(
         Of the bearing, and error of the gap that is allowed, m.
     deflection : (3, 2) array, optional
         Of a liner, where it is largest, m.
-    jump : (4,) array, optional
-        Rate by which the pose has jumped in the step, see `rate_jump`.
     ball : bool
         Whether the pose is a ball's place and a zero.
 
@@ -219,7 +216,7 @@ def next_error(
     missed = _missed(time, motion[:, :4], motion[:, 4:8])[2]
     if deflection is not None:
         missed[:2] -= _lag(time, deflection)[2]
-    after, used, thrown, h = np.zeros(4), 0.0, 0.0, np.diff(time)[-1:]
+    after, used, h = np.zeros(4), 0.0, np.diff(time)[-1:]
     for rows, places in BALL if ball else JOURNAL:
         D, K = (-tangent[rows][:, np.add(places, shift)] for shift in (4, 0))
         kept = _kept_of_ball(K[None], D[None], h)[0] if ball else _kept(K.reshape(1, 4), D.reshape(1, 4), h)
@@ -230,32 +227,34 @@ def next_error(
         left = largest - lever * float(np.linalg.norm(before[places]))
         allowed = max(forgotten * largest, BUDGET * left, SMALLEST_BUDGET * largest)
         used += lever * float(np.linalg.norm(missed[places])) / allowed
-        if jump is not None:
-            thrown += 0.5 * lever * float(h[0] * np.linalg.norm(jump[places]))
-    jumped = REFUSED * thrown / (LARGEST_JUMP * largest)
-    # a jump is over behind its step: a step that may be kept asks for no shorter ones after it
-    return after, max(used, jumped) if jumped >= REFUSED else used
+    return after, used
 
 
-def rate_jump(time: np.ndarray, load: np.ndarray, tangents: tuple[np.ndarray, np.ndarray], *, ball: bool) -> np.ndarray:
-    """Jump (4,) of the pose's rate in the step to the last of four states.
+def largest_jump_error(
+    time: np.ndarray, load: np.ndarray, tangents: tuple[np.ndarray, np.ndarray], length: float, *, ball: bool
+) -> float:
+    """Error of the gap, m, of a jump at an end of the step to the last state: h |D^-1 dL| / 2.
 
     Parameters
     ----------
-    time : (4,) array
-        s.
-    load : (4, 4) array
+    time : (n,) array
+        Of the last states, five if there are, s.
+    load : (n, 4) array
         On the film, as for `errors_behind` or `errors_of_ball`.
     tangents : two (6, 10) arrays
         Of the film's wrench, at the start of the step and at its end.
+    length : float
+        Of the bearing, m.
     ball : bool
+        Whether the pose is a ball's place and a zero.
     """
-    out, mean = np.zeros(4), -0.5 * (tangents[0] + tangents[1])
+    out, mean = 0.0, -0.5 * (tangents[0] + tangents[1])
     for rows, places in BALL if ball else JOURNAL:
-        jump = _sudden(time, load[:, places], CERTAIN)[3]
+        jump = _sudden(time, load[:, places])[-1]
         if jump.any():
-            out[places] = np.linalg.pinv(mean[rows][:, np.add(places, 4)], rcond=1e-9) @ jump
-    return out
+            rate = np.linalg.pinv(mean[rows][:, np.add(places, 4)], rcond=1e-9) @ jump
+            out += (1.0 if rows[0] == 0 else 0.5 * length) * float(np.linalg.norm(rate))
+    return 0.5 * float(time[-1] - time[-2]) * out
 
 
 def _bend(time: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -284,15 +283,26 @@ def _lag(time: np.ndarray, deflection: np.ndarray) -> np.ndarray:
     return np.where(jumps[:, None], 0.0, _bend(time, deflection) * h**2)
 
 
-def _sudden(time: np.ndarray, load: np.ndarray, share: float = SUDDEN) -> np.ndarray:
+def _sudden(time: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Jump of a load (n, k) in every step, zero where it goes on as before."""
-    steps, change = np.diff(time), np.diff(load, axis=0)
-    off = np.zeros_like(load)
-    off[2:] = np.nan_to_num(change[1:] - change[:-1] * (steps[1:] / steps[:-1])[:, None])
-    size = np.sqrt(np.sum(off * off, axis=1))
+    steps, change = np.diff(time, prepend=time[0]), np.diff(load, axis=0, prepend=load[:1])
+    off, back = np.zeros_like(load), np.zeros(time.size, dtype=bool)
+    ratio = steps[2:, None] / steps[1:-1, None]
+    off[2:] = np.nan_to_num(change[2:] - change[1:-1] * ratio)
+    # behind a jump, the departure from the line before it where that is smaller
+    jumps, jump, onward = _outgrown(steps, off)[2:-1], off[2:-1].copy(), off[2:-1] * ratio[1:] + off[3:]
+    smaller = jumps & (np.sum(onward * onward, axis=1) < np.sum(off[3:] * off[3:], axis=1))
+    off[3:] = np.where(smaller[:, None], onward, off[3:])
+    back[3:] = smaller & (np.sum(onward * jump, axis=1) < -SUDDEN * np.sum(jump * jump, axis=1))
+    return np.where((back | _outgrown(steps, off))[:, None], off, 0.0)
+
+
+def _outgrown(steps: np.ndarray, off: np.ndarray) -> np.ndarray:
+    """Steps (n,) whose departure (n, k) of the load, times the step, outgrows that of the step before."""
+    size = steps * np.sqrt(np.sum(off * off, axis=1))
     # the first departure that is known has none to be compared with
     earlier = np.concatenate([np.full(3, np.inf), size[2:-1]])[: size.size]
-    return np.where((earlier < share * size)[:, None], off, 0.0)
+    return earlier < SUDDEN * size
 
 
 def _jumped(D: np.ndarray, load: np.ndarray, step: np.ndarray) -> np.ndarray:

@@ -61,8 +61,8 @@ class Scene:
             ehd.equilibrium(self.bearing, speed=self.speed, load=tuple(load)).critical_mass
             for load in (self.load, self.load + self.change)
         ]
-        # none is critical at large eccentricities
-        self.mass = between(0.005, 0.5) * min(*critical, 1e3 * math.hypot(*self.load) / 9.81)
+        # none is critical at large eccentricities; no journal weighs more than ten times its load
+        self.mass = between(0.005, 0.5) * min(*critical, 20.0 * math.hypot(*self.load) / 9.81)
 
     def share(self, time):
         """Of the change that has set in."""

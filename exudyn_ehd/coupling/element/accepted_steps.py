@@ -119,8 +119,6 @@ class AcceptedSteps:
         Whether the run under way chooses the size of its steps.
     tangent : (6, 10) array or None
         Of the film's wrench, as Newton's method of an implicit run has asked for it last.
-    load : (4,) array or None
-        On the film at the state that was recorded last, of an implicit run (`OuterLoad`).
     """
 
     def __init__(self, film: Film) -> None:
@@ -143,7 +141,6 @@ class AcceptedSteps:
         self._uses_memory = self._may_starve = self.in_own_run = self.chosen = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
-        self.load: np.ndarray | None = None
         self.tolerance: float | None = None
         self._thin = -np.inf
         self._told = True
@@ -185,7 +182,8 @@ class AcceptedSteps:
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
         trial = self.film.look(mbs, start, START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
-        row = self._row(mbs, start, trial, START_OF_STEP)
+        self.film.outer.take(mbs, START_OF_STEP, trial)
+        row = self.film.row(start, trial)
         if self.control is not None:
             film = trial.evaluation if row is not None and self._makes_room else None
             self.control.start(trial.motion, None if film is None else film.quantities()["minimum_gap"])
@@ -198,17 +196,13 @@ class AcceptedSteps:
             for observe in self.observers:
                 observe(trial)
             if start > self.start:
-                self._advance_memory(trial)
+                if self._uses_memory:
+                    self.memory = trial.found.history()
+                    self.film.forget()
                 if begins:
                     self._first_memory = self.memory
         last, self.start = self.start, start
         self._check(start, trial, start - last, row)
-
-    def _row(self, mbs: exu.MainSystem, time: float, trial: Trial, where: exu.ConfigurationType) -> np.ndarray | None:
-        """Row of the record at an accepted state, with the load on its film; None without a film."""
-        found = trial.evaluation if solver_state.is_implicit(self.solver) else None
-        self.load = None if found is None else self.film.outer.at(mbs, where, found.wrench[:6])
-        return self.film.row(time, trial)
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
@@ -235,11 +229,11 @@ class AcceptedSteps:
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
         self._turning = turn_watch(mbs, film.sides, self.solver)
         warn_of_radius(self.solver)
-        self.film.outer.forget()
+        self.film.outer.begin(self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
-        self.tangent = self.load = self.tolerance = None
+        self.tangent = self.tolerance = None
         self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
         self._cool, self._grid = HOT, poor_films.GridWatch()
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
@@ -287,11 +281,6 @@ class AcceptedSteps:
         if not (known and solver_state.is_implicit(self.solver)):
             return None
         return next_start(self.begin, trial.bodies, time, self.film.model.bearing.radial_clearance)
-
-    def _advance_memory(self, trial: Trial) -> None:
-        if self._uses_memory:
-            self.memory = trial.found.history()
-            self.film.forget()
 
     def _check(self, start: float, trial: Trial, step: float, row: np.ndarray | None) -> None:
         """Raise `FilmError` for a film that can't go on, warn of films that run dry or thin and of forces that ring."""
@@ -349,7 +338,8 @@ class AcceptedSteps:
     def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, StepStart | None, np.ndarray]:
         """Time of the last accepted state, the film's memory there, where the next step begins, and the record."""
         time, trial, _ = self.look_at_accepted(mbs)
-        row, memory = self._row(mbs, time, trial, self._accepted), self.memory if self._uses_memory else self._aside
+        self.film.outer.take(mbs, self._accepted, trial)
+        row, memory = self.film.row(time, trial), self.memory if self._uses_memory else self._aside
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
             memory = trial.found.history()
@@ -396,6 +386,7 @@ class AcceptedSteps:
         if known or time <= self.record.last_time:
             return
         trial = self.film.look(mbs, time, self._accepted)
-        self.record.end = self._row(mbs, time, trial, self._accepted)
+        self.film.outer.take(mbs, self._accepted, trial)
+        self.record.end = self.film.row(time, trial)
         if self.record.end is None and self.is_idle:
             self.film.failures.warn_of_end(time, trial)

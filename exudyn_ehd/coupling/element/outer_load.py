@@ -18,11 +18,13 @@ from collections.abc import Sequence
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.contract import Side, Trial
 from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.items.object_mass import object_mass
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.watch import solver_state
 
+UNKNOWN = np.full(4, np.nan)
 # Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
 JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
 
@@ -36,22 +38,36 @@ class OuterLoad:
         Housing and journal.
     blocks : sequence of list of int
         `JOURNAL` or `BALL`.
+
+    Attributes
+    ----------
+    load : (4,) array
+        At the state taken last; nan where it is not known.
     """
 
     def __init__(self, sides: tuple[Side, Side], blocks: Sequence[list[int]]) -> None:
         self.sides, self.blocks = sides, blocks
+        self.load = UNKNOWN
+        self.begin(None)
+
+    def begin(self, solver: solver_state.Solver | None) -> None:
+        """Begin a run of ``solver``: masses are read at its first state, loads are known in implicit runs."""
         self.masses: list[np.ndarray] | None = None
+        self.is_known = solver_state.is_implicit(solver)
         self.is_heavy, self.places = False, list[int]()
 
-    def forget(self) -> None:
-        """Read the masses anew at the next state."""
-        self.masses = None
+    def take(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> None:
+        """Keep the load at a state, an accepted one."""
+        self.load = self.at(mbs, where, trial)
 
-    def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, wrench: np.ndarray) -> np.ndarray:
-        """Load (4,) at a state to which the sides' arrays and the film's ``wrench`` (6,) belong, joint frame.
+    def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> np.ndarray:
+        """Load (4,) at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
 
-        Its entries are those of the blocks, of a ball with a zero behind them.
+        Its entries are those of the blocks, of a ball with a zero behind them; nan without a film.
         """
+        if not self.is_known or trial.evaluation is None:
+            return UNKNOWN
+        wrench = trial.evaluation.wrench
         housing, journal = self.sides
         J = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
         if self.masses is None:

@@ -330,8 +330,8 @@ class FilmElement:
         quantities = self._quantities(trial.evaluation)
         if self.faces is not None:
             quantities = {**quantities, **self.faces.quantities(self.sides, trial)}
-        steps = self.steps
-        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, steps.tangent, steps.load)
+        tangent, load = self.steps.tangent, self.outer.load
+        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, tangent, load)
 
     def fields(
         self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType

@@ -25,14 +25,11 @@ from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, next_error, rate_jump
+from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, largest_jump_error, next_error
 from exudyn_ehd.status import Status
 
 # First and largest step, in steps of the settings.
 FIRST, LARGEST = 0.125, 4.0
-# Step up to which jumps of loads are followed, in steps of the settings: in shorter ones the loads' noise, which grows
-# with 1 / h^2 as that of accelerations does, looks like jumps.
-SHORTEST_JUMP = 0.0625
 # Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
 SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 # Part of its demand that a step hands on.
@@ -51,8 +48,10 @@ _State: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np
 class _Joint:
     """The error of one joint: at the start of the step, and behind the one at hand."""
 
-    def __init__(self, film: FilmElement, error: float, usual: float) -> None:
-        self.film, self.error, self.shortest = film, error, SHORTEST_JUMP * usual
+    def __init__(self, film: FilmElement, error: float) -> None:
+        self.film, self.error = film, error
+        # start and size of the last step tried, and what a jump in it may make
+        self.jump = (math.nan, 0.0, 0.0)
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_State] = []
         self.now: _State | None = None
@@ -66,7 +65,7 @@ class _Joint:
             return None
         film = trial.evaluation.quantities()
         w, angle = (film["bore_displacement"], film["peak_angle"]) if self.lags else (0.0, 0.0)
-        load = self.film.outer.at(mbs, CURRENT, trial.found.wrench[:6])
+        load = self.film.outer.at(mbs, CURRENT, trial)
         self.now = (time, trial.motion[:10], (w * math.cos(angle), w * math.sin(angle)), load, tangent)
         if len(self.states) < 2 or tangent is None:
             return None
@@ -76,9 +75,6 @@ class _Joint:
         gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
         deflection = deflections if self.lags else None
         allowed, ball = CANCELLED * self.error * gap, self.film.failures.axes == 3
-        jump, earlier = None, self.states[-1][4]
-        if len(times) == 4 and earlier is not None and time - times[-2] > self.shortest:
-            jump = rate_jump(times, loads, (earlier, tangent), ball=ball)
         last = slice(-3, None)
         self.after, used = next_error(
             times[last],
@@ -88,16 +84,29 @@ class _Joint:
             bearing.length,
             allowed,
             None if deflection is None else deflection[last],
-            jump,
             ball=ball,
         )
-        return used
+        if (before := self.states[-1][4]) is None:
+            return used
+        jump = largest_jump_error(times, loads, (before, tangent), bearing.length, ball=ball)
+        less = self._asks_for_less(times[-2], times[-1] - times[-2], jump, self.error * gap)
+        return max(used, REFUSED) if less else used
+
+    def _asks_for_less(self, start: float, step: float, error: float, allowed: float) -> bool:
+        """Return whether a shorter step is worth its while for a jump that may make an ``error``.
+
+        In half a step a jump makes half the error at most. Loads that ring grow as 1 / h and make the same error: a
+        step is not repeated again where the error falls by less than the root of what the step does.
+        """
+        (last_start, last_step, last_error), self.jump = self.jump, (start, step, error)
+        rings = start == last_start and error > last_error * math.sqrt(step / last_step)
+        return error > allowed and not rings
 
     def accept(self) -> None:
         """Go on behind the step at hand."""
         self.before = self.after
         # without a film there is no error, and the next ones are known two steps later
-        self.states = [] if self.now is None else [*self.states[-2:], self.now]
+        self.states = [] if self.now is None else [*self.states[-3:], self.now]
 
 
 class StepSize:
@@ -130,7 +139,7 @@ class StepSize:
         run, solution = settings.timeIntegration, settings.solution
         self.begin, self.end = run.startTime, run.endTime
         self.usual = (self.end - self.begin) / run.numberOfSteps
-        self.joints = [_Joint(film, error, self.usual) for film in films]
+        self.joints = [_Joint(film, error) for film in films]
         self.periods = [solution.file.writePeriod] if solution.file.write else []
         self.periods += [solution.sensors.writePeriod] if sensors else []
         self.beyond = 2.0 * run.discontinuous.iterationTolerance
