@@ -6,6 +6,9 @@ method recommends the size); else the function after the step sets the size of t
 with the cube of its size, and what it may miss with its size: a step's demand is the root of the quotient over its
 size, and the next one follows the largest demand of late.
 
+A step in which a load jumps is repeated by half of it as long as the jump, at an end of the step, would make more than
+the error that is asked for.
+
 A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
 over to the new one within a step or two. So sizes grow by a tenth at a time, and smaller changes are left out.
 """
