@@ -242,7 +242,7 @@ def largest_jump_error(
     Parameters
     ----------
     time : (n,) array
-        Of the last states, five if there are, s.
+        Of the last states, six to tell all pulses from ringing, s.
     load : (n, 4) array
         On the film, as for `errors_behind` or `errors_of_ball`.
     tangents : two (6, 10) arrays

@@ -109,7 +109,7 @@ class _Joint:
         """Go on behind the step at hand."""
         self.before = self.after
         # without a film there is no error, and the next ones are known two steps later
-        self.states = [] if self.now is None else [*self.states[-3:], self.now]
+        self.states = [] if self.now is None else [*self.states[-4:], self.now]
 
 
 class StepSize:
