@@ -190,7 +190,7 @@ class Rotor:
         settings.timeIntegration.endTime = end
         settings.timeIntegration.numberOfSteps = steps = round(end / step)
         # damps the beams' stretching and shear; at the whirl's frequency its damping ratio is below 1e-5
-        settings.timeIntegration.generalizedAlpha.spectralRadius = 0.95
+        settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
         settings.timeIntegration.verboseMode = 0
         settings.solution.sensors.writePeriod = step
         settings.solution.file.write = False

@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
+from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.failures import Failures
+from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bodies import Item
@@ -83,6 +85,7 @@ class SphericalFilmElement(FilmElement):
         super().__init__(model, socket, ball, name)
         self.failures = SphericalFailures(name, model.bearing)
         self.steps.record = BallRecord(model.bearing)
+        self.outer = OuterLoad(self.sides, outer_load.BALL)
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion's `spherical.ROWS`."""
@@ -94,7 +97,8 @@ class SphericalFilmElement(FilmElement):
             return None
         motion = trial.motion[[0, 1, 2, 4, 5, 6, 8, 9, 10, 3]]
         ratio = float(np.linalg.norm(motion[:3])) / self.model.bearing.radial_clearance
-        row = make_row(time, motion, (ratio, ratio), trial.evaluation.wrench, trial.evaluation.quantities())
+        wrench, quantities = trial.evaluation.wrench, trial.evaluation.quantities()
+        row = make_row(time, motion, (ratio, ratio), wrench, quantities, load=self.outer.load)
         if self.steps.tangent is not None:
             row[PACK] = pack_of_ball(self.steps.tangent)
         return row

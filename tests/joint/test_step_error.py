@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, NO_ERROR, errors_behind, largest_jump_error
 
 CLEARANCE, LENGTH, GAP = 20e-6, 0.02, 8e-6
 # stiffness and damping of translations and tilts, the latter with moments Mx, My; of a film that whirls while it decays
@@ -57,7 +57,8 @@ def ends(pose):
 def estimate(time, motion, tangents=None, deflection=None):
     blocks = np.broadcast_to(tangent().ravel()[BLOCKS], (time.size, 4, 4)) if tangents is None else tangents
     gaps = np.full(time.size, GAP)
-    return errors_behind(np.zeros(4), time, motion, blocks, gaps, CLEARANCE, LENGTH, deflection)[0]
+    load = np.full((time.size, 4), np.nan)
+    return errors_behind(NO_ERROR, time, motion, blocks, gaps, CLEARANCE, LENGTH, deflection, load)[0]
 
 
 @pytest.mark.parametrize("uneven", [0.0, 0.4])
@@ -107,3 +108,29 @@ def test_lag_of_a_liner(steps):
     jumped = w.copy()
     jumped[steps // 2 :] *= -1.0
     assert np.nanmax(estimate(time, motion, resting, deflection=jumped)) < 1.5 * expected.max()
+
+
+@pytest.mark.parametrize(
+    ("loads", "jump"),
+    [
+        ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 1.0),
+        ([0.0, 0.0, 0.0, 0.0, 1.0, 1.0], 0.0),
+        ([0.0, 0.0, 0.0, 0.0, 1.0, 0.0], 1.0),
+        ([0.0, 0.0, 0.0, 1.0, 1.0, 0.0], 1.0),
+        ([0.0, 0.0, 0.2, 1.2, 2.2, 3.2], 0.0),
+        ([0.0, 1.0, 4.0, 9.0, 16.0, 25.0], 0.0),
+        ([0.0, 1.0, -1.0, 1.0, -1.0, 1.0], 0.0),
+    ],
+)
+def test_jumps_of_a_load(loads, jump):
+    """Error h |D^-1 dL| / 2 of jumps and of the ends of pulses; none behind a jump, on ramps, smooth or ringing loads.
+
+    The loads lie upon a line. Tolerances are those of round-off.
+    """
+    time, side = 1e-4 * np.arange(6.0), np.array([100.0, 200.0])
+    load = np.zeros((6, 4))
+    load[:, :2] = np.outer(time, [3e4, -2e4]) + np.outer(loads, side)
+    film = tangent()
+    expected = 0.5e-4 * jump * np.linalg.norm(np.linalg.solve(D[0], side))
+    found = largest_jump_error(time, load, (film, film), LENGTH, ball=False)
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-15)

@@ -21,12 +21,13 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Element, Trial
 from exudyn_ehd.coupling.element.failures import Failures
+from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.watch import poor_films, solver_state, tiny_forces
-from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch
+from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch, warn_of_radius
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
@@ -46,11 +47,13 @@ class Film(Element, Protocol):
     Attributes
     ----------
     failures : Failures
+    outer : OuterLoad
     is_massless : bool
         Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
     """
 
     failures: Failures
+    outer: OuterLoad
     is_massless: bool
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
@@ -179,6 +182,7 @@ class AcceptedSteps:
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
         trial = self.film.look(mbs, start, START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
+        self.film.outer.take(mbs, START_OF_STEP, trial)
         row = self.film.row(start, trial)
         if self.control is not None:
             film = trial.evaluation if row is not None and self._makes_room else None
@@ -192,7 +196,9 @@ class AcceptedSteps:
             for observe in self.observers:
                 observe(trial)
             if start > self.start:
-                self._advance_memory(trial)
+                if self._uses_memory:
+                    self.memory = trial.found.history()
+                    self.film.forget()
                 if begins:
                     self._first_memory = self.memory
         last, self.start = self.start, start
@@ -222,6 +228,8 @@ class AcceptedSteps:
         area = 2.0 * bearing.journal_radius * bearing.length
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
         self._turning = turn_watch(mbs, film.sides, self.solver)
+        warn_of_radius(self.solver)
+        self.film.outer.begin(self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
@@ -273,11 +281,6 @@ class AcceptedSteps:
         if not (known and solver_state.is_implicit(self.solver)):
             return None
         return next_start(self.begin, trial.bodies, time, self.film.model.bearing.radial_clearance)
-
-    def _advance_memory(self, trial: Trial) -> None:
-        if self._uses_memory:
-            self.memory = trial.found.history()
-            self.film.forget()
 
     def _check(self, start: float, trial: Trial, step: float, row: np.ndarray | None) -> None:
         """Raise `FilmError` for a film that can't go on, warn of films that run dry or thin and of forces that ring."""
@@ -335,6 +338,7 @@ class AcceptedSteps:
     def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, StepStart | None, np.ndarray]:
         """Time of the last accepted state, the film's memory there, where the next step begins, and the record."""
         time, trial, _ = self.look_at_accepted(mbs)
+        self.film.outer.take(mbs, self._accepted, trial)
         row, memory = self.film.row(time, trial), self.memory if self._uses_memory else self._aside
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
@@ -382,6 +386,7 @@ class AcceptedSteps:
         if known or time <= self.record.last_time:
             return
         trial = self.film.look(mbs, time, self._accepted)
+        self.film.outer.take(mbs, self._accepted, trial)
         self.record.end = self.film.row(time, trial)
         if self.record.end is None and self.is_idle:
             self.film.failures.warn_of_end(time, trial)

@@ -17,8 +17,10 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, Faces, JointModel, Side, Trial
+from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
+from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.side_by_side import SideBySide
 from exudyn_ehd.coupling.kinematics import relative
@@ -79,6 +81,7 @@ class FilmElement:
         self.late: Exception | None = None
         self.crew: SideBySide | None = None
         self.steps = AcceptedSteps(self)
+        self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
         self.presence: Presence
         self.faces: Faces | None = None
         self._bound = False
@@ -327,7 +330,8 @@ class FilmElement:
         quantities = self._quantities(trial.evaluation)
         if self.faces is not None:
             quantities = {**quantities, **self.faces.quantities(self.sides, trial)}
-        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, self.steps.tangent)
+        tangent, load = self.steps.tangent, self.outer.load
+        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, tangent, load)
 
     def fields(
         self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType

@@ -81,7 +81,8 @@ class Quantity(enum.Enum):
 _SCALARS = tuple(member.value for member in Quantity)[6:]
 TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
-WIDTH = FIRST_BLOCK + BLOCKS.size
+LOAD = slice(FIRST_BLOCK + BLOCKS.size, FIRST_BLOCK + BLOCKS.size + 4)
+WIDTH = LOAD.stop
 _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
@@ -353,10 +354,12 @@ def make_row(
     wrench: np.ndarray,
     quantities: Mapping[str, float],
     tangent: np.ndarray | None = None,
+    load: np.ndarray | None = None,
 ) -> np.ndarray:
-    """One row of the record; estimates of step errors need the ``tangent`` (6, 10)."""
+    """One row of the record; step errors need the ``tangent`` (6, 10) and the ``load`` (4,) on the film."""
     row = np.empty(WIDTH)
     scalars = [quantities.get(name, math.nan) for name in _SCALARS]
     row[:FIRST_BLOCK] = [time, *motion.tolist(), *motion[:2].tolist(), *ratios, *wrench.tolist(), *scalars]
-    row[FIRST_BLOCK:] = np.nan if tangent is None else tangent.take(_BLOCKS)
+    row[FIRST_BLOCK : LOAD.start] = np.nan if tangent is None else tangent.take(_BLOCKS)
+    row[LOAD] = np.nan if load is None else load
     return row

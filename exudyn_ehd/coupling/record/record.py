@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.record.history import COLUMNS, DIMENSIONS, FORMAT, MINI
 from exudyn_ehd.coupling.record.on_disk import RowsInFile, RowsOnDisk, open_rows, read_head, read_rows
 from exudyn_ehd.coupling.record.thinning import STEP_COUNT, STEP_ERROR, Thinner, Thinning, errors_of
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import FIRST
+from exudyn_ehd.joint.step_error import FIRST, NO_ERROR
 from exudyn_ehd.status import InputError, RunError
 from exudyn_ehd.storage import require_path
 
@@ -161,7 +161,7 @@ def history_of(rows: np.ndarray, dimensions: Mapping[str, Any], lags: bool, firs
         count, errors = rows[:, STEP_COUNT].astype(np.int64), rows[:, STEP_ERROR].copy()
     else:
         count = first + np.arange(len(rows))
-        errors, _ = errors_of(rows, dimensions["radial_clearance"], dimensions["length"], lags, np.zeros(4))
+        errors, _ = errors_of(rows, dimensions["radial_clearance"], dimensions["length"], lags, NO_ERROR)
     return JointHistory(**columns, step_error=errors, step_count=count, **dimensions)
 
 
@@ -192,7 +192,7 @@ class Columns:
         return self.rows.column(COLUMNS[name])
 
     def _errors(self) -> np.ndarray:
-        lead, before, found = np.empty((0, self.rows.width)), np.zeros(4), [np.empty(0)]
+        lead, before, found = np.empty((0, self.rows.width)), NO_ERROR, [np.empty(0)]
         for part in self.rows.parts():
             whole = np.concatenate([lead, part])
             errors, before = errors_of(whole, self.clearance, self.length, self.lags, before)

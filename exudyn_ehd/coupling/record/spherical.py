@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from exudyn_ehd.coupling.record.history import FIRST_BLOCK, JointHistory
+from exudyn_ehd.coupling.record.history import FIRST_BLOCK, LOAD, JointHistory
 from exudyn_ehd.coupling.record.record import Record, history_of
 from exudyn_ehd.joint.step_error import errors_of_ball
 
@@ -20,10 +20,10 @@ class BallRecord(Record):
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """The record, with ``final`` as its last row if given."""
         rows = self.rows(final)
-        packed = rows[:, PACK].copy()
+        packed, load = rows[:, PACK].copy(), rows[:, LOAD][:, :3].copy()
         rows[:, FIRST_BLOCK:] = np.nan
         clearance = self._dimensions["radial_clearance"]
         history = history_of(rows, self._dimensions, False)
         place, velocity, _ = np.split(history.motion[:, :9], 3, axis=1)
-        errors = errors_of_ball(history.time, place, velocity, packed, history.minimum_gap, clearance)
+        errors = errors_of_ball(history.time, place, velocity, packed, history.minimum_gap, clearance, load)
         return dataclasses.replace(history, step_error=errors)

@@ -14,8 +14,17 @@ from typing import Protocol
 
 import numpy as np
 
-from exudyn_ehd.coupling.record.history import COLUMNS, FIRST_BLOCK, FORCE, MINIMUM_GAP, PEAK_PRESSURE, TIME, WIDTH
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind
+from exudyn_ehd.coupling.record.history import (
+    COLUMNS,
+    FIRST_BLOCK,
+    FORCE,
+    LOAD,
+    MINIMUM_GAP,
+    PEAK_PRESSURE,
+    TIME,
+    WIDTH,
+)
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, NO_ERROR, errors_behind
 from exudyn_ehd.status import require_integer, require_number
 
 # Places behind those of a row.
@@ -107,7 +116,7 @@ class Thinner:
         self.count = 0 if last is None else int(last[STEP_COUNT])
         self._known_error = np.nan if last is None else float(last[STEP_ERROR])
         # what is kept so far of the span under way; the last rows as they came, and the pose's error there
-        self._open, self._lead, self._error = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH)), np.zeros(4)
+        self._open, self._lead, self._error = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH)), NO_ERROR
 
     def take(self, rows: np.ndarray) -> np.ndarray:
         """Add rows (n, WIDTH); returns those (k, WIDTH + 2) of the spans that have ended."""
@@ -164,4 +173,4 @@ def errors_of(
     last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0]), np.arange(len(rows)), -1))
     rows[last >= 0, _BLOCKS] = tangent[last[last >= 0]]
     blocks, gap = rows[:, _BLOCKS].reshape(-1, *BLOCKS.shape), rows[:, MINIMUM_GAP]
-    return errors_behind(before, rows[:, TIME], motion, blocks, gap, clearance, length, deflection)
+    return errors_behind(before, rows[:, TIME], motion, blocks, gap, clearance, length, deflection, rows[:, LOAD])

@@ -59,7 +59,8 @@ def ConfigureSolver(
       halved an alternation of forces, which at 0.9 outlasts the next disturbance. A gudgeon pin at 3000 rpm, peak of
       208 MPa, 360 steps a turn: 820 rows with halved steps and 3.5 % too high a peak at 0.9, 361 rows and 0.02 % at
       0.6. What is resolved hardly feels it: a vibration of 80 steps per period loses 2e-5 of its amplitude per period
-      (2e-7 at 0.9, 2e-4 at 0.3); for the growth of a whirl over thousands of turns name a radius of 0.9 to 1.
+      (2e-7 at 0.9, 2e-4 at 0.3); for the growth of a whirl over thousands of turns name a radius of 0.9. A run with
+      a larger one warns: velocities of journals then alternate from step to step, and growth may be wrong.
     - The step size control stays on (Exudyn's default): a film that can't be evaluated asks for a smaller step.
 
     Parameters

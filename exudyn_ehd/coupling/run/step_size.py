@@ -6,6 +6,9 @@ method recommends the size); else the function after the step sets the size of t
 with the cube of its size, and what it may miss with its size: a step's demand is the root of the quotient over its
 size, and the next one follows the largest demand of late.
 
+A step in which a load jumps is repeated by half of it as long as the jump, at an end of the step, would make more than
+the error that is asked for.
+
 A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
 over to the new one within a step or two. So sizes grow by a tenth at a time, and smaller changes are left out.
 """
@@ -21,17 +24,15 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import START_OF_STEP
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, next_error
+from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, largest_jump_error, next_error
 from exudyn_ehd.status import Status
 
 # First and largest step, in steps of the settings.
 FIRST, LARGEST = 0.125, 4.0
-# What a step has missed, over what it may miss, from which it is repeated.
-REFUSED = 8.0
 # Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
 SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 # Part of its demand that a step hands on.
@@ -44,7 +45,7 @@ SHORTENED, ROUNDING = 0.99, 1e-6
 NEVER = 10**9
 
 
-_State: TypeAlias = tuple[float, np.ndarray, tuple[float, float]]
+_State: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np.ndarray | None]
 
 
 class _Joint:
@@ -52,12 +53,14 @@ class _Joint:
 
     def __init__(self, film: FilmElement, error: float) -> None:
         self.film, self.error = film, error
+        # start and size of the last step tried, and what a jump in it may make
+        self.jump = (math.nan, 0.0, 0.0)
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_State] = []
         self.now: _State | None = None
         self.before = self.after = np.zeros(4)
 
-    def used(self, time: float) -> float | None:
+    def used(self, mbs: exu.MainSystem, time: float) -> float | None:
         """What the step to ``time`` has missed over what it may miss; None if it is not known."""
         trial, tangent, bearing = self.film.last, self.film.steps.tangent, self.film.model.bearing
         if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:
@@ -65,23 +68,48 @@ class _Joint:
             return None
         film = trial.evaluation.quantities()
         w, angle = (film["bore_displacement"], film["peak_angle"]) if self.lags else (0.0, 0.0)
-        self.now = (time, trial.motion[:10], (w * math.cos(angle), w * math.sin(angle)))
+        load = self.film.outer.at(mbs, CURRENT, trial)
+        self.now = (time, trial.motion[:10], (w * math.cos(angle), w * math.sin(angle)), load, tangent)
         if len(self.states) < 2 or tangent is None:
             return None
-        times, motions, deflections = map(np.array, zip(*self.states, self.now, strict=True))
+        times, motions, deflections, loads = map(
+            np.array, zip(*(state[:4] for state in (*self.states, self.now)), strict=True)
+        )
         gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
         deflection = deflections if self.lags else None
         allowed, ball = CANCELLED * self.error * gap, self.film.failures.axes == 3
+        last = slice(-3, None)
         self.after, used = next_error(
-            times, motions, tangent, self.before, bearing.length, allowed, deflection, ball=ball
+            times[last],
+            motions[last],
+            tangent,
+            self.before,
+            bearing.length,
+            allowed,
+            None if deflection is None else deflection[last],
+            ball=ball,
         )
-        return used
+        if (before := self.states[-1][4]) is None:
+            return used
+        jump = largest_jump_error(times, loads, (before, tangent), bearing.length, ball=ball)
+        less = self._asks_for_less(times[-2], times[-1] - times[-2], jump, self.error * gap)
+        return max(used, REFUSED) if less else used
+
+    def _asks_for_less(self, start: float, step: float, error: float, allowed: float) -> bool:
+        """Return whether a shorter step is worth its while for a jump that may make an ``error``.
+
+        In half a step a jump makes half the error at most. Loads that ring grow as 1 / h and make the same error: a
+        step is not repeated again where the error falls by less than the root of what the step does.
+        """
+        (last_start, last_step, last_error), self.jump = self.jump, (start, step, error)
+        rings = start == last_start and error > last_error * math.sqrt(step / last_step)
+        return error > allowed and not rings
 
     def accept(self) -> None:
         """Go on behind the step at hand."""
         self.before = self.after
         # without a film there is no error, and the next ones are known two steps later
-        self.states = [] if self.now is None else [*self.states[-1:], self.now]
+        self.states = [] if self.now is None else [*self.states[-4:], self.now]
 
 
 class StepSize:
@@ -112,9 +140,9 @@ class StepSize:
         sensors: bool,
     ) -> None:
         run, solution = settings.timeIntegration, settings.solution
-        self.joints = [_Joint(film, error) for film in films]
         self.begin, self.end = run.startTime, run.endTime
         self.usual = (self.end - self.begin) / run.numberOfSteps
+        self.joints = [_Joint(film, error) for film in films]
         self.periods = [solution.file.writePeriod] if solution.file.write else []
         self.periods += [solution.sensors.writePeriod] if sensors else []
         self.beyond = 2.0 * run.discontinuous.iterationTolerance
@@ -127,7 +155,7 @@ class StepSize:
     def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
         """User function after Newton's method and the user's own: error, and step size to repeat the step with."""
         error, wanted = own(mbs, time) if own else (0.0, -1.0)
-        known = [used for joint in self.joints if (used := joint.used(time)) is not None]
+        known = [used for joint in self.joints if (used := joint.used(mbs, time)) is not None]
         self.used = max(known, default=None)
         step = time - mbs.systemData.GetTime(START_OF_STEP)
         smallest = mbs.sys["dynamicSolver"].it.minStepSize

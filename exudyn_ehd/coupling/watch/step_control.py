@@ -36,8 +36,9 @@ class StepControl:
     **Of a run** (``SolveDynamic(mbs, simulationSettings, stepControl=StepControl(error=0.02))``, `SolveDynamicSparse`
     alike): steps grow and shrink so that the estimated error of the gaps of all joints, ``history.step_error``, stays
     near ``error``; steps that miss far more are refused. ``numberOfSteps`` of the settings then stands for a usual
-    step: the first one is an eighth of it, the largest four of it, so that no step leaps over a load that comes and
-    goes. Steps end at the times at which solution file and sensors are written (``writePeriod``).
+    step: the first one is an eighth of it, the largest four of it. A load that comes and goes within one step leaves
+    no trace: give as many steps as let the shortest knock last five of them. Steps end at the times at which solution
+    file and sensors are written (``writePeriod``).
 
     Parameters
     ----------

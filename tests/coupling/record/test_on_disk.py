@@ -71,7 +71,8 @@ def test_a_part_of_a_long_file_is_read_alone(tmp_path, monkeypatch):
         row = random_row(rng, time)
         # a film that keeps nine tenths of its errors from step to step
         blocks = np.tile(np.eye(2).ravel(), 4) * np.repeat([-1000.0, -1.0, -1000.0, -1.0], 4)
-        row[rows_of.FIRST_BLOCK :] = blocks
+        row[rows_of.FIRST_BLOCK : rows_of.LOAD.start] = blocks
+        row[rows_of.LOAD] = rng.normal(size=4) * 1e-3
         record.append(row)
     whole = record.snapshot(None)
     for start, end in ((0.3, 0.301), (whole.time[2000], whole.time[2100]), (0.399, 9.0), (-1.0, 0.02), (7.0, 8.0)):
