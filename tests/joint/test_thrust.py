@@ -8,7 +8,12 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.thrust import ThrustModel, face_motion
-from tests.contracts.test_pairs import CLOSURES, EFFECTS
+from tests.recorded.draw import FACTORS
+
+CLOSURES = {name: level["cavitation"] for name, level in FACTORS["closure"].items()}
+# Effects of the journal's film beside which faces keep their own; with the others they are refused.
+CARRIED = ("supply", "surfaces", "profile", "wall")
+OTHERS = ("pressure", "density", "shear", "roughness", "asperity", "turbulence", "thermal")
 
 C = 40e-6
 PADS = ehd.TaperLand(pads=4, depth=30e-6)
@@ -113,24 +118,27 @@ def test_journal_film_does_not_know_the_faces():
         ehd.steady(bearing, speed=200.0, eccentricity_ratio=0.6, axial_position=5e-5)
 
 
-CARRIED = {"groove", "profile", "liner", "wall", "elastic journal"}
+def _effects(names):
+    """(name, options) of the levels of factors, but for the absence of an effect, or of single levels."""
+    for factor, levels in FACTORS.items():
+        for name, level in list(levels.items())[1:]:
+            if factor in names or name in names:
+                yield pytest.param(level(0.04) if callable(level) else level, id=f"{factor} {name}")
 
 
-@pytest.mark.parametrize("effect", EFFECTS)
-def test_with_every_effect(effect):
-    """Refused by the names of both, or the effect acts in the journal's film alone and the faces keep theirs."""
-    options = dict(EFFECTS[effect])
-    lubricant = options.pop("lubricant", {})
-    if "thermal" in options:
-        lubricant = {
-            "temperature_law": ehd.ReynoldsTemperature(point=(320.0, 0.03), coefficient=0.03),
-            "temperature": 320.0,
-        }
-    if effect not in CARRIED:
-        with pytest.raises(ehd.InputError, match=r"thrust=ThrustFaces\(\.\.\.\) does not go with "):
-            _bearing(lubricant=lubricant, **options)
-        return
-    bearing = _bearing(lubricant=lubricant, **options)
+@pytest.mark.parametrize("options", _effects(OTHERS))
+def test_refused_with_effects_that_faces_do_not_have(options):
+    laws = {name: value for name, value in options.items() if name.endswith("_law")}
+    others = {name: value for name, value in options.items() if name not in laws}
+    if "thermal" in others:
+        laws["temperature_law"] = ehd.ReynoldsTemperature(point=(320.0, 0.03), coefficient=0.03)
+    with pytest.raises(ehd.InputError, match=r"thrust=ThrustFaces\(\.\.\.\) does not go with "):
+        _bearing(lubricant=laws, **others)
+
+
+@pytest.mark.parametrize("options", _effects(CARRIED))
+def test_effects_of_the_journal_s_film_leave_the_faces_theirs(options):
+    bearing = _bearing(**options)
     motion = 0.4 * SCALE[:10]
     assert build_model(bearing).bearing.thrust is not None
     assert np.array_equal(
