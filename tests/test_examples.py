@@ -445,7 +445,7 @@ def test_elastic_gudgeon_pin(example, tmp_path):
     # 0.536 and 0.585; on 20 rows, closer together at the ends, 0.541 and 0.589
     assert pin["minimum_film_thickness_um"] == pytest.approx(0.54 * rigid["minimum_film_thickness_um"], rel=0.05)
     assert pin["peak_MPa"] == pytest.approx(0.585 * rigid["peak_MPa"], rel=0.05)
-    # 1.072, with modes of a quarter of the tolerance 1.073, on 20 rows 1.068: the eye gives way at the edge that is next
+    # 1.072, with modes of a quarter of the tolerance 1.073, on 20 rows 1.068: the eye gives way where the pin is next
     assert 1.04 < both["minimum_film_thickness_um"] / pin["minimum_film_thickness_um"] < 1.1
     assert 0.9 < both["peak_MPa"] / pin["peak_MPa"] < 0.97
     assert both["largest_deflection_um"] == pytest.approx(1.13 * pin["largest_deflection_um"], rel=0.03)
