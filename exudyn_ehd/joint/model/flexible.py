@@ -252,7 +252,8 @@ class ElasticBearingModel(BearingModel):
         height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
         # the bore's own term is the last
         extra = ExtraGap(height, *self._slopes, fields[:-1])
-        smallest = add_gap(height, self._term.rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
+        rate = self._term.rate if s.squeeze else s.nothing
+        smallest = add_gap(height, rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
         return float(smallest), extra
 
     def _bore_state(self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None) -> BoreState:
