@@ -66,8 +66,7 @@ class FilmSolver:
     ) -> None:
         shape = grid.shape
         self.grid, self.closure, self.squeeze = grid, closure, squeeze
-        self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
-        self.area = grid.area
+        self.flow_x, self.area = float(circumferential_pressure_flow), grid.area
         self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
         self.H, self.HF, self.H_t = self.system.H, self.system.HF, self.system.H_t
         self.line: RuptureLine | None = None
@@ -76,8 +75,7 @@ class FilmSolver:
             self.oil_line = self.system.oil_line = OilLine(shape)
         elif closure.line_in_cells and not closure.clips:
             self.line = self.system.line = RuptureLine(shape)
-        self.work = Workspace(*shape)
-        self.flux_effects = flux_effects
+        self.work, self.flux_effects = Workspace(*shape), flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
         self.ones, self.nothing = np.ones(shape), np.zeros(shape)
         self.link_fields = np.zeros((5, *shape))
@@ -113,8 +111,7 @@ class FilmSolver:
         s = self.system
         if not self.closure.conserves_mass:
             return self.ones
-        late = s.coefficients.late
-        return s.prompt * s.fill + late if self.lagging or self.oil_line is not None else s.fill
+        return s.prompt * s.fill + s.coefficients.late if self.lagging or self.oil_line is not None else s.fill
 
     @property
     def content(self) -> np.ndarray:
@@ -160,11 +157,11 @@ class FilmSolver:
             np.copyto(s.linear_pressure, s.pressure)
         if self.closure.conserves_mass:
             self._set_storage(mass_old, step)
-        if s.closes:
-            # from another film, cavities may stay dry that fill up from a full one
+        # where gaps close, cavities of another film may stay dry that fill up from a full one
+        steps, was_warm = 0, self.work.warm and not s.closes
+        if not was_warm:
             self.forget()
-        was_warm = self.work.warm
-        steps = 0 if was_warm else self._guess_from_coarse(mass_old, step)
+            steps = self._guess_from_coarse(mass_old, step)
         status, fine_steps = self.closure.solve(s, self.work)
         if was_warm and status is Status.NOT_CONVERGED and self.coarse is not None:
             # a start from another state can mislead where the film itself is benign
