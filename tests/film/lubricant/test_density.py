@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.density_field import (
+from exudyn_ehd.film.lubricant.density_field import NEAR, (
     NEAR,
     WEAK,
     density_at,
@@ -172,7 +172,7 @@ def test_nothing_is_known_across_ambient_pressure():
     for start, end in ((1e3, -1e3), (0.0, 1e3), (-1e3, 1e3), (1e3, 0.0)):
         known = np.full((6, 1), np.nan)
         for x in (start, end):
-            look_up(np.array([x]), 1.0, -np.inf, np.inf, law.kernel_table, known)
+            look_up(np.array([x]), 1.0, -np.inf, np.inf, law.kernel_table, NEAR, known)
             assert known[0, 0] == x
 
 

@@ -67,7 +67,7 @@ def test_error_of_the_default_grid_over_the_range():
     errors = np.array([_errors(*_draw(rng)) for _ in range(100)])
     assert np.all(errors <= PADS)
     # damping is off where the cavity behind an edge ends between two rows
-    assert np.mean(errors[:, 2] <= 0.025) > 0.95
+    assert np.mean(errors[:, 2] <= 0.025) >= 0.95
     assert np.all([_errors(*_draw(rng, pads=False)) <= PLANE for _ in range(40)])
 
 
