@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.density_field import NEAR, (
+from exudyn_ehd.film.lubricant.density_field import (
     NEAR,
     WEAK,
     density_at,
