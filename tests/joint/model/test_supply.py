@@ -357,8 +357,12 @@ def test_starved_films_on_the_default_grid(make_bearing):
         loads = []
         for film in (ehd.FiniteLength(), ehd.FiniteLength(n_theta=384, n_z=60)):
             bearing = make_bearing(ratio, film=film, cavitation=ehd.ElrodAdams(), supply=(area,))
-            loads.append(np.hypot(*ehd.steady(bearing, speed=314.0, eccentricity_ratio=eps).force[:2]))
-        if loads[1] > 0.03 * bearing.reference_force(314.0):
+            try:
+                loads.append(np.hypot(*ehd.steady(bearing, speed=314.0, eccentricity_ratio=eps).force[:2]))
+            except ehd.FilmError as error:
+                # an area at the cavity pressure that feeds nothing
+                assert pressure == 0.0 and "needs oil from somewhere" in str(error)
+        if len(loads) == 2 and loads[1] > 0.03 * bearing.reference_force(314.0):
             errors.append(abs(loads[0] / loads[1] - 1.0))
     assert len(errors) > 50
     assert np.median(errors) < 0.02 and max(errors) < 0.12
