@@ -47,9 +47,8 @@ def very_stiff():
     return run
 
 
-# 5.3 iterations in 246 steps, 5.0 in 234 with the rupture line on the vertices: rounding, which differs
-# between processors, decides which steps are refused
-@hard_case("very soft bush, E = 1e6 Pa", rejected=7, newton=5.6, slow=True)
+# 7.1 iterations a step; round-off, which differs between processors, decides which steps are refused
+@hard_case("very soft bush, E = 1e6 Pa", rejected=8, newton=7.5, slow=True)
 def very_soft():
     """Softer than rubber: the bore deflects by more than the clearance, and its delay keeps 2 kg stable."""
     load = 20.0
