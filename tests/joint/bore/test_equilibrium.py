@@ -104,7 +104,7 @@ def soft_bushes(seed, count, contact=None):
     """Models and motions of journals pressed into soft bushes deeper than the clearance."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
-        c, modulus = C * rng.uniform(0.5, 3.0), math.exp(rng.uniform(math.log(1e7), math.log(1e9)))
+        c, modulus = C * rng.uniform(0.5, 3.0), math.exp(rng.uniform(math.log(1e7), math.log(1e10)))
         cylinder = ehd.HollowCylinder(
             inner_radius=R + c, thickness=rng.uniform(4e-3, 1.2e-2), length=L, axial=2, radial=1, circumferential=16
         )
@@ -114,7 +114,7 @@ def soft_bushes(seed, count, contact=None):
             length=L,
             radial_clearance=c,
             lubricant=ehd.Lubricant(viscosity=0.05),
-            bush=ehd.ModalBush(mesh=cylinder.mesh(), material=soft, tolerance=0.2),
+            bush=ehd.ModalBush(mesh=cylinder.mesh(), material=soft),
             contact=contact,
             film=ehd.FiniteLength(n_theta=96, n_z=12),
         )
@@ -124,18 +124,23 @@ def soft_bushes(seed, count, contact=None):
 
 
 @pytest.mark.slow
-def test_films_on_soft_bores_are_found_unless_they_close_at_an_end():
-    """A film that closes before the journal is there is named; with a contact there is one."""
-    wall, closed = ehd.RegularisedWall(onset=5e-7, pressure=1e8), []
-    for (model, motion), (with_wall, _) in zip(soft_bushes(5, 4), soft_bushes(5, 4, wall), strict=True):
+@pytest.mark.parametrize(("seed", "closed"), [(6, 4), (7, 3)])
+def test_films_on_soft_bores_are_found_unless_they_close_at_an_end(seed, closed):
+    """A film that closes before the journal is there is named; with a contact there is one.
+
+    The same films close on modes with tolerances of 0.004 and 0.02; with 0.2 they are found.
+    """
+    wall = ehd.RegularisedWall(onset=5e-7, pressure=1e8)
+    pairs = zip(soft_bushes(seed, closed + 1), soft_bushes(seed, closed + 1, wall), strict=True)
+    for i, ((model, motion), (with_wall, _)) in enumerate(pairs):
         evaluation = model.evaluate_steady(motion)
-        closed.append(evaluation.status is not ehd.Status.CONVERGED)
-        if not closed[-1]:
+        if i < closed:
+            assert evaluation.status is ehd.Status.CONVERGED
             held = model.elasticity.force(evaluation.bore.coordinates)
             np.testing.assert_allclose(evaluation.bore_load, held, atol=1e-8 * np.abs(held).max())
             continue
+        assert evaluation.status is not ehd.Status.CONVERGED
         assert evaluation.closing.part < 1.0 and abs(evaluation.closing.z) == 0.5 * L
         with pytest.raises(ehd.FilmError, match=r"the film closes at theta = .*the surfaces touch.*contact="):
             evaluate_at(model, motion, "steady")
         assert with_wall.evaluate_steady(motion).status is ehd.Status.CONVERGED
-    assert closed == [False, True, True, False]

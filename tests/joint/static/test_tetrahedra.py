@@ -18,7 +18,7 @@ COARSE = dataclasses.replace(CYLINDER, axial=2, radial=1, circumferential=20)
 @pytest.mark.parametrize(
     ("kind", "cylinder", "options"),
     [
-        (ehd.ModalBush, COARSE, {"tolerance": 0.1}),
+        (ehd.ModalBush, COARSE, {"tolerance": 0.05}),
         (ehd.ModalBush, CYLINDER, {}),
         (ehd.ANCFBush, CYLINDER, {}),
     ],
