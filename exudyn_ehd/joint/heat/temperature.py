@@ -248,9 +248,9 @@ class FilmTemperature(_Temperature):
     def heat(self, film: SolvedFilm) -> np.ndarray:
         """Heat at the vertices, W (n, m): shear, pressure flow and contact friction.
 
-        Their sum is that of `heat_and_exchange` to the grid's error. Beside supply areas, where the film fraction changes
-        within a row, the shear's sum is that of the loads: else it would be up to 5 % more on ten rows. Scaled without
-        areas too, heat would heat less well: loads that are 0.2 % off on ten rows would be 0.5 % off.
+        Their sum is that of `heat_and_exchange` to the grid's error. Beside supply areas, where the film fraction
+        changes within a row, the shear's sum is that of the loads: else it would be up to 5 % more on ten rows. Scaled
+        without areas too, heat would heat less well: loads that are 0.2 % off on ten rows would be 0.5 % off.
         """
         p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
         flow_power = p.flow_scale * film.scales.pressure
