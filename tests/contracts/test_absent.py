@@ -126,10 +126,6 @@ EFFECTS = {
         ("film.cavitation.line_kernels", "film.solvers.liner.line"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
     ),
-    "line of a film that conserves mass": (
-        ("film.cavitation.oil_line.curve", "film.cavitation.oil_line.newton"),
-        {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
-    ),
     "holes": (
         ("film.supply.cuts", "film.supply.holes", "film.supply.coverage", "film.supply.recess"),
         {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5, depth=1e-3),)},
@@ -139,8 +135,8 @@ EFFECTS = {
         {"thrust": ehd.ThrustFaces(inner_radius=0.026, outer_radius=0.05, clearance=4e-5, n_theta=16, n_r=6)},
     ),
     "mass conservation": (
-        ("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"),
-        {"cavitation": CLOSURES["elrod"]},
+        ("film.cavitation.elrod_adams", "film.cavitation.oil_line", "film.cavitation.solve"),
+        {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
     ),
 }
 
@@ -155,6 +151,7 @@ SHARED = {
     "cavitation.closures",
     "cavitation.active_set",
     "cavitation.steady_oil",
+    "cavitation.states",
     "models",
     "banded.numbering",
     "banded.substitution",
@@ -179,9 +176,8 @@ SHARED = {
     "lubricant.temperature_viscosity",
     "heat.options",
     "banded.many_sides",
-    "cavitation.cavity_transport",
     "cavitation.pseudo_time",
-    "cavitation.lagging_void",
+    "reynolds.lagging_void",
     "cavitation.line_steps",
     "surfaces.patir_cheng",
     "solvers.liner.parts",
