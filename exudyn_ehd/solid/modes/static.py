@@ -24,7 +24,7 @@ from scipy.sparse import csc_matrix, csr_matrix
 from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.linear.supernodal import sparse_factor
+from exudyn_ehd.solid.linear.solvers import sparse_factor
 from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
 from exudyn_ehd.solid.modes import films
 from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points, orthogonal_on
