@@ -160,7 +160,7 @@ SHARED = {
     "banded.substitution",
     "banded.workspace",
     "banded.ldl",
-    "sensitivity.mirror_symmetry",
+    "sensitivity.vertex_stencil",
     "reynolds.gap",
     "grid",
     "loads",
