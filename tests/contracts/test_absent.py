@@ -151,7 +151,6 @@ SHARED = {
     "combinations",
     "banded.lu",
     "banded.lanes",
-    "banded.lending",
     "cavitation.closures",
     "cavitation.active_set",
     "cavitation.steady_oil",
