@@ -35,7 +35,7 @@ class SingleFactor:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution of one right-hand side (n,), or of several (n, k)."""
-        # the range of single precision is small
+        # within the range of single precision
         scale = float(np.abs(right).max(initial=0.0)) or 1.0
         solution: np.ndarray = scale * self.factor.solve((right / scale).astype(np.float32)).astype(float)
         return solution
@@ -51,7 +51,12 @@ def rough_factor(A: spmatrix, error: float) -> SingleFactor | SuperLU:
     RuntimeError
         If the matrix is singular.
     """
-    single, probe = SingleFactor(A), np.sin(np.arange(1.0, A.shape[0] + 1))
+    try:
+        single = SingleFactor(A)
+    except RuntimeError:
+        # perhaps in single precision alone, whose range is small
+        return sparse_factor(A)
+    probe = np.sin(np.arange(1.0, A.shape[0] + 1))
     found = single.solve(probe)
     missed = single.solve(probe - A @ found)
     # nan is not within it

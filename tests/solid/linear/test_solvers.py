@@ -26,6 +26,9 @@ def test_a_singular_matrix_raises():
         sparse_factor(csc_matrix((3, 3)))
     with pytest.raises(RuntimeError):
         rough_factor(csc_matrix((3, 3)), 1e-5)
+    # singular in single precision alone
+    tiny = rough_factor(csc_matrix(1e-60 * np.eye(3)), 1e-5)
+    assert np.allclose(tiny.solve(np.ones(3)), 1e60)
 
 
 @pytest.mark.parametrize("seed", range(6))
