@@ -178,7 +178,7 @@ class ModalBush(_Solid):
     0.05
     """
 
-    tolerance: float = 0.02
+    tolerance: float = 0.05
     tilted: bool = True
     dynamics: bool = False
     body_forces: bool = True

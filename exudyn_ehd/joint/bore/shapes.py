@@ -41,6 +41,8 @@ from exudyn_ehd.solid.modes.static import BoreModes
 # Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue
 # problems.
 ASYMMETRY = 1e-9
+# Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
+TURNED = 1e-6
 _NO_PLACES, _NO_VALUES = np.zeros(0, dtype=np.int32), np.zeros(0)
 
 
@@ -54,6 +56,10 @@ class Bore(Protocol):
     @property
     def order(self) -> np.ndarray:
         """Coordinates (k,) in the sequence of `fill_rows`."""
+
+    @property
+    def twist(self) -> np.ndarray | None:
+        """Loads (k,) of a moment of 1 Nm of the film about the axis, 1/m; None: none."""
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m) for coordinates or rates q (k,)."""
@@ -132,6 +138,8 @@ class ModalBore:
         Modes in the sequence of `fill_rows`: the even ones first.
     mirrored : int
         Rows of every column in theta that mirror others; 0 if some mode is neither even nor odd.
+    twist : (k,) array or None
+        As in `Bore`. A reduced body gets the film's moment by the mean motion of its bore.
     """
 
     def __init__(
@@ -141,6 +149,11 @@ class ModalBore:
         self.grid_shape = grid.shape
         self.stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
         self.own = 0 if modes is None else modes.count
+        self.twist = None
+        if isinstance(modes, BoreModes):
+            turned = modes.twist(2.0 * float(grid.z[-1]) * grid.reference_length)
+            if np.abs(turned).max() * grid.reference_length > TURNED:
+                self.twist = np.concatenate((turned, np.zeros(self.size - self.own)))
         shapes = []
         if modes is not None:
             places = _on_lines(grid, grid.z)
@@ -290,7 +303,7 @@ class NodalBore:
         self.surface, self.values = surface, vertex_means(surface, grid)
         self.columns = by_columns(self.values, grid)
         self.shapes: csr_matrix = directed(self.values, np.stack([np.cos(theta), np.sin(theta)], axis=1), 2)
-        self.order = np.arange(self.size)
+        self.order, self.twist = np.arange(self.size), None
 
     @property
     def size(self) -> int:

@@ -43,7 +43,7 @@ from exudyn_ehd.status import InputError, PlausibilityWarning, warn_user
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 # Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
-FORMAT = 4
+FORMAT = 5
 # Elements around a bore, of which fewer are warned of: on 8 the minimum film thickness is 3 to 9 % off.
 FEWEST_AROUND = 12
 
@@ -151,6 +151,13 @@ class BoreModes:
         H = directed(values, np.stack([np.cos(theta), np.sin(theta)], axis=1))
         bore = self.displacements[:, self.faces.nodes].reshape(self.count, -1)
         return np.ascontiguousarray(H @ bore.T)
+
+    def twist(self, length: float) -> np.ndarray:
+        """Loads (k,) of a moment of 1 Nm about the axis as a uniform traction around the bore of a film [1/m]."""
+        surface = FilmSurface(self.faces, film_points(self.faces, length), length, np.eye(3))
+        radius = float(np.hypot(*self.mesh.nodes[self.faces.nodes[0], :2]))
+        bore = self.displacements[:, self.faces.nodes].reshape(self.count, -1)
+        return np.asarray(bore @ surface.twist)[:, 0] / (radius * surface.weight.sum())
 
 
 def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
