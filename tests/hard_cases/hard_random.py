@@ -19,6 +19,7 @@ A state counts as failed if its status is not CONVERGED, a number of it is not f
 its bounds, or a balance of its discrete equations is not met. The one exception: oils with a pressure law have no
 viscosity beyond some GPa, where they count as solid. A film that would need such pressures has no solution and must
 say so (NO_PRESSURE); these states are counted apart, once it is checked that the pressure is beyond the law's range.
+A steady film without a pressure above its cavity's has nothing that feeds it, and may say so (NO_OIL).
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ STATES_PER_MODEL = 250
 # Of a balance: rounding of conductances that differ by the cube of the gaps'
 # ratio, over the largest flow that meets at a vertex.
 BALANCE = 1e-7
-SOLID = "the oil is solid"
+SOLID, DRY = "the oil is solid", "nothing feeds the film"
 
 
 @dataclasses.dataclass(kw_only=True)
@@ -287,10 +288,18 @@ def beyond_law(model, motion, past):
     return float(model.solver.pressure.max()) * model.scales.pressure > highest * (1.0 - 1e-9)
 
 
+def feeds(bearing):
+    """Whether an end or a supply has more than the cavity's pressure."""
+    known = (*bearing.end_pressures, *(area.pressure for area in bearing.supply))
+    return max(known) > bearing.cavitation.cavity_pressure
+
+
 def check(model, evaluation, past):
     """What is wrong with an evaluation from the ``past`` (history, step), or None; and its balance error."""
     if evaluation.status is ehd.Status.NO_PRESSURE and beyond_law(model, evaluation.motion, past):
         return SOLID, 0.0
+    if evaluation.status is ehd.Status.NO_OIL and past[0] is None and not feeds(model.bearing):
+        return DRY, 0.0
     if isinstance(model.bearing.film, ehd.ImpedanceMap):
         return check_map(model, evaluation), 0.0
     if evaluation.status is not ehd.Status.CONVERGED:
@@ -381,7 +390,7 @@ def count(record, model, evaluation, context, past=(None, 0.0)) -> bool:
     record.balance = max(record.balance, balance)
     if wrong == SOLID:
         record.solid += 1
-    elif wrong is not None:
+    elif wrong not in (None, DRY):
         record.failures += 1
         record.failed.append((wrong, record.states, balance, *context))
     return wrong is None

@@ -126,7 +126,7 @@ def _effects(names):
                 yield pytest.param(level(0.04) if callable(level) else level, id=f"{factor} {name}")
 
 
-@pytest.mark.parametrize("options", _effects(OTHERS))
+@pytest.mark.parametrize("options", list(_effects(OTHERS)))
 def test_refused_with_effects_that_faces_do_not_have(options):
     laws = {name: value for name, value in options.items() if name.endswith("_law")}
     others = {name: value for name, value in options.items() if name not in laws}
@@ -136,7 +136,7 @@ def test_refused_with_effects_that_faces_do_not_have(options):
         _bearing(lubricant=laws, **others)
 
 
-@pytest.mark.parametrize("options", _effects(CARRIED))
+@pytest.mark.parametrize("options", list(_effects(CARRIED)))
 def test_effects_of_the_journal_s_film_leave_the_faces_theirs(options):
     bearing = _bearing(**options)
     motion = 0.4 * SCALE[:10]

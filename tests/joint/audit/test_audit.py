@@ -544,7 +544,7 @@ def test_thresholds_stand_for_a_few_per_cent(eps, measured):
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:.*of the bush's wall")
+@pytest.mark.filterwarnings("ignore:.*the bush strains by")
 def test_films_that_narrow_within_the_last_interval_ask_for_more_rows():
     """A thin soft bush: the film is twice as thick one interval before its end, where it is 7 % too thin."""
     R, L = 0.02, 0.02

@@ -45,7 +45,7 @@ def load(b):
             ({"cavitation": UNSUPPLIED, "supply": GROOVE}, (0.004, 0.001, 3e-4)),
             # its rows lie on either side of the groove's edges
             ({"cavitation": ehd.ElrodAdams(), "supply": GROOVE}, (0.0045, 7e-4, 1e-4)),
-            ({"cavitation": ehd.SwiftStieber(), "supply": GROOVE}, (0.004, 6e-4, 2e-4)),
+            ({"cavitation": ehd.SwiftStieber(), "supply": GROOVE}, (0.004, 6e-4, 3e-4)),
             ({"cavitation": ehd.SwiftStieber()}, (1e-3, 3e-4, 1e-4)),
         ],
         1,

@@ -38,6 +38,10 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
         motion[8] = rng.choice([-1, 1]) * rng.uniform(10.0, 300.0)
         model = build_model(made)
         found = model.evaluate_steady(motion) if k % 2 else model.evaluate(motion)
+        if cavitation.conserves_mass and not motion[4:6].any():
+            # without pressure nothing feeds the film: how much oil goes round is open
+            assert found.status in (ehd.Status.CONVERGED, ehd.Status.NO_OIL)
+            continue
         assert found.status is ehd.Status.CONVERGED
         # at most the long bearing's force per offset, 12 pi mu L (R/c)^3; pressures below 1e-9 of the speed's count
         # as rounding
