@@ -323,8 +323,13 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     return near[found[0]] if found else ""
 
 
+_BUSHES_WITH_MASS = (
+    "take ANCFBush(...), whose elements have mass, or an ObjectFFRFreducedOrder as housing with FEBore(fem=...)"
+)
 # Public names and arguments that are not supported any more, with what takes their place.
 GONE = {
+    "ModalBush.body_forces": _BUSHES_WITH_MASS,
+    "ModalBush.dynamics": _BUSHES_WITH_MASS,
     "JournalLeakage": "give ThrustFaces(inner_pressures=...) the pressures at the inner edges",
     "ThrustFaces.feed": "give inner_pressures=... the pressures at the inner edges",
 }

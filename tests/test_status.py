@@ -63,6 +63,10 @@ def test_descriptions_stay_what_they_were():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
+        (
+            lambda: ehd.ModalBush(mesh=None, material=None, dynamics=True),
+            r"ModalBush\.dynamics is not supported any more; take ANCFBush",
+        ),
         (lambda: ehd.JournalLeakage, r"JournalLeakage is not supported any more; give ThrustFaces\(inner_pressures"),
         (
             lambda: ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.04, clearance=2e-5, feed=None),

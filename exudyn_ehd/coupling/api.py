@@ -288,10 +288,6 @@ def _on_its_housing(
         from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
 
         bearing, housing = hold_fe_bore(mbs, bearing, housing, point, rotation)
-    bush = getattr(bearing, "bush", None)
-    if bush is not None and not housing.nodes and getattr(bush, "body_forces", False):
-        # what stands still needs no modes for its acceleration
-        bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bush, body_forces=False))
     return bearing, housing
 
 

@@ -122,7 +122,7 @@ class ANCFBush(_Solid):
 class ModalBush(_Solid):
     """A linear elastic bush, reduced to modes of its bore; outer surface fixed to the housing.
 
-    Its weight is the housing's; without ``dynamics`` weight and acceleration do not bend the bush itself. At 1 g its
+    Its mass and weight are the housing's: weight and acceleration do not bend the bush itself. At 1 g its
     bore would move by up to 0.1 nm in steel, 1.2 nm in a polymer of 3 GPa and 0.3 um in rubber of 10 MPa (20 mm thick
     around a bore of 60 mm, held outside; it grows with the acceleration, and with the square of the thickness): take
     `ANCFBush` where that is no small share of the film.
@@ -132,7 +132,7 @@ class ModalBush(_Solid):
     mesh : HollowCylinder or BushMesh
         Bush frame = joint frame. Build it fine: two or more radial layers; the modes cost the same in a run.
     material : SaintVenantKirchhoff
-        Its density is used with ``dynamics`` only.
+        Its density is not used.
     tolerance : float
         Largest error of the bore's displacement on the film's own length under sampled films of all directions, in the
         root mean square over the surface, over that displacement; of a bush that moves as a whole over what it deforms
@@ -151,22 +151,6 @@ class ModalBush(_Solid):
         that is not symmetric about its mid-plane gets them all the same.
     quadrature : Quadrature, optional
         Of the stiffness, as in `ANCFBush`.
-    dynamics : bool
-        Give the modes their mass in a run and add modes of the lowest vibrations (up to 40, half of them without tilt);
-        `steady` and `equilibrium` don't know the mass. It matters when the load changes nearly as fast as the bore
-        vibrates (`BoreModes.vibrations`; 43 kHz for 20 mm of steel): in all else the difference is about the square of
-        the ratio of the frequencies, and a step that does not resolve the vibrations needs an integrator that damps
-        them. What the mass changes in the bore's response to a smooth pressure is then the mesh's within 1.5 % at half
-        the lowest frequency, 9 % above it. The bush's mass still belongs to the housing's body, which must not be
-        lighter than the bush: a joint refuses it. On a housing that moves, its acceleration and rotation act on the
-        modes and the modes on it (`exudyn_ehd.coupling.element.modal`). At 2e4 m/s^2, the big end of a crank of
-        50 mm at 6000 rpm, the body force displaces the bore of a steel bush 20 mm thick by 0.13 um (3 mm thick: 3 nm),
-        a rotation at that speed by 0.08 um. Gravity on the modes (0.1 nm) is left out.
-    body_forces : bool
-        With ``dynamics``, also modes of the mesh's static responses to accelerations and rotations of the housing, as
-        far as the others lack them: 4 or 5, with tilt up to 10. The bore's deflection under them at rest is then the
-        mesh's within 0.5 %; without them it is within 5 to 20 %, 30 % for thin walls. A joint on ground leaves them
-        out.
 
     Examples
     --------
@@ -180,8 +164,6 @@ class ModalBush(_Solid):
 
     tolerance: float = 0.05
     tilted: bool = True
-    dynamics: bool = False
-    body_forces: bool = True
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -10,7 +10,6 @@ from exudyn.utilities import InertiaCylinder, RigidBodyInertia
 from scenes import marker_loads, new_system, rotation
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.kinematics.sides import detached
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
 SPEED = 3000 * 2 * np.pi / 60
@@ -55,35 +54,6 @@ def housing_load(t):
     return np.array([0.8 * LOAD, 0.7 * LOAD * np.cos(200.0 * t), 500.0]), np.array(
         [50.0, 80.0 * np.sin(300.0 * t), 60.0]
     )
-
-
-class Nodes:
-    """Inertia of a modal bush on a housing that moves, from sums over the mesh's nodes.
-
-    x = r + A X are the points of the rigid bush, w = A u their displacement; only what goes beyond the rigid bush, in
-    the first order of w apart from the modes' own kinetic energy.
-    """
-
-    def __init__(self, modes, material):
-        self.modes = modes
-        self.mass = TotalLagrange(mesh=modes.mesh, material=material).scalar_mass
-
-    def motion(self, frame, q, q_t):
-        A, omega = frame[:, :3], frame[:, 5]
-        s = self.modes.mesh.nodes @ A.T
-        w = np.tensordot(q, self.modes.displacements, 1) @ A.T
-        w_t = np.cross(omega, w) + np.tensordot(q_t, self.modes.displacements, 1) @ A.T
-        return frame[:, 3] + s, frame[:, 4] + np.cross(omega, s), w, w_t
-
-    def energy(self, frame, q, q_t):
-        _, x_t, _, w_t = self.motion(frame, q, q_t)
-        return np.sum(x_t * (self.mass @ w_t)) + 0.5 * q_t @ self.modes.mass @ q_t
-
-    def momenta(self, frame, q, q_t):
-        """Linear and angular momentum (6,) about the global origin."""
-        x, x_t, w, w_t = self.motion(frame, q, q_t)
-        flow = self.mass @ w_t
-        return np.r_[flow.sum(axis=0), (np.cross(x, flow) + np.cross(w, self.mass @ x_t)).sum(axis=0)]
 
 
 class Scene:
@@ -137,7 +107,6 @@ class Scene:
         )
         mbs.Assemble()
         self.times, self.rows, self.cancelling = [], [], []
-        self._nodes = None
 
     def _push(self, body, z, force):
         marker = self.mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body, localPosition=[0, 0, z]))
@@ -209,25 +178,7 @@ class Scene:
         if hasattr(element, "stiffness"):
             q = np.array(self.mbs.GetNodeOutput(element.bore_nodes[0], exu.OutputVariableType.Coordinates))
             elastic = 0.5 * float(q @ (element.stiffness * q))
-            mass = element.model.bore.modes.mass
-            if mass is not None:
-                kinetic += self.nodes().energy(*self.modal_state())
         return kinetic, elastic
-
-    def nodes(self):
-        """Sums over the nodes of a modal bush with mass."""
-        if self._nodes is None:
-            modes, bush = self.joint.element.model.bore.modes, self.joint.bearing.bush
-            self._nodes = Nodes(modes, bush.material)
-        return self._nodes
-
-    def modal_state(self):
-        """Frame of the housing, coordinates and rates of the modes."""
-        element = self.joint.element
-        q, q_t = (np.array(v) for v in element.read(self.mbs, exu.ConfigurationType.Current))
-        side, n = detached(element.sides[0]), element.sides[0].size
-        side.update(self.mbs, q[:n], q_t[:n], exu.ConfigurationType.Current)
-        return side.frame, q[element.rigid_size :], q_t[element.rigid_size :]
 
     def liner_energy(self):
         """Energy of an elastic liner at the film evaluated last, int p delta / 2 dA, J."""
@@ -246,8 +197,6 @@ class Scene:
             total[3:] += solid.Mass() * np.cross(p, v) + A @ np.array(solid.InertiaCOM()) @ w
         if self.joint.bush is not None:
             total += np.concatenate(self.joint.bush.momentum())
-        elif getattr(self.joint.element, "inertia", None) is not None:
-            total += self.nodes().momenta(*self.modal_state())
         return total
 
     def input_loads(self, t):

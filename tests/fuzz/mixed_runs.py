@@ -21,8 +21,8 @@ from exudyn.FEM import ObjectFFRFreducedOrderInterface
 import exudyn_ehd as ehd
 from tests.finite_elements import fem_of
 
-KINDS = ("rigid", "liner", "modal", "dynamic", "nodal", "tilted", "body")
-CYCLES = {"rigid": 2.0, "liner": 2.0, "modal": 1.0, "dynamic": 1.0, "nodal": 0.5, "tilted": 1.0, "body": 0.5}
+KINDS = ("rigid", "liner", "modal", "nodal", "tilted", "body")
+CYCLES = {"rigid": 2.0, "liner": 2.0, "modal": 1.0, "nodal": 0.5, "tilted": 1.0, "body": 0.5}
 STEPS = 200
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 BRONZE = ehd.SaintVenantKirchhoff(youngs_modulus=1.0e11, poisson_ratio=0.34, density=8800.0)
@@ -79,7 +79,6 @@ def _bush(rng, kind, radius, clearance, length):
         mesh=mesh,
         material=material,
         tolerance=float(rng.choice([0.05, 0.1])),
-        dynamics=kind == "dynamic",
         tilted=bool(rng.integers(2)),
     )
 

@@ -9,7 +9,6 @@ SEEDS = {
     "rigid": range(10),
     "liner": range(4),
     "modal": range(3),
-    "dynamic": range(2),
     "nodal": range(1),
     "tilted": range(2),
     "body": range(1),

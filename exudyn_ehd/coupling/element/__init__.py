@@ -7,7 +7,7 @@ rigid           `FilmElement`: user functions for a rigid bore
 accepted_steps  what was accepted: record, memory, watches, runs that go on
 presence        items of the joint, still in the system
 failures        messages of films that can't go on
-modal           bore by modes, and their inertia
+modal           bore by modes
 nodal           bore by nodes
 thrust          films on the end faces, an element of their own
 """

@@ -13,13 +13,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
-from exudyn_ehd.coupling.element.modal import (
-    BoreFilmElement,
-    ModalFilmElement,
-    ModalInertia,
-    TurningFilmElement,
-    describe,
-)
+from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement, TurningFilmElement
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
@@ -38,7 +32,6 @@ from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.solid.loads import Gravity
-from exudyn_ehd.solid.modes.static import BoreModes
 from exudyn_ehd.status import InputError, Status
 
 # Period over 2 pi of a mode on its numerical mass over the journal's radius, s/m: a thousandth of what sound takes.
@@ -112,16 +105,9 @@ def attach_bush(
             numberOfODE2Coordinates=k,
         )
     )
-    modes = model.bore.modes
-    mass = modes.mass if isinstance(modes, BoreModes) else None
     element = ModalFilmElement(model, *sides, [node], name, model.bore)
-    if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
-        require_heavy_housing(mbs, items[0].node, describe(modes), name)
-        element.inertia = ModalInertia(mbs, sides[0], modes)
-        return element, {"massMatrixUserFunction": element.mass}
-    if mass is None:
-        element.is_massless = True
-        mass = np.diag(element.stiffness * (NUMERICAL_PERIOD * model.bearing.journal_radius) ** 2)
+    element.is_massless = True
+    mass = np.diag(element.stiffness * (NUMERICAL_PERIOD * model.bearing.journal_radius) ** 2)
     # the sides of markers find their size after Assemble only
     rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
     return element, {"massMatrix": _mass_matrix(rigid, mass)}

@@ -79,12 +79,11 @@ class Failures:
 
     def no_mass(self) -> InputError:
         """Modes without mass under an explicit solver, which would integrate their numerical mass."""
-        other = ", or ModalBush(dynamics=True) with steps that resolve its vibrations"
         kind = type(self.bearing.yielding if self.bearing.journal is None else self.bearing.journal).__name__
         return InputError(
             f"LubricatedJoint '{self.name}': the modes of its {kind} have no mass, which explicit solvers can't "
             "integrate: forces and motion would be wrong; use an implicit solver "
-            f"(exu.DynamicSolverType.GeneralizedAlpha){other if self.bearing.journal is None else ''}."
+            "(exu.DynamicSolverType.GeneralizedAlpha)."
         )
 
     def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:

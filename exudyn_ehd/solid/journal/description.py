@@ -124,11 +124,11 @@ class ElasticJournal:
     def require_fit(self, radius: float, length: float, bush: object) -> None:
         """Refuse a journal of ``radius`` that does not carry a film of ``length`` about z = 0, or go with its bush."""
         half, (low, high) = 0.5 * length * (1.0 - 1e-9), self.span
-        if bush is not None and (not isinstance(bush, ModalBush) or bush.dynamics):
-            kind = "ModalBush(dynamics=True)" if isinstance(bush, ModalBush) else f"{type(bush).__name__}(...)"
+        if bush is not None and not isinstance(bush, ModalBush):
             raise InputError(
-                "JournalBearing.journal=ElasticJournal(...) goes with a rigid bore or a ModalBush(dynamics=False), got "
-                f"bush={kind}: its modes follow those of such a bush and have no mass; take one, or leave one out."
+                "JournalBearing.journal=ElasticJournal(...) goes with a rigid bore or a ModalBush(...), got "
+                f"bush={type(bush).__name__}(...): its modes follow those of such a bush and have no mass; take one, "
+                "or leave one out."
             )
         if not self.inner_radius <= THINNEST * radius:
             raise InputError(

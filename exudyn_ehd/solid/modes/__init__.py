@@ -2,7 +2,6 @@
 
 Module map
 ----------
-films    pressures of oil films, and the modes that they need
-static   static modes of the bore
-dynamic  what these lack in motion: vibrations, responses to body forces
+films   pressures of oil films, and the modes that they need
+static  static modes of the bore
 """

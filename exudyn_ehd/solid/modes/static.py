@@ -8,38 +8,28 @@ Only pressure works on the modes. The film's shear, clearance over radius of it,
 slope displace the bore radially by 3e-4 of what pressure does in steel, 1e-3 at E = 1e9 Pa (5 mm on c / R = 1e-3), 8e-3
 at 1e7 Pa and c / R = 3e-3, measured on meshes: less than the modes' tolerance. `ANCFBush` has them.
 
-A quasi-static bush (the default) has modes without mass: it follows the film, and its mass belongs to the body that
-carries it. With ``dynamics`` the modes Phi get the mesh's consistent mass M,
+The modes have no mass: the bush follows the film, and its mass belongs to the body that carries it.
 
-    Phi^T M Phi q_tt + Phi^T K Phi q = Q,
-
-and on a housing that moves what its acceleration and rotation do to them; modes for that come from
-`exudyn_ehd.solid.modes.dynamic`.
-
-Static modes give the first inertial correction of the bore's compliance exactly, that of the square of the frequency,
-but not the vibrations: in a thick bush the lowest ones shear the wall, which no static mode does (frequencies up to 1.9
-times too high). Those of the mesh's lowest vibrations that pressure excites are therefore added, less their part in the
-span of the static modes: the reduced bush then vibrates in them at the mesh's frequencies, and its static modes stay as
-they are.
-
-Source of the idea: static (attachment) modes and vibrations, R. R. Craig, J. Modal Analysis 2 (1987) 59; derived here
-for pressures on a bore.
+Source of the idea: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59; derived here for pressures on
+a bore.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import eigh
-from scipy.sparse import csr_matrix
+from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.solid.bush import ModalBush
+from exudyn_ehd.solid.linear.supernodal import sparse_factor
 from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
-from exudyn_ehd.solid.modes import dynamic, films
+from exudyn_ehd.solid.modes import films
 from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points, orthogonal_on
-from exudyn_ehd.status import InputError, PlausibilityWarning, warn_user
+from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.status import PlausibilityWarning, warn_user
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 # Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
@@ -57,25 +47,17 @@ class BoreModes:
     mesh : BushMesh
     displacements : ndarray, shape (k, n, 3)
         Nodal displacements of every mode on the whole mesh, bush frame; the largest radial bore displacement of a
-        static mode is 1, so that its coordinate is in m. Modes of vibrations and of body forces follow the static ones;
-        their largest displacement of all nodes is 1.
+        mode is 1, so that its coordinate is in m.
     stiffness : ndarray, shape (k,)
-        Modal stiffness [N/m]; the modes are orthogonal in energy, the static ones also on the bore, of which the
-        softest come first.
+        Modal stiffness [N/m]; the modes are orthogonal in energy and on the bore, the softest come first.
     error : float
         Error under the sampled films, as in `ModalBush`.
-    mass : ndarray, shape (k, k), or None
-        Modal mass Phi^T M Phi [kg]; None for a quasi-static bush.
-    moments : ndarray, shape (n, 4), or None
-        int rho N [kg] and int rho N X [kg m] of the nodes' shape functions, X in the bush frame; with ``mass``.
     """
 
     mesh: BushMesh
     displacements: np.ndarray
     stiffness: np.ndarray
     error: float
-    mass: np.ndarray | None = None
-    moments: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -97,48 +79,6 @@ class BoreModes:
     def _gradients(self) -> np.ndarray:
         element = self.mesh.element
         return element.reference_gradients(self.mesh.nodes[self.mesh.elements], element.sampling)[0]
-
-    def vibrations(self) -> tuple[np.ndarray, np.ndarray]:
-        """Undamped vibrations without a film, outer surface held; for a bush with ``dynamics``.
-
-        Returns
-        -------
-        omega : ndarray, shape (k,)
-            Angular eigenfrequencies [rad/s], ascending.
-        shapes : ndarray, shape (k, k)
-            One vibration per column in modal coordinates, of unit modal mass.
-
-        Raises
-        ------
-        InputError
-            If the modes have no mass.
-        """
-        if self.mass is None:
-            raise InputError(
-                "BoreModes.vibrations needs modes with mass; make them of a ModalBush(..., dynamics=True)."
-            )
-        square, shapes = eigh(np.diag(self.stiffness), self.mass)
-        return np.sqrt(square), shapes
-
-    def participation(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Inertia of a moving frame on the modes, bush frame.
-
-        Returns
-        -------
-        P : ndarray, shape (3, k)
-            int rho Phi [kg].
-        Theta : ndarray, shape (3, k)
-            int rho X x Phi [kg m].
-        K : ndarray, shape (k, 3, 3)
-            int rho (X . Phi 1 - Phi X^T) [kg m].
-        """
-        assert self.moments is not None
-        mass, first = self.moments[:, 0], self.moments[:, 1:]
-        # by node: int rho Phi X^T
-        spread = np.einsum("kni,nj->kij", self.displacements, first)
-        linear = np.einsum("kni,n->ik", self.displacements, mass)
-        angular = np.stack([spread[:, b, a] - spread[:, a, b] for a, b in ((1, 2), (2, 0), (0, 1))])
-        return linear, angular, np.trace(spread, axis1=1, axis2=2)[:, None, None] * np.eye(3) - spread
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Radial displacement of the bore at the grid theta x z for unit coordinates, shape (len(theta), len(z), k)."""
@@ -190,45 +130,8 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
 
     shapes: Shapes = {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",)}
     data = cached_arrays("bush_modes", described, {**shapes, "error": ()}, compute)
-    static = BoreModes(
+    return BoreModes(
         mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
-    )
-    if not bush.dynamics:
-        return static
-    content = described + repr((bush.material.density, *dynamic.VIBRATION_SETTINGS)).encode()
-    data = cached_arrays(
-        "bush_vibrations",
-        content,
-        {**shapes, "mass": ("m", "m"), "moments": (len(mesh.nodes), 4)},
-        lambda: dynamic.vibration_modes(bush.solid(mesh), static.displacements, static.stiffness),
-    )
-    modes = BoreModes(
-        mesh=mesh,
-        displacements=np.concatenate((static.displacements, data["displacements"])),
-        stiffness=np.concatenate((static.stiffness, data["stiffness"])),
-        error=static.error,
-        mass=data["mass"],
-        moments=data["moments"],
-    )
-    return _with_body_forces(bush, modes, content) if bush.body_forces else modes
-
-
-def _with_body_forces(bush: ModalBush, modes: BoreModes, content: bytes) -> BoreModes:
-    """The modes with mass, which ``content`` determines, and what they lack of the responses to body forces."""
-    mesh, mass = modes.mesh, modes.mass
-    assert mass is not None
-    data = cached_arrays(
-        "bush_body_forces",
-        content + repr(dynamic.BODY_FORCE_SETTINGS).encode(),
-        {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",), "mass": ("k", "m")},
-        lambda: dynamic.body_force_modes(bush.solid(mesh), modes.displacements, modes.stiffness, bush.tilted),
-    )
-    rows = data["mass"]
-    return replace(
-        modes,
-        displacements=np.concatenate((modes.displacements, data["displacements"])),
-        stiffness=np.concatenate((modes.stiffness, data["stiffness"])),
-        mass=np.block([[mass, rows[:, : len(mass)].T], [rows]]),
     )
 
 
@@ -243,9 +146,18 @@ def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
     return b"".join([repr((*described, *films.SETTINGS)).encode(), *stored])
 
 
+def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperLU]:
+    """Free coordinates (3 n,) with the outer surface held, their stiffness at rest, and its factor."""
+    mesh = solid.mesh
+    free = np.ones(3 * len(mesh.nodes), dtype=bool)
+    free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
+    K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
+    return free, K, sparse_factor(K)
+
+
 def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
     """Compute the modes of a bush on its mesh under a film: one factorisation, one solution per pressure."""
-    free, _, factor = dynamic.held_stiffness(bush.solid(mesh))
+    free, _, factor = held_stiffness(bush.solid(mesh))
     surface = FilmSurface(mesh.bore, film_points(mesh.bore, length), length, np.eye(3))
     places = (3 * mesh.bore.nodes[:, None] + np.arange(3)).ravel()
 

@@ -23,7 +23,6 @@ BUSHES = {
     "rigid": None,
     "liner": ehd.ElasticLiner(thickness=5e-4, youngs_modulus=1e9),
     "modal": MODAL,
-    "dynamic": dataclasses.replace(MODAL, dynamics=True),
     "nodal": NODAL,
     "modal tetrahedra": dataclasses.replace(MODAL, mesh=TETS, quadrature=None),
     "nodal tetrahedra": dataclasses.replace(NODAL, mesh=TETS, quadrature=None),
@@ -153,7 +152,7 @@ def test_weight_of_a_free_bush_is_its_mass_times_gravity(measured):
     )
 
 
-@pytest.mark.parametrize("kind", ["rigid", "modal", "dynamic"])
+@pytest.mark.parametrize("kind", ["rigid", "modal"])
 def test_gravity_of_a_bush_whose_mass_is_the_housings_is_refused(kind):
     with pytest.raises(ehd.InputError, match=r"bushGravity.*'big end'"):
         pair(BUSHES[kind], "Rxyz", bushGravity=GRAVITY)

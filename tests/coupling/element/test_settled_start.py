@@ -92,17 +92,6 @@ def test_modes_start_in_balance_at_the_temperature_of_the_run(thermal, closure):
     assert peak[:10].max() < 1.5 * peak[0]
 
 
-@pytest.mark.parametrize("thickness", [3e-3, 5e-3])
-def test_dynamic_modes_that_lack_nothing(thickness):
-    """Body forces, and vibrations, whose responses the static modes hold already."""
-    mesh = ehd.HollowCylinder(inner_radius=R, thickness=thickness, length=L, axial=2, radial=1, circumferential=24)
-    bush = ehd.ModalBush(mesh=mesh, material=STEEL, tolerance=0.2, dynamics=True)
-    bearing = ehd.JournalBearing(
-        journal_radius=R, length=L, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.02), bush=bush
-    )
-    assert ehd.steady(bearing, speed=SPEED, eccentricity_ratio=0.5).status is ehd.Status.CONVERGED
-
-
 ENDS = [[0, 0, -0.05], [0, 0, 0.05]]
 
 

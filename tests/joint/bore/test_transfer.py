@@ -12,8 +12,7 @@ from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore
 from exudyn_ehd.joint.bore.transfer import vertex_means
 from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.loads import pressure_loads
-from exudyn_ehd.solid.modes.dynamic import held_stiffness
-from exudyn_ehd.solid.modes.static import bore_modes
+from exudyn_ehd.solid.modes.static import bore_modes, held_stiffness
 from exudyn_ehd.solid.unrolled import Unrolled
 from tests.solid_tetrahedra import tetrahedra
 

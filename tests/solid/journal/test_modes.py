@@ -189,7 +189,6 @@ def test_films_and_bushes_that_do_not_know_it():
     for bush in (
         ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10),
         ehd.ANCFBush(mesh=cylinder, material=STEEL),
-        ehd.ModalBush(mesh=cylinder, material=STEEL, dynamics=True),
     ):
         with pytest.raises(ehd.InputError, match=rf"rigid bore or a ModalBush.*bush={type(bush).__name__}"):
             bearing(pin(), bush=bush)

@@ -7,7 +7,7 @@ from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.solid.linear.supernodal import SupernodalFactor, mesh_factor, sparse_factor
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.modes.dynamic import held_stiffness
+from exudyn_ehd.solid.modes.static import held_stiffness
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 
 
