@@ -21,7 +21,8 @@ without a kink, as ruptured films do. The candidates are
 
     q = {1, cos(n theta), sin(n theta)} P_l(zeta) (1 - zeta^2),   n <= N, l <= L,
 
-with Legendre's polynomials P_l, and uniform and axially linear pressures, which pressurised ends need.
+with Legendre's polynomials P_l, uniform and axially linear pressures, which pressurised ends need, and where it moves
+the bore a uniform traction around it, as the film's shear is.
 
 The number of modes is the smallest one whose error is within the tolerance. The error is that of the radial
 displacement in the root mean square over the film's surface, between the mesh's nodes too, the largest one under films
