@@ -24,7 +24,7 @@ from exudyn_ehd.storage import cached_arrays
 FORMAT = 4
 # Elements through the wall and under the film, and waves around of the search; from this tolerance on the second set
 # does. Compliance of a solid pin off by 2e-4 at 8 waves around and 5e-3 at 24, by 6e-3 at 8 of the second set.
-FINE, COARSE, COARSE_FROM = (8, 16, films.LARGEST_WAVE), (5, 8, 12), 0.1
+FINE, COARSE, COARSE_FROM = (8, 16, films.LARGEST_WAVE), (5, 8, 20), 0.1
 # Growth of the elements inwards and away from the film.
 GROWTH_INWARDS, GROWTH_OUTWARDS = 1.25, 1.8
 # Angles at which sampled films are taken apart into waves.
