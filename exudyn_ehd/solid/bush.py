@@ -142,7 +142,7 @@ class ModalBush(_Solid):
         radius, 3e9 to 2e11 Pa, aligned and tilted) peak pressure and minimum film thickness are within 0.6 % of the
         nodal bush's, on a foot within 0.9 % (39 to 133 modes aligned, 66 to 147 tilted). The largest error under 600
         random films with ratios of 0.5 to 0.93 is 0.67 to 1.5 of the error that `BoreModes.error` tells, for 9 bushes.
-        Under films on round bores it is at most 1.1 of it at 0.9, 1.4 at 0.93 and 1.9 at 0.95; aligned at most 1.0 at
+        Under films on round bores it is at most 1.1 of it at 0.9, 1.4 at 0.93 and 1.9 at 0.95; aligned at most 1.2 at
         0.95.
     tilted : bool
         False leaves out the modes that are odd in z: for journals that stay parallel, others are warned of. A bush

@@ -57,6 +57,8 @@ from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.status import InputError
 
+# Of the choice of modes: raise it with every change of what follows, so that files of older modes are not taken.
+FORMAT = 5
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
 # Films of the set and those that measure the error: eccentricity ratios; slopes and waves of the gap (shares of the
 # gap left at the loaded side); phases of both (rad, from the direction of the eccentricity); numbers of waves; crowns
@@ -95,23 +97,6 @@ PAIR = 1e-3
 FIT = 256, 64
 # Least number of points around and along on the film's surface: beyond the orders of the pressures.
 AROUND, ALONG = 144, 16
-SETTINGS = (
-    LARGEST_WAVE,
-    LARGEST_AXIAL,
-    SET,
-    MEASURE,
-    (*DIRECTIONS,),
-    BEYOND,
-    LEAST_SHARE,
-    WAVE_WEIGHT,
-    WAVY,
-    DEPENDENT,
-    CERTAIN,
-    PAIR,
-    ODD,
-    SMALLEST_TWIST,
-    FIT,
-)
 
 
 class FilmSurface:

@@ -37,8 +37,6 @@ from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import PlausibilityWarning, warn_user
 from exudyn_ehd.storage import Shapes, cached_arrays
 
-# Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
-FORMAT = 5
 # Elements around a bore, of which fewer are warned of: on 8 the minimum film thickness is 3 to 9 % off.
 FEWEST_AROUND = 12
 
@@ -144,11 +142,11 @@ def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
     """Everything that determines the modes."""
     material, quadrature = bush.material, bush.quadrature
     assert quadrature is not None
-    described = (FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, length)
+    described = (films.FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, length)
     surfaces = (mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes)
     arrays = (mesh.nodes, mesh.elements, *surfaces, quadrature.points, quadrature.weights)
     stored = (repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)
-    return b"".join([repr((*described, *films.SETTINGS)).encode(), *stored])
+    return b"".join([repr(described).encode(), *stored])
 
 
 def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperLU]:
