@@ -131,7 +131,7 @@ class FilmSurface:
         self.theta, z, self.weight = points
         self.zeta = 2.0 * z / length
         cos, sin, values = np.cos(self.theta), np.sin(self.theta), faces.interpolation(self.theta, z)
-        normal, tangent = np.moveaxis([[cos, sin, 0.0 * z], [-sin, cos, 0.0 * z]], 1, 2) @ frame.T
+        normal, tangent = np.moveaxis(np.array([[cos, sin, 0.0 * z], [-sin, cos, 0.0 * z]]), 1, 2) @ frame.T
         self.radial: csr_matrix = directed(values, normal)
         self.twist = np.asarray(directed(values, tangent).T @ self.weight[:, None])
         self._root = np.sqrt(self.weight)[:, None]
