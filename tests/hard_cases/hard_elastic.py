@@ -47,9 +47,10 @@ def very_stiff():
     return run
 
 
-# 7.1 iterations a step, 7 of 260 steps refused. On modes with tolerances of 0.02 and 0.005 it is 7.0 and 7.2, and 9 and
-# 11 refused: the active set of a bore that moves by more than the clearance takes its time, Newton ends quadratically.
-@hard_case("very soft bush, E = 1e6 Pa", rejected=8, newton=7.5, slow=True)
+# 6.7 iterations a step, 9 of 280 steps refused. On modes with tolerances of 0.2, 0.05 and 0.02 it is 6.6, 6.9 and 7.3,
+# and 8, 9 and 8 refused; the minimum film thickness of the run is 20.9 to 21.7 um on all four. The active set under a
+# bore that moves by more than the clearance takes its time; Newton ends quadratically.
+@hard_case("very soft bush, E = 1e6 Pa", rejected=10, newton=7.0, slow=True)
 def very_soft():
     """Softer than rubber: the bore deflects by more than the clearance, and its delay keeps 2 kg stable."""
     load = 20.0

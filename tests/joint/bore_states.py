@@ -12,6 +12,17 @@ BUSHES = {
     "modal": ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2),
     "nodal": ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
 }
+_MESH = CYLINDER.mesh()
+FOOT = ehd.ModalBush(
+    mesh=ehd.mesh_from_arrays(
+        _MESH.nodes,
+        _MESH.elements,
+        bore_radius=0.03,
+        held=lambda x: (np.hypot(*x[:, :2].T) > 0.0499) & (x[:, 0] > 0.03),
+    ),
+    material=STEEL,
+    tolerance=0.2,
+)
 OPTIONS = {
     "swift": {},
     "line in its cells": {"cavitation": ehd.SwiftStieber(line_in_cells=True)},

@@ -33,6 +33,8 @@ from exudyn_ehd.solid.modes.static import BoreModes
 
 # Singular values of the shapes' courses along z, over the largest one, that count as round-off.
 ROUNDING = 1e-13
+# Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
+TURNED = 1e-6
 _NO_PLACES, _NO_VALUES = np.zeros(0, dtype=np.int32), np.zeros(0)
 
 
@@ -42,6 +44,10 @@ class Bore(Protocol):
     @property
     def size(self) -> int:
         """k, the number of coordinates."""
+
+    @property
+    def twist(self) -> np.ndarray | None:
+        """Loads (k,) of a moment of 1 Nm of the film about the axis, 1/m; None: none."""
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m) for coordinates or rates q (k,)."""
@@ -117,6 +123,8 @@ class ModalBore:
         Number of the bore's modes.
     shapes : (n m, k) array
         S.
+    twist : (k,) array or None
+        As in `Bore`. A reduced body gets the film's moment by the mean motion of its bore.
     """
 
     def __init__(
@@ -126,6 +134,11 @@ class ModalBore:
         self.grid_shape = grid.shape
         self.stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
         self.own = 0 if modes is None else modes.count
+        self.twist = None
+        if isinstance(modes, BoreModes):
+            turned = modes.twist(2.0 * float(grid.z[-1]) * grid.reference_length)
+            if np.abs(turned).max() * grid.reference_length > TURNED:
+                self.twist = np.concatenate((turned, np.zeros(self.size - self.own)))
         shapes = []
         if modes is not None:
             places = _on_lines(grid, grid.z)
@@ -252,6 +265,7 @@ class NodalBore:
         self.surface, self.values = surface, vertex_means(surface, grid)
         self.columns = by_columns(self.values, grid)
         self.shapes: csr_matrix = directed(self.values, np.stack([np.cos(theta), np.sin(theta)], axis=1), 2)
+        self.twist = None
 
     @property
     def size(self) -> int:

@@ -177,7 +177,7 @@ class TurningModel(ElasticBearingModel):
         minimum_gap: float,
         film: SolvedFilm | None,
     ) -> TurningEvaluation:
-        waves = self._bore_state(journal, None, None) if film is None or film.bore is None else film.bore
+        waves = self._bore_state(journal, None, None, wrench) if film is None or film.bore is None else film.bore
         (T, _, _), given, k = self._turn, self._given, self.size
         moment = float(waves.load @ self.turning.turned(waves.coordinates))
         q, q_t = given[MOTION_SIZE : MOTION_SIZE + k], given[MOTION_SIZE + k :]

@@ -4,8 +4,9 @@ The motion (10,) of the rigid surfaces is followed by the bore's coordinates and
 
     motion = [x, y, ..., omega, w, q_1 .. q_k, dq_1/dt .. dq_k/dt];
 
-the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q. The bush resists q outside of
-this model; only `evaluate_steady` knows its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
+the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q, with those of the film's moment
+on a bush that it turns (`exudyn_ehd.solid.modes.static`). The bush resists q outside of this model; only
+`evaluate_steady` knows its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
 
 An elastic journal's coordinates follow the bore's: what its surface recedes by opens the gap alike, S = [S_bore,
 S_journal]. A body of revolution answers a pressure that stands by a displacement that stands, whatever its spin: its
@@ -256,13 +257,17 @@ class ElasticBearingModel(BearingModel):
         smallest = add_gap(height, rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
         return float(smallest), extra
 
-    def _bore_state(self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None) -> BoreState:
+    def _bore_state(
+        self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None, wrench: np.ndarray
+    ) -> BoreState:
         k = self.bore.size
         load = np.full(k, np.nan)
         if oil is not None:
             load = self.bore.load(self._pressure_field(oil, pressing))
             if self._end_load is not None:
                 load += self._end_load
+            if self.bore.twist is not None:
+                load -= self.bore.twist * wrench[5]
         q, q_t = journal.motion[MOTION_SIZE : MOTION_SIZE + k], journal.motion[MOTION_SIZE + k :]
         whole, own = self._term.displacement, self.bearing.journal is not None
         part = self.bore.of_journal(q / self.bearing.radial_clearance) if own else 0.0
@@ -287,7 +292,7 @@ class ElasticBearingModel(BearingModel):
         minimum_gap: float,
         film: SolvedFilm | None,
     ) -> ElasticEvaluation:
-        bore = self._bore_state(journal, None, None) if film is None or film.bore is None else film.bore
+        bore = self._bore_state(journal, None, None, wrench) if film is None or film.bore is None else film.bore
         return ElasticEvaluation(status, journal.motion, wrench, iterations, minimum_gap, film, self, bore)
 
     def evaluate(

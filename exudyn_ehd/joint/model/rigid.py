@@ -270,7 +270,7 @@ class BearingModel:
             oil,
             loads,
             c * smallest,
-            self._bore_state(journal, oil, pressing),
+            self._bore_state(journal, oil, pressing, loads.wrench),
             p.evaluations.count,
             walls,
         )
@@ -288,7 +288,7 @@ class BearingModel:
         return Evaluation(status, journal.motion, wrench, iterations, minimum_gap, film, self)
 
     def _bore_state(
-        self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None
+        self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None, wrench: np.ndarray
     ) -> BoreState | None:
         """A flexible bore under this film; None for a rigid one."""
         return None

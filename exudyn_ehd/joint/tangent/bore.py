@@ -86,6 +86,8 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
             block[6:] += contact * (by_gap / film.parts.bearing.radial_clearance)
     if film.pressing is not None:
         out[6:, :4] -= _contact_columns(film, bore, film.pressing)
+    if bore.twist is not None:
+        out[6:] -= np.multiply.outer(bore.twist, out[5])
     return out
 
 

@@ -105,7 +105,7 @@ class ElasticJournal:
     span: tuple[float, float]
     held: HeldEnds | HeldBands | None
     inner_radius: float = 0.0
-    tolerance: float = 0.02
+    tolerance: float = 0.05
     tilted: bool = True
 
     def __post_init__(self) -> None:

@@ -20,11 +20,11 @@ from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
 from exudyn_ehd.solid.modes import films
 from exudyn_ehd.storage import cached_arrays
 
-# Of the algorithm, as `exudyn_ehd.solid.modes.static.FORMAT`.
-FORMAT = 3
+# Of the algorithm, as `exudyn_ehd.solid.modes.films.FORMAT`, which counts here too.
+FORMAT = 4
 # Elements through the wall and under the film, and waves around of the search; from this tolerance on the second set
 # does. Compliance of a solid pin off by 2e-4 at 8 waves around and 5e-3 at 24, by 6e-3 at 8 of the second set.
-FINE, COARSE, COARSE_FROM = (8, 16, films.LARGEST_WAVE), (5, 8, 12), 0.05
+FINE, COARSE, COARSE_FROM = (8, 16, films.LARGEST_WAVE), (5, 8, 20), 0.1
 # Growth of the elements inwards and away from the film.
 GROWTH_INWARDS, GROWTH_OUTWARDS = 1.25, 1.8
 # Angles at which sampled films are taken apart into waves.
@@ -97,7 +97,7 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
     shapes = {"waves": ("k",), "phases": ("k",), "profiles": ("k", "m"), "stiffness": ("k",), "error": ()}
     data = cached_arrays(
         "journal_modes",
-        repr((*described, *choice, ANGLES, *films.SETTINGS)).encode(),
+        repr((*described, *choice, ANGLES, films.FORMAT)).encode(),
         shapes,
         lambda: _Reduction(journal, radius, length).modes(),
     )

@@ -14,10 +14,16 @@ import exudyn_ehd as ehd
 from tests.sampling import sample
 
 NODAL = ehd.ANCFBush(mesh=CYLINDER, material=STEEL)
+ROUND = CYLINDER.mesh()
+FOOT = ehd.mesh_from_arrays(
+    ROUND.nodes, ROUND.elements, bore_radius=0.03, held=lambda x: (np.hypot(*x[:, :2].T) > 0.0499) & (x[:, 0] > 0.03)
+)
 BUSHES = {
     "rigid": None,
     "liner": ehd.ElasticLiner(thickness=5e-4, youngs_modulus=1e9),
     "modal": ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2),
+    # the film's moment turns it
+    "foot": ehd.ModalBush(mesh=FOOT, material=STEEL, tolerance=0.2),
     "nodal": NODAL,
     "damped": dataclasses.replace(NODAL, damping=ehd.Rayleigh(stiffness_time=2e-7)),
 }
@@ -46,6 +52,7 @@ def slow(*case):
         ("rigid", True, 80, 3.0),
         slow("modal", False, 40, 3.0),
         ("modal", True, 40, 3.0),
+        slow("foot", True, 40, 3.0),
         slow("nodal", False, 40, 3.0),
         slow("nodal", True, 40, 3.0),
         slow("damped", True, 40, 3.0),

@@ -72,9 +72,12 @@ IGNORED = pytest.mark.filterwarnings(
 
 
 @IGNORED
-@pytest.mark.parametrize("seed", [1, 4, 7, 15])
+@pytest.mark.parametrize("seed", [1, 3, 4, 7, 15])
 def test_films_on_modal_bushes_are_those_on_the_mesh(seed):
-    """Peak and minimum film thickness within 1 %: a long bush, one held at its end, a seat, a plain one."""
+    """Peak and minimum film thickness within 1 %: a long bush, a foot, one held at its end, a seat, a plain one.
+
+    On the foot the film's moment turns the bush: without it the peak is 1.9 % off.
+    """
     _, errors = compare(seed)
     assert np.abs(errors).max() < 0.01
 
@@ -82,16 +85,12 @@ def test_films_on_modal_bushes_are_those_on_the_mesh(seed):
 @IGNORED
 @pytest.mark.slow
 def test_films_on_many_modal_bushes_are_those_on_the_mesh():
-    """Within 1 %; on a foot of 1.1 rad within 2 %, as the film's shear, which modes leave out, rocks it.
-
-    A third of the meshes are tetrahedra. Apart from the draw, 10 bushes 3 to 4 times as long as their film were within
-    0.1 % of the peak and 0.5 % of the minimum film thickness, 10 on tetrahedra within 0.4 and 0.7 %, on a foot 1.4 %.
-    """
+    """Within 1 %; a third of the meshes are tetrahedra."""
     found = [compare(seed) for seed in range(150)]
     for kind in KINDS:
         errors = np.array([e for k, e in found if k == kind and e is not None])
         assert len(errors) > 20
-        assert np.abs(errors).max() < (0.02 if kind == "foot" else 0.01), kind
+        assert np.abs(errors).max() < 0.01, kind
 
 
 @pytest.mark.parametrize(
@@ -100,7 +99,7 @@ def test_films_on_many_modal_bushes_are_those_on_the_mesh():
 def test_told_error_is_that_under_films_of_all_directions(seed):
     """Solutions for films that the choice of modes does not know, at places of its own between the nodes.
 
-    Their ratios are 0.5 to 0.8, with slopes, waves and crowns from none to the measuring films'. The largest error of
+    Their ratios are 0.5 to 0.93, with slopes, waves and crowns from none to the measuring films'. The largest error of
     them is 0.67 to 1.5 of the told one.
     """
     _, mesh, material, bearing, pose = draw(seed)
@@ -114,7 +113,7 @@ def test_told_error_is_that_under_films_of_all_directions(seed):
     free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
     loads, pressures = np.zeros((mesh.nodes.size, FILMS)), np.zeros((T.size, FILMS))
     for k in range(FILMS):
-        e, phi, decay = rng.uniform(0.5, 0.8), rng.uniform(0.0, 2.0 * np.pi), 2.0 * 10.0 ** rng.uniform(0.0, 1.0)
+        e, phi, decay = rng.uniform(0.5, 0.93), rng.uniform(0.0, 2.0 * np.pi), 2.0 * 10.0 ** rng.uniform(0.0, 1.0)
         slope = rng.uniform(0.0, 0.5) * (1.0 - e) * bush.tilted * np.exp(1j * rng.uniform(0.0, 2.0 * np.pi))
         kind = rng.integers(3)
         slope, wave = slope * (kind == 0), (kind == 1) * rng.uniform(0.0, 0.35) * (1.0 - e)

@@ -34,7 +34,7 @@ def bearing(journal, **options):
     return ehd.JournalBearing(**(given | options))
 
 
-@pytest.mark.parametrize(("tolerance", "measured"), [(0.02, {8: 2e-4, 24: 5.5e-3}), (0.08, {8: 6e-3})])
+@pytest.mark.parametrize(("tolerance", "measured"), [(0.05, {8: 2e-4, 24: 5.5e-3}), (0.1, {8: 6e-3})])
 def test_elements_through_a_solid_pin_yield_as_closed_forms_do(tolerance, measured):
     """Errors that `exudyn_ehd.solid.journal.modes` names, in plane strain on one row of elements with many along z."""
     r = _Reduction(pin(tolerance=tolerance), RADIUS, LENGTH).body.r
@@ -53,7 +53,7 @@ FILMS, ANGLES, BEYOND = 200, 256, (2, 4, 6, 8, 10)
 
 def random_film(rng, theta, zeta):
     """Pressure of a film on a round, tilted, wavy or crowned surface, as the bushes' told error is tested with."""
-    e, phi, decay = rng.uniform(0.5, 0.8), rng.uniform(0.0, 2.0 * np.pi), 2.0 * 10.0 ** rng.uniform(0.0, 1.0)
+    e, phi, decay = rng.uniform(0.5, 0.93), rng.uniform(0.0, 2.0 * np.pi), 2.0 * 10.0 ** rng.uniform(0.0, 1.0)
     sizes = np.diag([rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.35), rng.uniform(-0.4, 0.6)])[rng.integers(3)]
     (slope, wave, crown), (turn, psi) = sizes * (1.0 - e), rng.uniform(0.0, 2.0 * np.pi, 2)
     gap = 1.0 + e * np.cos(theta - phi) + slope * zeta * np.cos(theta - turn) + wave * np.cos(3.0 * theta - psi)
@@ -79,18 +79,18 @@ def square(weight, values):
 @pytest.mark.parametrize(
     ("held", "inner", "tolerance"),
     [
-        ("ends", 0.0, 0.08),
+        ("ends", 0.0, 0.1),
         *(
             pytest.param(held, inner, tolerance, marks=pytest.mark.slow)
-            for held, inner, tolerance in itertools.product(HELD, (0.0, 0.005), (0.08, 0.02))
-            if (held, inner, tolerance) != ("ends", 0.0, 0.08)
+            for held, inner, tolerance in itertools.product(HELD, (0.0, 0.005), (0.1, 0.05))
+            if (held, inner, tolerance) != ("ends", 0.0, 0.1)
         ),
     ],
 )
 def test_told_error_is_that_of_the_elements_under_films(held, inner, tolerance):
     """The told error against the elements', over |v| max(|v| / |u|, 0.1) of `exudyn_ehd.solid.modes.films`.
 
-    The largest error of the films is 0.67 to 1.5 of the told one; with the few modes of the tolerance 0.08, of which
+    The largest error of the films is 0.67 to 1.5 of the told one; with the few modes of the tolerance 0.1, of which
     pairs take off more at once, down to half of it.
     """
     journal = pin(held, inner_radius=inner, tolerance=tolerance)
@@ -125,7 +125,7 @@ def test_told_error_is_that_of_the_elements_under_films(held, inner, tolerance):
 @pytest.mark.parametrize("held", HELD)
 def test_even_pressures_displace_the_modes_as_they_displace_the_elements(held):
     """Those of pressurised ends, which the modes hold but for 1e-3."""
-    journal = pin(held, tolerance=0.08)
+    journal = pin(held, tolerance=0.1)
     found, reduced = journal_modes(journal, RADIUS, LENGTH), _Reduction(journal, RADIUS, LENGTH)
     for shape in (np.ones_like(reduced.zeta), 1.0 + 0.5 * reduced.zeta):
         load = reduced.body.load(0, (shape * reduced.loaded)[None])
@@ -150,7 +150,7 @@ def test_films_of_the_default_tolerance(held, inner):
     """Aligned, within 0.1 % of the peak and 0.5 % of the thinnest film, as solid/README.md says."""
     films = [
         ehd.steady(bearing(pin(held, inner_radius=inner, tolerance=tolerance)), speed=400.0, eccentricity_ratio=0.9)
-        for tolerance in (0.02, 0.005)
+        for tolerance in (0.05, 0.01)
     ]
     assert films[0].peak_pressure == pytest.approx(films[1].peak_pressure, rel=1e-3)
     assert films[0].minimum_gap == pytest.approx(films[1].minimum_gap, rel=5e-3)

@@ -56,7 +56,11 @@ def cylinder(axial: int, radial: int, circumferential: int) -> HollowCylinder:
 
 
 def modal(tolerance: float, tilted: bool) -> ModalBush:
-    """Modes of 4 x 2 x 40 elements."""
+    """Modes of 4 x 2 x 40 elements.
+
+    With the tolerance 0.1 peak pressure and minimum film thickness are within 0.5 % of those with 0.005, up to an
+    eccentricity ratio of 0.93.
+    """
     return ModalBush(mesh=cylinder(4, 2, 40), material=STEEL, tolerance=tolerance, tilted=tilted)
 
 
@@ -84,10 +88,10 @@ CASES: dict[str, Case] = {
         steps=60,
         tilted=False,
     ),
-    "`ModalBush`": Case(bush=modal(0.04, False), steps=60, tilted=False),
-    "`ModalBush`, tilted": Case(bush=modal(0.03, True), steps=60, tilted=True, base=RIGID_TILTED),
+    "`ModalBush`": Case(bush=modal(0.1, False), steps=60, tilted=False),
+    "`ModalBush`, tilted": Case(bush=modal(0.1, True), steps=60, tilted=True, base=RIGID_TILTED),
     "`ModalBush`, tilted, Exudyn's default solver": Case(
-        bush=modal(0.03, True), steps=60, tilted=True, base=RIGID_TILTED, solver=exu.LinearSolverType.EXUdense
+        bush=modal(0.1, True), steps=60, tilted=True, base=RIGID_TILTED, solver=exu.LinearSolverType.EXUdense
     ),
     "`ANCFBush`, 4 x 1 x 24 elements": Case(
         bush=ANCFBush(mesh=cylinder(4, 1, 24), material=STEEL), steps=20, tilted=True, base=RIGID_TILTED

@@ -94,7 +94,7 @@ def test_bushes():
     for name in list(cases)[:3]:
         cost = known[name, bushes.STEP_TIME]
         assert cost.seconds > 0.0 and 1.0 <= cost.iterations < 20.0
-    assert known["`ModalBush`", bushes.STEP_TIME].modes == 53
+    assert known["`ModalBush`", bushes.STEP_TIME].modes == 48
     assert known["`ModalBush`", bushes.STEP_TIME].base == bushes.RIGID
     assert known["`ModalBush`", bushes.JACOBIAN].seconds > 0.0
     assert known["soft", bushes.STEP_TIME].failure
