@@ -18,7 +18,7 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_one
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_terms
 from exudyn_ehd.film.cavitation.states import move_states, set_states, settle_states, start_states
-from exudyn_ehd.film.cavitation.steady_oil import is_balanced
+from exudyn_ehd.film.cavitation.steady_oil import imbalance
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
 from exudyn_ehd.film.reynolds.lagging_void import hold_back
 
@@ -27,6 +27,9 @@ MOST_STEPS = 60
 LEFT, SETTLED = 1e-13, 1e-7
 # Share that steps with an older factor have to shrink to, for another one: more takes longer than a factor of its own.
 REUSABLE = 0.01
+# Balance of a vertex over the largest flow: more is no rounding. Over the largest flow that drives the film: more is
+# that of a singular matrix.
+EVEN, BALANCED = 1e-12, 1e-8
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.
 LARGEST_DEFICIT = 1e-6
@@ -88,19 +91,22 @@ def solve_oil(film, late, b, since, pc, curve, in_cells, start, factor, x, full,
         curve_terms(film, b, curve)
     if not known:
         start_states(film, curve, full, u)
-    flat, own, done, last, exact = rest.reshape(-1), False, False, LEFT, False
+    flat, own, done, last, drift = rest.reshape(-1), False, False, LEFT, 0.0
     for step in range(MOST_STEPS):
         set_states(film, carried, pc, curve, full, u, P, fill)
         film_balance(P, fill, None, terms, rest)
         if done:
-            sound = is_balanced(film, terms, P, rest, pc) and settle_states(film, full, pc, P, fill) > -LARGEST_DEFICIT
-            return sound, step, exact, count, width
+            of_drive, of_flows = imbalance(film, terms, P, rest, pc)
+            if of_flows <= EVEN:
+                sound = settle_states(film, full, pc, P, fill) > -LARGEST_DEFICIT and of_drive <= BALANCED
+                return sound, step, own and drift <= LEFT, count, width
+            ready = own
         fresh = not ready
         if fresh:
             ok, count, width = factor_oil(film, terms, curve, full, fill, factor)
             if not ok:
                 return False, step + 1, False, count, width
-            own = True
+            own, drift = True, 0.0
         for r in range(count):
             x[r] = -flat[order[r]]
         solve_lu_one(dense_band(lower, count, width), dense_band(upper, count, width), inv_diag, count, width, x)
@@ -113,5 +119,5 @@ def solve_oil(film, late, b, since, pc, curve, in_cells, start, factor, x, full,
             # nobody knows how the first step's successors will shrink
             done = changes == 0 and moved * moved <= LEFT * last
             ready = changes == 0 and moved <= REUSABLE * (last if step > 0 else 1.0)
-        exact, last = own and bent <= LEFT, moved
+        drift, last = drift + bent, moved
     return False, MOST_STEPS, False, count, width

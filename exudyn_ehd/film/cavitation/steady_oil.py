@@ -24,8 +24,6 @@ from exudyn_ehd.status import Status
 # Pressure times the gap's square over the scaled speed, below which a vertex has none: a share of the Couette flow. A
 # wedge makes some of its eccentricity ratio, rounding some 1e-16. Larger values take slightly fed films for dry ones.
 NO_PRESSURE = 1e-9
-# Imbalance of a vertex over the largest flow that drives the film; larger ones are those of a singular matrix.
-BALANCED = 1e-8
 
 
 def status_of(s: FilmSystem, status: Status) -> Status:
@@ -52,18 +50,21 @@ def has_unfed_row(P, H, fixed, turns, pc):
 
 
 @njit(cache=True)
-def is_balanced(film, terms, P, balance, pc):
-    """Return whether the balances (n, m) of a film hold, measured by what drives it."""
-    worst = drive = 0.0
+def imbalance(film, terms, P, balance, pc):
+    """Return the largest balance (n, m) of an unknown vertex over the largest flow that drives the film, and over the
+    largest flow that it has."""
+    worst = drive = most = 0.0
     n, m = P.shape
     for i in range(n):
         for j in range(m):
-            stored = abs(terms.grow[i, j]) + abs(terms.kept[i, j])
-            flows = abs(film.fx[i, j]) + abs(film.fz[i, j]) + film.area[i, j] * stored
+            flows = abs(film.fx[i, j]) + abs(film.fz[i, j])
+            flows += film.area[i, j] * (abs(terms.grow[i, j]) + abs(terms.kept[i, j]))
+            conductance = max(film.kx[i, j], max(film.kz[i, j], film.kz[i, j - 1] if j > 0 else 0.0))
+            pressed = conductance * abs(P[i, j] - pc)
+            most = max(most, flows + pressed)
             if film.fixed[i, j]:
-                conductance = max(film.kx[i, j], max(film.kz[i, j], film.kz[i, j - 1] if j > 0 else 0.0))
-                flows += conductance * abs(P[i, j] - pc)
+                flows += pressed
             else:
                 worst = max(worst, abs(balance[i, j]) if np.isfinite(balance[i, j]) else np.inf)
             drive = max(drive, flows)
-    return worst <= BALANCED * drive
+    return worst / max(drive, 1e-300), worst / max(most, 1e-300)
