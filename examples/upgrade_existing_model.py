@@ -57,10 +57,9 @@ def before(mbs, ground, upper, lower, simulationSettings):
 
 def after(mbs, ground, upper, lower, simulationSettings):
     oil, wall = ehd.Lubricant(viscosity=0.4), ehd.RegularisedWall(onset=2e-6)
-    # the pins press on their bearings' ends: rows that lie closer together there
-    grid = ehd.FiniteLength(n_z=16, stretch=0.95)
-    sizes = {"journal_radius": 0.02, "length": 0.14, "radial_clearance": 40e-6}
-    film = {"bearing": ehd.JournalBearing(**sizes, lubricant=oil, contact=wall, film=grid), "axial": ehd.Held()}
+    size = {"journal_radius": 0.02, "length": 0.14, "radial_clearance": 40e-6}
+    fine = ehd.FiniteLength(n_z=16, stretch=0.95)  # the pins tilt: fine rows near the ends
+    film = {"bearing": ehd.JournalBearing(**size, lubricant=oil, contact=wall, film=fine), "axial": ehd.Held()}
     j1 = ehd.CreateLubricatedJoint(mbs, itemNumbers=[ground, upper], position=[0, 0, 0], axis=[0, 0, 1], **film)
     j2 = ehd.CreateLubricatedJoint(mbs, itemNumbers=[upper, lower], position=[LENGTH, 0, 0], axis=[1, 0, 0], **film)
     mbs.Assemble()

@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.cavitation.active_set import solve_active_set
 from exudyn_ehd.film.cavitation.line_newton import find_line
 from exudyn_ehd.film.cavitation.rupture_line import line_of
@@ -103,8 +102,6 @@ def _plain_film(motion, scale, known, sizes, last, at, mesh, weight, fields, set
     ``last``: whether there is a squeeze, whether pressures and factor are those of the film before, and that factor's
     size; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
-    motion, known, at, mesh, weight, fields = lend((motion, known, at, mesh, weight, fields))
-    sets, factor, x, out = lend((sets, factor, x, out))
     force, shear, radius, half_length, flow_x, cavity_shear = sizes
     squeeze, is_known, count, width = last
     pc = known[2]

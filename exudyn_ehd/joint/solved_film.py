@@ -52,7 +52,7 @@ class History:
         Scaled oil that the flows have brought there. Flows and mass balance to rounding; mass and content differ by
         what `exudyn_ehd.film.solvers.linear.FilmSolver.keep` says. No film depends on it.
     outflow : (3, n, m) array or None
-        What `exudyn_ehd.film.cavitation.lagging_void` has to know of the step (mass-conserving closures).
+        What `exudyn_ehd.film.reynolds.lagging_void` has to know of the step (mass-conserving closures).
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None

@@ -25,7 +25,7 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
-from exudyn_ehd.solid.linear.supernodal import sparse_factor
+from exudyn_ehd.solid.linear.solvers import sparse_factor
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points
 from exudyn_ehd.status import InputError, require_bool, require_number, require_vector

@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.cavitation.elrod_adams import film_terms
-from exudyn_ehd.film.reynolds.balance import film_balance
+from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE = 0.01, 2e-5

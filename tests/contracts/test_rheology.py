@@ -172,6 +172,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
     for model in (expected, make(cavitation=cavitation)):
         history, other = bare.initial_history(MOTION), model.initial_history(MOTION)
+        bare.forget()
         for _ in range(3):
             a, b = bare.evaluate(MOTION, history, STEP), model.evaluate(MOTION, other, STEP)
             np.testing.assert_array_equal(a.wrench, b.wrench)

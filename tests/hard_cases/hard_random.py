@@ -32,9 +32,8 @@ from collections.abc import Callable
 import numpy as np
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.cavitation.elrod_adams import film_terms
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
-from exudyn_ehd.film.reynolds.balance import film_balance
+from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.film.reynolds.links import vertex_balance
 from exudyn_ehd.joint.model.build import build_model
 
@@ -230,7 +229,10 @@ def balance_error(model):
     if s.line is not None:
         # what appears at the line, what a vertex without film has to lack for it to join, pressures above the cavity's
         out -= np.where(s.line.s < 1.0, 0.5 * s.line.f * (1.0 - s.line.s) ** 2, 0.0)
-        joins, peak = 0.5 * s.line.f, (P - y.cavity_pressure).max()
+        joins = 0.5 * s.line.f
+    if s.line is not None or closure.conserves_mass:
+        # pressures above the cavity's are the unknowns
+        peak = (P - y.cavity_pressure).max()
     flow = np.maximum(np.abs(y.fx), np.abs(np.roll(y.fx, 1, axis=0)))
     flow = np.maximum(flow, np.abs(y.kx * P) + np.abs(y.kx * np.roll(P, -1, axis=0)))
     flow = np.maximum(flow, np.abs(np.roll(y.kx * P, 1, axis=0)))

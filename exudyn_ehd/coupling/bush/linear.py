@@ -1,10 +1,10 @@
 """Linear equations of systems with meshes.
 
-Their factor: panels of the meshes, and dense what is left.
+Their factor: sparse of the meshes, dense of all the rest.
 
 With the coordinates b of meshes and r of all the rest, the iteration matrix is solved by
 
-    J_bb = L D L^T,    W = J_bb^-1 J_br,    S = J_rr - J_rb W,
+    W = J_bb^-1 J_br,    S = J_rr - J_rb W,
     y = J_bb^-1 f_b,   x_r = S^-1 (f_r - J_rb y),   x_b = y - W x_r.
 
 Meshes hardly change, bodies that turn do in every step. Where a mesh meets the rest in films only, W = 0 and S = J_rr,
@@ -32,9 +32,7 @@ from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.solid.linear.elimination import Elimination
-from exudyn_ehd.solid.linear.gmres import gmres
-from exudyn_ehd.solid.linear.supernodal import mesh_factor, sparse_factor
+from exudyn_ehd.solid.linear.solvers import SingleFactor, rough_factor, solve_by_products, sparse_factor
 
 # Coordinates and multipliers beside the meshes at most, which are solved for as dense.
 LARGEST_REST = 200
@@ -56,8 +54,6 @@ class SystemFactor:
         Coordinates of meshes; one factor of all where there are none, or much beside them.
     pivoting : float
         As in `sparse_factor`, of that one.
-    known : Elimination or None
-        Analysis of the meshes' matrix before.
 
     Raises
     ------
@@ -65,22 +61,15 @@ class SystemFactor:
         If the matrix is singular.
     """
 
-    def __init__(
-        self, system: csc_matrix, mesh: np.ndarray, *, pivoting: float, known: Elimination | None = None
-    ) -> None:
+    def __init__(self, system: csc_matrix, mesh: np.ndarray, *, pivoting: float) -> None:
         self.places, self.rest = np.flatnonzero(mesh), np.flatnonzero(~mesh)
         self.whole: SuperLU | None = None
-        self.analysis: Elimination | None = None
         if not len(self.places) or len(self.rest) > LARGEST_REST:
             self.whole = sparse_factor(system, pivoting=pivoting)
             self.nbytes, self.coupled = 12 * self.whole.nnz, True
             return
-        self.factor = factor = mesh_factor(_part(system, self.places), known)
-        if isinstance(factor, SuperLU):
-            self.nbytes = 12 * factor.nnz
-        else:
-            self.factor = rounded = factor.rounded(SINGLE)
-            self.nbytes, self.analysis = rounded.nbytes, factor.analysis
+        self.factor = factor = rough_factor(_part(system, self.places), SINGLE)
+        self.nbytes = factor.nbytes if isinstance(factor, SingleFactor) else 12 * factor.nnz
         # columns first: rows of compressed columns take twenty times as long
         along = system[:, self.rest][self.places]
         self.across = system[self.rest][:, self.places].tocsr()
@@ -137,8 +126,8 @@ class RecycledSolver:
         right: np.ndarray,
         tolerance: float,
         most: int,
-    ) -> tuple[list[np.ndarray], np.ndarray]:
-        """Directions (k of (n,)) and their weights (k,), whose sum is z.
+    ) -> np.ndarray:
+        """Return z (n,).
 
         Parameters
         ----------
@@ -155,15 +144,16 @@ class RecycledSolver:
         if len(self.V) != len(right):
             self.V = self.G = np.empty((len(right), 0))
 
-        def preconditioned(b: np.ndarray) -> np.ndarray:
-            tried.append(self._approximate(b))
-            answers.append(product(tried[-1]))
-            return answers[-1]
+        def recorded(z: np.ndarray) -> np.ndarray:
+            # scipy works on the arrays that it gives and gets
+            tried.append(z.copy())
+            answers.append(product(z))
+            return answers[-1].copy()
 
-        _, weights = gmres(preconditioned, right, tolerance, most)
+        z = solve_by_products(recorded, right, tolerance, most, self._approximate)
         if tried:
             self._learn(tried, answers)
-        return tried, weights
+        return z
 
     def _approximate(self, b: np.ndarray) -> np.ndarray:
         """M^-1 b."""

@@ -54,7 +54,6 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
-from exudyn_ehd.solid.linear.elimination import Elimination
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
@@ -247,7 +246,6 @@ class _Newton:
     reuse: FactorReuse
     run: SparseRun
     factor: SystemFactor | None = None
-    analysis: Elimination | None = None
     recycled: RecycledSolver = field(default_factory=RecycledSolver)
     step_size: float = 0.0
     baseline: int = 0
@@ -318,12 +316,9 @@ class _Newton:
         system = self.matrix.assemble(mbs, solver, index2=index2)
         constraints = self.matrix.constraints
         try:
-            self.factor = SystemFactor(
-                system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0, known=self.analysis
-            )
+            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0)
         except RuntimeError:
             return False
-        self.analysis = self.factor.analysis
         self.baseline = self.excess = 0
         self.run.jacobians += 1
         solver.it.newtonJacobiCount += 1
@@ -354,7 +349,7 @@ class _Newton:
         if not films:
             return d
         touched = np.unique(np.concatenate([places for places, _ in films]))
-        load, moves = np.zeros(len(d)), []
+        load = np.zeros(len(d))
 
         def forces(d: np.ndarray) -> np.ndarray:
             out = np.zeros(len(d))
@@ -365,14 +360,11 @@ class _Newton:
 
         def product(z: np.ndarray) -> np.ndarray:
             load[touched] = z
-            moves.append(factor.solve(load))
-            return z + forces(moves[-1])
+            return z + forces(factor.solve(load))
 
         wanted = FILM_TOLERANCE * float(np.linalg.norm(residual))
-        _, weights = self.recycled.solve(product, -forces(d), wanted, FILM_PRODUCTS)
-        for weight, move in zip(weights, moves, strict=True):
-            d += weight * move
-        return d
+        load[touched] = self.recycled.solve(product, -forces(d), wanted, FILM_PRODUCTS)
+        return d + factor.solve(load)
 
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,88 +10,24 @@ import numpy as np
 PAD = 6
 # First row of a whole matrix; numpy's integer, since numba compiles kernels anew for a plain 0.
 FIRST_ROW = np.int64(0)
-# Longest front of a cavity in rows of the grid: beyond, its columns cost more than they spare.
-FRONT_ROWS = 2
 
 
-class Transport(NamedTuple):
-    """Arrays of one factor of `exudyn_ehd.film.cavitation.cavity_transport`, for a grid of ``size = n m`` vertices.
+class OilUnknowns:
+    """Of a mass-conserving film, see `exudyn_ehd.film.cavitation.states`.
 
     Attributes
     ----------
-    shape : (6,) int array
-        Number of full vertices, of front vertices, columns of V, half-bandwidth of A, length of the lists K and R.
-    number : (n, m) int array
-        Unknown of a full vertex, else -1.
-    place : (n, m) int array
-        Place of a cavitated vertex along the flow, else -1.
-    along, across : (size,) int arrays
-        Place of the cavitated neighbour upstream in theta and in z, or -1.
-    by_along, by_across, inverse : (size,) arrays
-        U and 1 / D.
-    driven_from, driven_to, driven_by : (4 size,) arrays
-        K as a list: full unknown, place, conductance.
-    received_from, received_to, received_by : (2 size,) arrays
-        R and C as a list: unknown, front vertex, flux of a full film or conductance of a cut link.
-    front : (size,) int array
-        Full unknown of every front vertex, ascending.
-    band, diagonal : (size, >= 2 m + 6), (size,) arrays
-        Factor of A.
-    spread : (size * 2 (m + 2),) array
-        V, as (full vertices, columns).
-    loop : (2 (m + 2), 2 (m + 2)) array
-        Factor L U of I - G, unit L.
+    u : (n, m) array
+        The unknowns of the last solution.
+    slopes : (5, n m) array
+        Derivatives of flows and storage.
+    factored, exact : bool
+        Whether the factor is that of a film on these vertices, and whether of the last solution.
     """
 
-    shape: np.ndarray
-    number: np.ndarray
-    place: np.ndarray
-    along: np.ndarray
-    across: np.ndarray
-    by_along: np.ndarray
-    by_across: np.ndarray
-    inverse: np.ndarray
-    driven_from: np.ndarray
-    driven_to: np.ndarray
-    driven_by: np.ndarray
-    received_from: np.ndarray
-    received_to: np.ndarray
-    received_by: np.ndarray
-    front: np.ndarray
-    band: np.ndarray
-    diagonal: np.ndarray
-    spread: np.ndarray
-    loop: np.ndarray
-
-
-def transport_buffers(n: int, m: int, band: np.ndarray) -> Transport:
-    """Buffers for a grid of n columns and m rows; ``band`` (n m, >= 2 m + 6) is shared."""
-    size, longest = n * m, FRONT_ROWS * (m + 2)
-
-    def places(*shape: int) -> np.ndarray:
-        return np.zeros(shape, dtype=np.int64)
-
-    return Transport(
-        shape=places(6),
-        number=places(n, m),
-        place=places(n, m),
-        along=places(size),
-        across=places(size),
-        by_along=np.zeros(size),
-        by_across=np.zeros(size),
-        inverse=np.zeros(size),
-        driven_from=places(4 * size),
-        driven_to=places(4 * size),
-        driven_by=np.zeros(4 * size),
-        received_from=places(2 * size),
-        received_to=places(2 * size),
-        received_by=np.zeros(2 * size),
-        front=places(size),
-        band=band,
-        diagonal=np.zeros(size),
-        spread=np.zeros(size * longest),
-        loop=np.zeros((longest, longest)),
-    )
+    def __init__(self, n: int, m: int) -> None:
+        self.u, self.slopes = np.zeros((n, m)), np.zeros((5, n * m))
+        self.factored = self.exact = False
 
 
 class Workspace:
@@ -103,9 +38,8 @@ class Workspace:
     active : (n, m) bool array
         The active set of the last solution: the warm start of the next one.
     known : bool
-        Of a film with its line in its cells: whether pressures and factor are the last solution's, too.
-    convected : bool
-        Whether the last mass-conserving film was factored along the flow of its cavity, in ``transport``.
+        Whether unknowns and factor are the last solution's, too; of a film with its line in its cells, and of one that
+        conserves mass.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -119,7 +53,6 @@ class Workspace:
         self.unknowns = np.zeros(size)
         self.active = np.zeros((n, m), dtype=np.bool_)
         self.warm = self.known = False
-        self.convected = False
         self.count = 0
         self.width = 1
 
@@ -149,6 +82,6 @@ class Workspace:
         return np.zeros((5, self.order.size)), self.number, factor
 
     @cached_property
-    def transport(self) -> Transport:
-        """Factor along the flow of a mass-conserving film; it shares the symmetric band."""
-        return transport_buffers(*self.shape, self.band)
+    def oil(self) -> OilUnknowns:
+        """Of a film that conserves mass."""
+        return OilUnknowns(*self.shape)

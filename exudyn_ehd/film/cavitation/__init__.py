@@ -9,9 +9,8 @@ line_newton       Newton's method for a film with it
 line_steps        what one of its steps does
 line_kernels      the same in Newton's method for liners, density and shear laws
 elrod_adams       mass-conserving closure
-oil_line          its edge inside a cell
-lagging_void      its flows out of a cavity, averaged over the step
+states            one unknown per vertex of a film that conserves mass
+solve             Newton's method in it
+oil_line          the film's edge inside a cell
 pseudo_time       the way to a film that is far from where its solution starts
-cavity_transport  factor along the flow through the cavity
-cavity_adjoint    its transpose
 """

@@ -17,7 +17,7 @@ from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
-from exudyn_ehd.film.cavitation.oil_line.curve import OilLine
+from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, straight
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.links import Coefficients
@@ -49,7 +49,7 @@ class FilmSystem:
     fill, mass_old : (n, m) arrays
         Film fraction, and the old value of fill H; only used by closures that conserve mass.
     prompt, late : (n, m) arrays
-        Couette flows take ``prompt fill + late`` along, of `exudyn_ehd.film.cavitation.lagging_void`; 1 and 0 without.
+        Couette flows take ``prompt fill + late`` along, of `exudyn_ehd.film.reynolds.lagging_void`; 1 and 0 without.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     closes : bool
@@ -62,6 +62,8 @@ class FilmSystem:
         Where the film's edge lies inside its cells; None: on vertices.
     oil_line : OilLine or None
         The same of a film that conserves mass.
+    straight : Curve or None
+        That of a film that conserves mass without one.
     linked : (n,) bool array
         Columns with a link to the next one.
     fields : (9, n, m) array
@@ -84,12 +86,18 @@ class FilmSystem:
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
         self.line: RuptureLine | None = None
         self.oil_line: OilLine | None = None
+        self.straight = straight(shape) if fills else None
         self.linked = grid.link_x != 0.0
 
     def see_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
         """Take over the gap's rate (n, m) and the scaled speeds of a film that conserves mass."""
         self.closes = steady and bool(rate.min() < 0.0)
         self.turns = abs(vx) if steady and vz == 0.0 else 0.0
+
+    @property
+    def curve(self) -> Curve | None:
+        """Of a film that conserves mass: where its edge lies."""
+        return self.straight if self.oil_line is None else self.oil_line.fields
 
     @property
     def coefficients(self) -> Coefficients:

@@ -6,16 +6,10 @@ Its balance is
     sum over links of [k (P - P_neighbour) + f carried_upstream] + area (fill H - kept) / dt = 0,
 
 with the Poiseuille conductance k, the Couette flux f of a full film (gap on the link), the fill carried from upstream,
-which in a step is averaged over it (`exudyn_ehd.film.cavitation.lagging_void`), and ``kept`` by the film's history,
+which in a step is averaged over it (`exudyn_ehd.film.reynolds.lagging_void`), and ``kept`` by the film's history,
 `exudyn_ehd.film.solvers.linear.FilmSolver.keep`. Without a history the film is steady and the last term is
-``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth Newton method
-in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so that the film
-exists and is unique. Should the sets come back or not converge, the film is approached through growing pseudo time
-steps, whose storage makes the matrices dominant enough.
-
-Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows
-the oil through the cavity and is left with a symmetric film, and for the rest (oil that circulates in a cavity,
-reformation fronts longer than a few columns) a band of the folded ring. The sets alone decide which.
+``area fill dH/dt``. For given sets the system is linear; `exudyn_ehd.film.cavitation.solve` finds them with it. Should
+it not, the film is approached through growing pseudo time steps, whose storage makes the matrices dominant enough.
 
 Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
 Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58
@@ -27,38 +21,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
-from exudyn_ehd.film.banded.assemble import assemble, dense_band
-from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
-from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_one, solve_lu_transposed
+from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
-from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
-from exudyn_ehd.film.cavitation.cavity_transport import (
-    FRONT,
-    FULL_COUNT,
-    WIDTH,
-    factor_transport,
-    solve_transport,
-)
-from exudyn_ehd.film.cavitation.closures import SwiftStieber, check_cavity_pressure
-from exudyn_ehd.film.cavitation.lagging_void import hold_back
-from exudyn_ehd.film.cavitation.oil_line.curve import OilLine
-from exudyn_ehd.film.cavitation.oil_line.newton import solve_on_curve
+from exudyn_ehd.film.cavitation.closures import check_cavity_pressure
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
-from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row, is_balanced
-from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
-from exudyn_ehd.film.reynolds.links import Coefficients, flow_direction
+from exudyn_ehd.film.cavitation.solve import factor_oil_film, solve_oil
+from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
+from exudyn_ehd.film.reynolds.links import Coefficients
 from exudyn_ehd.status import Status, require_bool
 
-MAX_NEWTON_STEPS = 60
-SET_TOLERANCE = 1e-12
-# Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
-# such film exists.
-LARGEST_DEFICIT = 1e-6
 # Storages in pseudo time over the largest flow into a vertex by the smallest vertex: of the first one, and of the last
 # one from which a film without storage is tried.
 FIRST_RATE, LAST_RATE = 0.01, 1e-7
@@ -85,7 +60,7 @@ class ElrodAdams:
         Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
     line_in_cells : bool
         True: the film ruptures where it does, inside the cells of the grid; not with bushes, density and shear laws;
-        see `exudyn_ehd.film.cavitation.oil_line.curve`. False: on their vertices.
+        see `exudyn_ehd.film.cavitation.oil_line`. False: on their vertices.
 
     Source
     ------
@@ -113,37 +88,14 @@ class ElrodAdams:
         object.__setattr__(self, "line_in_cells", require_bool("ElrodAdams.line_in_cells", self.line_in_cells))
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        """Newton from ``work.active``; cold starts come from the Swift-Stieber set."""
-        if system.oil_line is None:
-            return self._solve_plain(system, work)
-        steps, status = 0, Status.NOT_CONVERGED
-        if work.known:
-            work.known, steps = self._move_line(system, system.oil_line, work)
-            work.warm = work.known
-        if not work.known:
-            # from the film with its line on the grid
-            system.oil_line.late[:] = system.late
-            status, count = self._solve_plain(system, work)
-            steps += count
-            if status is Status.CONVERGED:
-                work.known, count = self._move_line(system, system.oil_line, work)
-                steps += count
-        work.warm = work.known
-        return (Status.CONVERGED if work.known else max(status, Status.NOT_CONVERGED)), steps
-
-    def _solve_plain(self, s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        steps, was_warm = 0, work.warm
+        """Newton from the last film, or from ``work.active`` alone; cold starts are full."""
+        s, steps, was_warm = system, 0, work.warm
         if not was_warm:
             np.logical_not(s.fixed, out=work.active)
-            steps = SwiftStieber().solve(s, work)[1]
-            s.fill[:] = 1.0
-        film = s.coefficients
-        ok, count = self._newton(s, work, film, s.inverse_step, s.mass_old)
-        steps += count
+        ok, steps = self._newton(s, work, s.coefficients, s.inverse_step, s.mass_old)
         if not ok and was_warm:
             # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
-            np.logical_not(s.fixed, out=work.active)
-            ok, count = self._newton(s, work, film, s.inverse_step, s.mass_old)
+            ok, count = self._newton(s, work, s.coefficients, s.inverse_step, s.mass_old, full=True)
             steps += count
         status = Status.CONVERGED
         if not ok or (s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)):
@@ -159,48 +111,31 @@ class ElrodAdams:
         film: Coefficients,
         inverse_step: float,
         mass_old: np.ndarray,
+        *,
+        full: bool = False,
     ) -> tuple[bool, int]:
-        ok, steps, work.count, work.width, work.convected = solve_elrod(
+        """From the last film; ``full``: from a full one."""
+        if full:
+            work.known = False
+            np.logical_not(s.fixed, out=work.active)
+        oil = work.oil
+        ok, steps, oil.exact, work.count, work.width = solve_oil(
             film,
-            inverse_step,
-            mass_old,
-            s.cavity_pressure,
-            work.active,
-            work.order,
-            work.number,
-            work.lower,
-            work.upper,
-            work.inv_diag,
-            work.transport,
-            work.unknowns,
-            s.pressure,
-            s.fill,
-        )
-        if ok and s.closes and inverse_step == 0.0:
-            # cavities whose gaps close may make the matrix singular
-            ok = is_balanced(film, s.pressure, s.fill, s.cavity_pressure)
-        return ok, steps
-
-    def _move_line(self, s: FilmSystem, line: OilLine, work: Workspace) -> tuple[bool, int]:
-        """From a film to the one with its line inside the cells."""
-        factors = work.lower, work.upper, work.inv_diag, work.transport
-        ok, steps, work.count, work.width, work.convected = solve_on_curve(
-            s.coefficients,
             s.late,
             s.b,
-            s.inverse_step,
-            s.mass_old,
+            (inverse_step, mass_old),
             s.cavity_pressure,
-            work.active,
-            line.fields,
-            work.order,
-            work.number,
-            factors,
+            s.curve,
+            s.oil_line is not None,
+            (work.known, work.known and oil.factored, work.count, work.width),
+            _factor(work),
             work.unknowns,
+            work.active,
+            oil.u,
             s.pressure,
             s.fill,
         )
-        line.exact = False
+        work.known = oil.factored = ok
         return ok, steps
 
     def _follow(self, s: FilmSystem, work: Workspace) -> tuple[Status, int]:
@@ -209,9 +144,8 @@ class ElrodAdams:
         largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
         rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
         mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
+        work.known = runs_dry = False
         np.logical_not(s.fixed, out=work.active)
-        s.fill[:] = 1.0
-        runs_dry = False
 
         def attempt(extra: float) -> tuple[bool, int]:
             nonlocal runs_dry
@@ -232,151 +166,34 @@ class ElrodAdams:
             return Status.CONVERGED, steps
         return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
 
-    def _factor(self, work: Workspace) -> tuple[np.ndarray, np.ndarray]:
-        """L and U of the folded ring."""
-        return dense_band(work.lower, work.count, work.width), dense_band(work.upper, work.count, work.width)
-
     def adjoint(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
-        if work.convected:
-            t = work.transport
-            if t.shape[FULL_COUNT] < work.count or t.shape[FRONT] > 0:
-                reduce_transposed(t, work.count, rhs)
-            solve_ldl(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs)
-            return
-        solve_lu_transposed(*self._factor(work), work.inv_diag, work.count, work.width, rhs)
+        solve_lu_transposed(*_bands(work), work.inv_diag, work.count, work.width, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every column of tiles rhs, in place."""
-        if work.convected:
-            for tile in rhs:
-                solve_transport_transposed(work.transport, work.count, tile[: work.count])
-            return
-        lower, upper = self._factor(work)
+        lower, upper = _bands(work)
         solve_in_tiles(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
-        if work.convected:
-            solve_transport(work.transport, work.count, rhs)
-            return
-        solve_lu(*self._factor(work), work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
+        solve_lu(*_bands(work), work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
 
 
-@njit(cache=True)
-def assemble_elrod(terms, links, pc, full, number, order, count, P, lower, upper, rhs):
-    """Matrix and right-hand side for the given sets; unknowns are P at full vertices and fill at cavitated ones.
+def _bands(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
+    return dense_band(work.lower, work.count, work.width), dense_band(work.upper, work.count, work.width)
 
-    The balance is linear in them: minus its value without them is the right-hand side. ``links``: not zero where
-    vertices are linked in theta; prescribed vertices count as ``full``.
-    """
-    known, fill, out, slopes = np.empty(P.shape), np.empty(P.shape), np.empty(P.shape), np.empty((5, P.size))
-    k, f, given, fixed, sets = (
-        known.reshape(-1),
-        fill.reshape(-1),
-        P.reshape(-1),
-        terms.fixed.reshape(-1),
-        full.reshape(-1),
+
+def _factor(work: Workspace) -> tuple[np.ndarray, ...]:
+    return work.order, work.number, work.lower, work.upper, work.inv_diag, work.oil.slopes
+
+
+def factor_solution(s: FilmSystem, work: Workspace) -> None:
+    """Make the factor that of the last solution."""
+    oil = work.oil
+    if oil.exact:
+        return
+    since = s.inverse_step, s.mass_old
+    oil.exact, work.count, work.width = factor_oil_film(
+        s.coefficients, since, s.curve, work.active, s.fill, _factor(work)
     )
-    for c in range(k.size):
-        k[c] = given[c] if fixed[c] else (0.0 if sets[c] else pc)
-        f[c] = 1.0 if sets[c] else 0.0
-    film_balance(known, fill, None, terms, out)
-    film_slopes(fill, full, None, None, terms, slopes)
-    assemble(links, terms.kz, slopes, number, order, count, lower, upper)
-    left = out.reshape(-1)
-    for r in range(count):
-        rhs[r] = -left[order[r]]
-
-
-@njit(cache=True, inline="always")
-def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P):
-    """Unknowns x for the given sets; returns (ok, count, width, convected).
-
-    ``directions``: `flow_direction` of fx and fz.
-    """
-    along, across = directions
-    if along != 0 and across != 0:
-        ok, count = factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x, None)
-        if ok:
-            solve_transport(t, count, x)
-            return True, count, 1, True
-    links, free, sets = oil_links(film, full)
-    count, width = number_cells(free, links, order, number)
-    L, U = dense_band(lower, count, width), dense_band(upper, count, width)
-    terms = film_terms(film, inverse_step, mass_old)
-    assemble_elrod(terms, links, pc, sets, number, order, count, P, L, U, x)
-    if not factor_lu(L, U, count, width, inv_diag):
-        return False, count, width, False
-    solve_lu_one(L, U, inv_diag, count, width, x)
-    return True, count, width, False
-
-
-@njit(cache=True)
-def _change_sets(x, order, count, pc, sets, changed, pressures, fills):
-    """Write the unknowns x of the sets; vertices that belong to the other set change.
-
-    ``changed`` marks who has done so an odd number of times. Returns how many change, and by how many the marks grow.
-    """
-    peak = 0.0
-    for r in range(count):
-        if sets[order[r]]:
-            peak = max(peak, abs(x[r] - pc))
-    changes, marks = 0, 0
-    for r in range(count):
-        c = order[r]
-        if sets[c]:
-            pressures[c], fills[c] = x[r], 1.0
-            misplaced = x[r] < pc - SET_TOLERANCE * peak
-        else:
-            pressures[c], fills[c] = pc, x[r]
-            misplaced = x[r] > 1.0 + SET_TOLERANCE
-        if misplaced:
-            sets[c], changed[c] = not sets[c], not changed[c]
-            marks += 1 if changed[c] else -1
-            changes += 1
-    return changes, marks
-
-
-@njit(cache=True, nogil=True)
-def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill):
-    """Newton on the sets from ``full``, which also returns them; returns (ok, steps, count, width, convected).
-
-    ``film``: `Coefficients`. ``t`` holds the factor if ``convected``, else ``lower``, ``upper`` and ``inv_diag`` do.
-    Sets that come back (Brent's search for cycles) end it.
-    """
-    n, m = full.shape
-    for i in range(n):
-        for j in range(m):
-            if film.fixed[i, j]:
-                full[i, j] = False
-                fill[i, j] = 1.0
-    if inverse_step > 0.0:
-        hold_back(film, inverse_step, mass_old)
-    directions = flow_direction(film.fx), flow_direction(film.fz)
-    sets, pressures, fills = full.reshape(-1), P.reshape(-1), fill.reshape(-1)
-    changed, marked, since = np.zeros(n * m, dtype=np.bool_), 0, 1
-    for step in range(MAX_NEWTON_STEPS):
-        ok, count, width, convected = _solve_sets(
-            film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P
-        )
-        if not ok:
-            return False, step + 1, count, width, convected
-        changes, marks = _change_sets(x, order, count, pc, sets, changed, pressures, fills)
-        if changes == 0:
-            sound = True
-            for i in range(n):
-                for j in range(m):
-                    if full[i, j]:
-                        P[i, j] = max(P[i, j], pc)
-                    else:
-                        sound = sound and fill[i, j] > -LARGEST_DEFICIT
-                        fill[i, j] = min(max(fill[i, j], 0.0), 1.0)
-            return sound, step + 1, count, width, convected
-        marked += marks
-        if marked == 0:
-            return False, step + 1, count, width, convected
-        if step >= 2 * since:
-            since, marked = step, 0
-            changed[:] = False
-    return False, MAX_NEWTON_STEPS, count, width, convected

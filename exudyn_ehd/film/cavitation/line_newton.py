@@ -13,7 +13,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_along
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
@@ -220,7 +219,6 @@ def find_line(links, fixed, pc, forth, is_known, line, active, factor, last, x, 
 
     ``pc``: the cavity's pressure, of which P is no difference.
     """
-    links, fixed, line, active, factor, x, P = lend((links, fixed, line, active, factor, x, P))
     (kx, kz, b), (order, old_order, number, band, inv_diag) = links, factor
     f, s, known, free, pressures = line[0], line[2], fixed.reshape(-1), active.reshape(-1), P.reshape(-1)
     line_terms(kx, b, fixed, line)
@@ -240,10 +238,8 @@ def find_line(links, fixed, pc, forth, is_known, line, active, factor, last, x, 
             solve_on_active(kx, kz, b, active, order, old_order, 0, 0, number, band, inv_diag, x, P)
             update_active_set(kx, kz, b, fixed, pc, active, P)
             taken, last = taken + 1, (_NONE, _NONE + 1)
-        above = (P - pc).reshape(-1)
-        # its owner's last use is behind the loop
-        p = lend(above).reshape(P.shape)
-        ok, steps, count, width, peak = solve_line(links, line, fixed, active, factor, last, x, forth, p)
+        above = P - pc
+        ok, steps, count, width, peak = solve_line(links, line, fixed, active, factor, last, x, forth, above)
         taken += steps
         if ok or not is_known:
             break
@@ -251,9 +247,10 @@ def find_line(links, fixed, pc, forth, is_known, line, active, factor, last, x, 
         is_known = False
         for c in range(f.size):
             free[c] = not known[c]
+    found = above.reshape(-1)
     for c in range(f.size):
         if not known[c]:
-            pressures[c] = above[c] + pc
+            pressures[c] = found[c] + pc
     return ok, taken, count, width, peak, steps > 0
 
 

@@ -28,7 +28,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.grid import Directions, Mesh
 from exudyn_ehd.film.reynolds.links import LinkFlux
@@ -139,7 +138,7 @@ class RuptureLine:
 @njit(cache=True)
 def line_of(blocks):
     """The arrays of a `Line` from two that hold them all, which are sooner handed to a kernel."""
-    block, places = lend(blocks)
+    block, places = blocks
     return block[0], block[1], block[2], block[3], block[4], places, block[5], block[6]
 
 

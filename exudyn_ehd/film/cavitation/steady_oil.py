@@ -19,7 +19,6 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
-from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.status import Status
 
 # Pressure times the gap's square over the scaled speed, below which a vertex has none: a share of the Couette flow. A
@@ -53,19 +52,18 @@ def has_unfed_row(P, H, fixed, turns, pc):
 
 
 @njit(cache=True)
-def is_balanced(film, P, fill, pc):
-    """Return whether the balances of a steady film hold, measured by what drives it."""
-    out = np.empty(P.shape)
-    film_balance(P, fill, None, film_terms(film, 0.0, film.H), out)
+def is_balanced(film, terms, P, balance, pc):
+    """Return whether the balances (n, m) of a film hold, measured by what drives it."""
     worst = drive = 0.0
     n, m = P.shape
     for i in range(n):
         for j in range(m):
-            flows = abs(film.fx[i, j]) + abs(film.fz[i, j]) + abs(film.area[i, j] * film.H_t[i, j])
+            stored = abs(terms.grow[i, j]) + abs(terms.kept[i, j])
+            flows = abs(film.fx[i, j]) + abs(film.fz[i, j]) + film.area[i, j] * stored
             if film.fixed[i, j]:
                 conductance = max(film.kx[i, j], max(film.kz[i, j], film.kz[i, j - 1] if j > 0 else 0.0))
                 flows += conductance * abs(P[i, j] - pc)
             else:
-                worst = max(worst, abs(out[i, j]) if np.isfinite(out[i, j]) else np.inf)
+                worst = max(worst, abs(balance[i, j]) if np.isfinite(balance[i, j]) else np.inf)
             drive = max(drive, flows)
     return worst <= BALANCED * drive

@@ -36,7 +36,7 @@ class FilmState(NamedTuple):
 
 class Coefficients(NamedTuple):
     """What the balance of the vertices is made of, (n, m) each: symbols of this module, areas, prescribed vertices, and
-    ``prompt`` and ``late`` of `exudyn_ehd.film.cavitation.lagging_void`."""
+    ``prompt`` and ``late`` of `exudyn_ehd.film.reynolds.lagging_void`."""
 
     kx: np.ndarray
     kz: np.ndarray
@@ -212,20 +212,6 @@ def couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out):
             carrier = 0.5 * (H[i, j] + H[i, j + 1]) if flow is None else flow[3][i, j]
             fz_out[i, j] = vz * carrier * mesh.width_x[i]
         fz_out[i, m - 1] = 0.0
-
-
-@njit(cache=True)
-def flow_direction(f):
-    """1 or -1 if no link carries oil the other way, 0 if some do."""
-    least = 0.0
-    most = 0.0
-    for i in range(f.shape[0]):
-        for j in range(f.shape[1]):
-            least = min(least, f[i, j])
-            most = max(most, f[i, j])
-    if least >= 0.0:
-        return 1
-    return -1 if most <= 0.0 else 0
 
 
 @njit(cache=True, fastmath=_FAST, inline="always")

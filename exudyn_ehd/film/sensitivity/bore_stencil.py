@@ -188,7 +188,7 @@ def shear_fields(P, weight, width, z, couette, ends, factors, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motion_scale, motion_out, bore_out):
+def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale, motion_out, bore_out):
     """Rows of the tangent of an elastic film from the gradients of its r integrals and k loads of the bore.
 
     Parameters
@@ -197,8 +197,6 @@ def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motio
         Minus gradients of integrals and loads to the motion; only those of the loads are wanted.
     by_bore : (r + k, k) array
         Gradients of integrals and loads to the bore.
-    order : (k,) int array
-        Coordinates to which the loads belong.
     weights, direct : (6, r), (6, k) arrays
         Integrals in the wrench; gradient of the wrench to the gap at fixed pressure, which counts ``by_gap`` times.
     scale, motion_scale : float, (10,) array
@@ -209,9 +207,9 @@ def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motio
     r, k, width = weights.shape[1], direct.shape[1], tiles.shape[2]
     for a in range(k):
         tile, q = (r + a) // width, (r + a) % width
-        own, target = by_bore[r + a], bore_out[6 + order[a]]
+        own, target = by_bore[r + a], bore_out[6 + a]
         for c in range(10):
-            motion_out[order[a], c] = -scale * motion_scale[c] * tiles[tile, c, q]
+            motion_out[a, c] = -scale * motion_scale[c] * tiles[tile, c, q]
         for b in range(k):
             target[b] = scale * own[b]
     for i in range(6):

@@ -10,15 +10,15 @@ import numpy as np
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, prolong_set
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.lagging_void import lag_void, outflow_of
+from exudyn_ehd.film.cavitation.elrod_adams import factor_solution
 from exudyn_ehd.film.cavitation.line_newton import refine_factor
-from exudyn_ehd.film.cavitation.oil_line.curve import OilLine, weigh_flows
-from exudyn_ehd.film.cavitation.oil_line.newton import factor_on_curve
+from exudyn_ehd.film.cavitation.oil_line import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
 from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
+from exudyn_ehd.film.reynolds.lagging_void import lag_void, outflow_of
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import FluxEffect, link_flux, set_links, vertex_balance
 from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas, flow_pressures
@@ -77,8 +77,7 @@ class FilmSolver:
             self.line = self.system.line = RuptureLine(shape)
         self.work, self.flux_effects = Workspace(*shape), flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
-        self.ones, self.nothing = np.ones(shape), np.zeros(shape)
-        self.link_fields = np.zeros((5, *shape))
+        self.ones, self.nothing, self.link_fields = np.ones(shape), np.zeros(shape), np.zeros((5, *shape))
         self.vx = self.vz = 0.0
         self.instant = self.lagging = False
         # whether there is a cavity, and whether no unknown pressure is below the cavity's
@@ -124,6 +123,8 @@ class FilmSolver:
 
     def refresh_fixed(self) -> None:
         """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        if self.closure.conserves_mass:
+            self.work.oil.factored = False
         if self.coarse is not None:
             self.coarse.grid.fixed[:] = self.grid.fixed[::2, ::2]
             self.coarse.refresh_fixed()
@@ -238,7 +239,7 @@ class FilmSolver:
             self.lagging = False
 
     def outflow(self) -> np.ndarray:
-        """What `exudyn_ehd.film.cavitation.lagging_void` keeps of the last solution (3, n, m)."""
+        """What `exudyn_ehd.film.reynolds.lagging_void` keeps of the last solution (3, n, m)."""
         s = self.system
         return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, s.fill)
 
@@ -267,8 +268,8 @@ class FilmSolver:
         """The workspace, with the factor of the last solution itself."""
         if self.line is not None:
             refine_factor(self.system, self.line, self.work)
-        if self.oil_line is not None:
-            factor_on_curve(self.system, self.oil_line, self.work)
+        if self.closure.conserves_mass:
+            factor_solution(self.system, self.work)
         return self.work
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
@@ -317,9 +318,8 @@ class FilmSolver:
             return self.oil_line.balance_gradients(fills, y.coefficients, y.inverse_step, w.order[: w.count])
         if self.line is None:
             return None
-        v = self.vx, self.vz
         return self.line.gradients(
-            self.work, (self.H, self.HF), self.flux, v, self.flow_x, self.squeeze, self.grid.mesh
+            self.work, (self.H, self.HF), self.flux, (self.vx, self.vz), self.flow_x, self.squeeze, self.grid.mesh
         )
 
     def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:

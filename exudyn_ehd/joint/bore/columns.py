@@ -137,7 +137,7 @@ def project_columns(S, stencil, fields, direct, out):
     ----------
     S : Columns
     stencil : (int, (columns m, 5) array, (columns m, 5) int array)
-        B by vertices, see `exudyn_ehd.film.sensitivity.mirror_symmetry.stencil_by_vertices`.
+        B by vertices, see `exudyn_ehd.film.sensitivity.vertex_stencil.stencil_by_vertices`.
     fields : (tiles, rows, TILE) array
     direct : CSR matrix (size, n m)
         D as its indptr, indices and data.

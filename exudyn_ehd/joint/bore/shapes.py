@@ -16,15 +16,8 @@ from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.banded.many_sides import TILE
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.mirror_symmetry import (
-    courses,
-    fold_adjoints,
-    folded_displacements,
-    folded_loads,
-    folded_rows,
-    place_columns,
-    stencil_by_vertices,
-)
+from exudyn_ehd.film.sensitivity.bore_stencil import put_rows
+from exudyn_ehd.film.sensitivity.vertex_stencil import stencil_by_vertices, stencil_products
 from exudyn_ehd.joint.bore.columns import (
     by_columns,
     column_displacements,
@@ -38,9 +31,8 @@ from exudyn_ehd.solid.journal.modes import JournalModes
 from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.solid.modes.static import BoreModes
 
-# Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue
-# problems.
-ASYMMETRY = 1e-9
+# Singular values of the shapes' courses along z, over the largest one, that count as round-off.
+ROUNDING = 1e-13
 # Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
 TURNED = 1e-6
 _NO_PLACES, _NO_VALUES = np.zeros(0, dtype=np.int32), np.zeros(0)
@@ -52,10 +44,6 @@ class Bore(Protocol):
     @property
     def size(self) -> int:
         """k, the number of coordinates."""
-
-    @property
-    def order(self) -> np.ndarray:
-        """Coordinates (k,) in the sequence of `fill_rows`."""
 
     @property
     def twist(self) -> np.ndarray | None:
@@ -77,8 +65,6 @@ class Bore(Protocol):
         """Rows of S at flat vertices ``places`` times ``weight``, both (count,), into tiles from column ``first`` on.
 
         Tiles as made by `exudyn_ehd.film.banded.many_sides.make_tiles`.
-
-        The coordinates come in the sequence ``order``.
         """
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
@@ -116,8 +102,9 @@ def _centres(grid: FilmGrid) -> np.ndarray:
 class ModalBore:
     """Bore that moves in modes, journal that does, or both: what either opens the gap by adds up.
 
-    ``S = [S_bore, S_journal]``, ``q`` likewise. Modes of a bush that is symmetric about its mid-plane are even or odd
-    in z; their products then take half the rows (see `exudyn_ehd.film.sensitivity.mirror_symmetry`).
+    ``S = [S_bore, S_journal]``, ``q`` likewise. Along z a bush moves as its mesh does, by a few polynomials (nine with
+    four quadratic elements). With a basis N of these courses every shape is N C at each column in theta, and fields
+    that meet N first meet C in place of S in the large products.
 
     Parameters
     ----------
@@ -134,10 +121,8 @@ class ModalBore:
     journal : JournalModes or None
     own : int
         Number of the bore's modes.
-    order : (k,) int array
-        Modes in the sequence of `fill_rows`: the even ones first.
-    mirrored : int
-        Rows of every column in theta that mirror others; 0 if some mode is neither even nor odd.
+    shapes : (n m, k) array
+        S.
     twist : (k,) array or None
         As in `Bore`. A reduced body gets the film's moment by the mean motion of its bore.
     """
@@ -162,18 +147,10 @@ class ModalBore:
             theta, around, z, along, _ = separate_means(grid, journal.edges)
             shapes.append((around @ journal.around(theta))[:, None] * (along @ journal.along(z)))
         whole = np.concatenate(shapes, axis=2) if len(shapes) > 1 else shapes[0]
-        is_even = _snap_parity(whole)
-        n, m = grid.shape
-        self.mirrored = 0 if is_even is None else m // 2
-        is_even = np.ones(self.size, dtype=bool) if is_even is None else is_even
-        self.order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
-        even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
-        self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), np.count_nonzero(is_even))
-        self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
-        self._along_even, even_courses = courses(self._even, n)
-        self._along_odd, odd_courses = courses(self._odd, n)
+        self.shapes = np.ascontiguousarray(whole).reshape(-1, self.size)
+        self._along, coordinates = courses(whole)
         # twice around: every run of columns is one block
-        self._even_courses, self._odd_courses = np.tile(even_courses, (2, 1)), np.tile(odd_courses, (2, 1))
+        self._courses = np.tile(coordinates, (2, 1))
 
     @property
     def size(self) -> int:
@@ -190,19 +167,16 @@ class ModalBore:
 
     def contract(self, fields: np.ndarray) -> np.ndarray:
         """Every field's S^T f, (r, k)."""
-        out = np.empty((len(fields), self.size))
-        folded_loads(fields, self._even, self._odd, self.order, out)
-        return out
+        found: np.ndarray = fields.reshape(len(fields), -1) @ self.shapes
+        return found
 
     def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S q and S q_t (n, m)."""
-        place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
-        folded_displacements(self._even, self._odd, self.order, q, q_t, place, rate)
-        return place, rate
+        return (self.shapes @ q).reshape(self.grid_shape), (self.shapes @ q_t).reshape(self.grid_shape)
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        folded_rows(self._even, self._odd, *self.grid_shape, places, weight, first, out)
+        put_rows(self.shapes, places, weight, first, out)
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
@@ -210,33 +184,22 @@ class ModalBore:
             return np.zeros((size, self.size))
         out = np.empty((size, self.size))
         first, by_vertex, row = stencil_by_vertices(weight, places[:, 0], self.grid_shape)
-        along = self._along_even, self._along_odd
+        seen = np.empty((len(row), TILE))
         # one tile after the other: a tile's fields stay in the cache until they are multiplied
         for start in range(0, size, TILE):
-            tile, rows = start // TILE, min(TILE, size - start)
-            even, odd = fold_adjoints(by_vertex, row, self.grid_shape, self.mirrored, *along, fields[tile])
+            rows = min(TILE, size - start)
+            stencil_products(by_vertex, row, fields[start // TILE], seen)
+            along = (self._along @ seen.reshape(-1, self.grid_shape[1], TILE)).reshape(-1, TILE)
             # columns behind the last one are the first ones again
-            by_even = even[:, :rows].T @ self._even_courses[first * len(along[0]) :][: len(even)]
-            by_odd = odd[:, :rows].T @ self._odd_courses[first * len(along[1]) :][: len(odd)]
-            place_columns(by_even, by_odd, self.order, out[start : start + rows])
+            np.matmul(
+                along[:, :rows].T, self._courses[first * len(self._along) :][: len(along)], out[start : start + rows]
+            )
         return out
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
-        n, m = self.grid_shape
-        upper, mirrored, split = m - self.mirrored, self.mirrored, self._even.shape[1]
-        even = field[:, :upper].copy()
-        even[:, :mirrored] += field[:, ::-1][:, :mirrored]
-        odd = (field - field[:, ::-1])[:, :mirrored]
-        # the even part of the field keeps the symmetry of a shape, the odd part turns it
-        halves = self._even.reshape(n, upper, -1)[:, :mirrored].reshape(n * mirrored, split)
-        out = np.empty((self.size, self.size))
-        out[:split, :split] = (self._even * even.reshape(-1, 1)).T @ self._even
-        out[split:, split:] = (self._odd * even[:, :mirrored].reshape(-1, 1)).T @ self._odd
-        out[:split, split:] = (halves * odd.reshape(-1, 1)).T @ self._odd
-        out[split:, :split] = out[:split, split:].T
-        back = np.argsort(self.order)
-        return out[np.ix_(back, back)]
+        found: np.ndarray = (self.shapes * field.reshape(-1, 1)).T @ self.shapes
+        return found
 
     def end_shapes(self) -> np.ndarray:
         """S for linear pressures (2, k)."""
@@ -261,19 +224,20 @@ class ModalBore:
         )
 
 
-def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
-    """Which of the shapes (n, m, k) are even in z, the others being odd.
+def courses(shapes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Basis along z and coordinates of shapes (n, m, k).
 
-    Rounding is taken off them. None if any is neither.
+    Returns
+    -------
+    basis : (u, m) array
+        N^T.
+    coordinates : (n u, k) array
+        C: shape = N C at every column in theta.
     """
-    mirror = shapes[:, ::-1]
-    even, odd = 0.5 * (shapes + mirror), 0.5 * (shapes - mirror)
-    sizes = np.abs(even).max(axis=(0, 1)), np.abs(odd).max(axis=(0, 1))
-    if np.any(np.minimum(*sizes) > ASYMMETRY * np.maximum(*sizes)):
-        return None
-    is_even = sizes[0] >= sizes[1]
-    shapes[:] = np.where(is_even, even, odd)
-    return is_even
+    n, m, k = shapes.shape
+    directions, sizes, _ = np.linalg.svd(shapes.transpose(1, 0, 2).reshape(m, n * k), full_matrices=False)
+    basis = np.ascontiguousarray(directions[:, sizes > ROUNDING * sizes[0]].T)
+    return basis, (basis @ shapes).reshape(-1, k)
 
 
 class NodalBore:
@@ -293,8 +257,6 @@ class NodalBore:
         The same with the normals.
     shapes : csr matrix (n m, k)
         S, k twice the number of nodes.
-    order : (k,) int array
-        0 to k - 1.
     """
 
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
@@ -303,7 +265,7 @@ class NodalBore:
         self.surface, self.values = surface, vertex_means(surface, grid)
         self.columns = by_columns(self.values, grid)
         self.shapes: csr_matrix = directed(self.values, np.stack([np.cos(theta), np.sin(theta)], axis=1), 2)
-        self.order, self.twist = np.arange(self.size), None
+        self.twist = None
 
     @property
     def size(self) -> int:

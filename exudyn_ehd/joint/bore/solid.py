@@ -20,7 +20,7 @@ from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, FilmOnBore, Newton, NodalEvaluation, bore_equilibrium
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
-from exudyn_ehd.solid.linear.supernodal import SupernodalFactor, mesh_factor
+from exudyn_ehd.solid.linear.solvers import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import Status
 
@@ -72,7 +72,7 @@ class SolidElasticity(Elasticity):
         self._contraction, self._linearised, self._pose = 0.0, 0, np.zeros(4)
         self._q_free = np.zeros(self._moves.size)
         self._reached = 0.0, self._q_free
-        self._factor: SupernodalFactor | SuperLU | None = None
+        self._factor: SuperLU | None = None
 
     def force(self, q: np.ndarray) -> np.ndarray:
         """Generalised force (k,) that holds the bore of the linear solid at q, N."""
@@ -243,7 +243,7 @@ class SolidElasticity(Elasticity):
     def _linearise(self) -> np.ndarray:
         """K about the present displacements: its factor, and K_c (k, k), N/m."""
         free = self._free
-        self._factor = factor = mesh_factor(self.solid.tangent(self.displacements)[free][:, free])
+        self._factor = factor = sparse_factor(self.solid.tangent(self.displacements)[free][:, free])
         self._contraction, self._linearised = 0.0, self._linearised + 1
         places = self._places
         bore = np.empty((places.size, places.size))

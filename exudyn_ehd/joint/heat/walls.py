@@ -19,7 +19,7 @@ from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
 from exudyn_ehd.joint.heat.heat_balance import HeatBalance
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, ViscosityField
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.solid.linear.gmres import gmres
+from exudyn_ehd.solid.linear.solvers import solve_by_products
 
 # Share of the heat to which what the film gives and what the walls take agree.
 AGREED = 1e-13
@@ -248,8 +248,7 @@ class WalledTemperature(FilmTemperature):
             return lu_solve(lead, stiff @ w - self._gather(between.passed(between.change(at), at)))
 
         enough = AGREED * float(np.linalg.norm(lu_solve(lead, given)))
-        directions, weights = gmres(led, lu_solve(lead, missing + given), enough, self.unknowns)
-        return weights @ directions
+        return solve_by_products(led, lu_solve(lead, missing + given), enough, self.unknowns)
 
     def equations(self, film: SolvedFilm, step: float) -> Between:
         """Of a solved film over a step, s; 0: for good."""

@@ -42,7 +42,7 @@ from scipy.optimize import brentq
 from scipy.sparse import coo_matrix, csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.cavitation.oil_line.curve import add_curve
+from exudyn_ehd.film.cavitation.oil_line import add_curve
 from exudyn_ehd.film.reynolds.balance import film_slopes, film_terms
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver

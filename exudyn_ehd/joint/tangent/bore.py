@@ -73,7 +73,6 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
         spread_gradient(
             gradient,
             by_bore,
-            bore.order,
             weights,
             direct,
             by_gap,

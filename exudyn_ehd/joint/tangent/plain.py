@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.lending import lend
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.cavitation.line_newton import refine_line
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_of, line_weights
@@ -71,7 +70,6 @@ def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, spee
     ``film``: ``FilmSystem.fields``; ``known``: ``first`` and ``peak`` of `refine_line`, and whether the factor is that
     of the solution.
     """
-    film, factor, fields, sets, at, mesh, out = lend((film, factor, fields, sets, at, mesh, out))
     order, _, number, band, inv_diag = factor
     (count, width), (first, peak, exact) = size, known
     kx, kz, b, H, HF, P = film[0], film[1], film[4], film[5], film[6], film[8]

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.sparse import bmat, coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.solid.linear.supernodal import sparse_factor
+from exudyn_ehd.solid.linear.solvers import sparse_factor
 
 # Gauss points and weights of an interval, and the quadratic shape functions (points, 3) there with their slopes.
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)

@@ -25,11 +25,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.linear.supernodal import sparse_factor
+from exudyn_ehd.solid.linear.solvers import sparse_factor
 from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
 from exudyn_ehd.solid.modes import films
 from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points, orthogonal_on
@@ -149,18 +149,17 @@ def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
     return b"".join([repr(described).encode(), *stored])
 
 
-def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperLU]:
-    """Free coordinates (3 n,) with the outer surface held, their stiffness at rest, and its factor."""
+def held_factor(solid: TotalLagrange) -> tuple[np.ndarray, SuperLU]:
+    """Free coordinates (3 n,) with the outer surface held, and the factor of their stiffness at rest."""
     mesh = solid.mesh
     free = np.ones(3 * len(mesh.nodes), dtype=bool)
     free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
-    K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
-    return free, K, sparse_factor(K)
+    return free, sparse_factor(solid.tangent(np.zeros_like(mesh.nodes))[free][:, free])
 
 
 def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
     """Compute the modes of a bush on its mesh under a film: one factorisation, one solution per pressure."""
-    free, _, factor = held_stiffness(bush.solid(mesh))
+    free, factor = held_factor(bush.solid(mesh))
     surface = FilmSurface(mesh.bore, film_points(mesh.bore, length), length, np.eye(3))
     places = (3 * mesh.bore.nodes[:, None] + np.arange(3)).ravel()
 

@@ -34,7 +34,7 @@ def test_solution(coupled, rest):
     factor = SystemFactor(J, is_mesh, pivoting=0.01)
     assert (factor.whole is None) == (rest <= LARGEST_REST)
     exact = np.linalg.solve(J.toarray(), right)
-    # panels in single precision, pivots of a hundredth of the largest entry
+    # single precision, pivots of a hundredth of the largest entry
     assert np.linalg.norm(factor.solve(right) - exact) < 1e-4 * np.linalg.norm(exact)
 
 

@@ -18,9 +18,7 @@ def solve(solver, A, b, tolerance=1e-6, most=60):
         count[0] += 1
         return A @ x
 
-    tried, weights = solver.solve(product, b, tolerance * np.linalg.norm(b), most)
-    z = sum((w * x for w, x in zip(weights, tried, strict=True)), np.zeros(len(b)))
-    return z, count[0]
+    return solver.solve(product, b, tolerance * np.linalg.norm(b), most), count[0]
 
 
 def test_every_solution_is_within_its_tolerance_while_the_operator_changes():
@@ -49,8 +47,7 @@ def test_the_same_operator_again_takes_a_fraction():
 
 
 def test_nothing_to_solve():
-    tried, weights = RecycledSolver().solve(lambda x: x, np.zeros(5), 0.0, 10)
-    assert tried == [] and weights.size == 0
+    assert not RecycledSolver().solve(lambda x: x, np.zeros(5), 0.0, 10).any()
 
 
 def test_another_size_starts_anew():

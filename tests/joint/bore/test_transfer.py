@@ -12,7 +12,7 @@ from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore
 from exudyn_ehd.joint.bore.transfer import vertex_means
 from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.loads import pressure_loads
-from exudyn_ehd.solid.modes.static import bore_modes, held_stiffness
+from exudyn_ehd.solid.modes.static import bore_modes, held_factor
 from exudyn_ehd.solid.unrolled import Unrolled
 from tests.solid_tetrahedra import tetrahedra
 
@@ -77,7 +77,7 @@ def deflections(described, material, grid):
         mesh=described, material=ehd.SaintVenantKirchhoff(youngs_modulus=material, poisson_ratio=0.3, density=1e3)
     )
     mesh = bush.build_mesh()
-    free, _, factor = held_stiffness(bush.solid(mesh))
+    free, factor = held_factor(bush.solid(mesh))
     bore, size = NodalBore(mesh.bore, grid), len(mesh.nodes)
     loads = np.zeros((size, 3, 2))
     force = pressure(grid.x[:, None], 2.0 * grid.z * R / L) * grid.weight * R**2

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.elrod_adams import LARGEST_DEFICIT
 from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
+from exudyn_ehd.film.cavitation.solve import LARGEST_DEFICIT
 from exudyn_ehd.film.reynolds.links import FilmState, add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver

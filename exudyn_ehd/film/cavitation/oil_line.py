@@ -60,10 +60,6 @@ class Curve(NamedTuple):
         1 where there is no line.
     slope, rise : arrays
         Derivatives of what flows carry and of the fill to the pressure along the curve, 0 where there is no line.
-    less : array
-        What flows carry less than the fill.
-    shift : array
-        What the line adds to the unknowns' diagonals.
     """
 
     f: np.ndarray
@@ -75,8 +71,13 @@ class Curve(NamedTuple):
     s: np.ndarray
     slope: np.ndarray
     rise: np.ndarray
-    less: np.ndarray
-    shift: np.ndarray
+
+
+def straight(shape: tuple[int, int]) -> Curve:
+    """No curve at any vertex."""
+    curve = Curve(*np.zeros((9, shape[0] * shape[1])))
+    curve.s[:] = 1.0
+    return curve
 
 
 class OilLine:
@@ -89,15 +90,11 @@ class OilLine:
         Of ``fields``.
     late : (n, m) array
         ``late`` of `exudyn_ehd.film.reynolds.links.Coefficients` with what flows carry less than the fill.
-    exact : bool
-        Whether the factor is that of the last solution.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self.fields = Curve(*np.zeros((11, shape[0] * shape[1])))
-        self.fields.s[:] = 1.0
+        self.fields = straight(shape)
         self.rise, self.late = self.fields.rise.reshape(shape), np.zeros(shape)
-        self.exact = False
 
     def gradients(
         self,

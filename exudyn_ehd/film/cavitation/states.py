@@ -1,0 +1,120 @@
+"""One unknown u per vertex: pressure and film fraction of a mass-conserving film, with their derivatives.
+
+Where ``u >= 0`` the vertex is full, where ``u <= 0`` it is in the cavity; both sides meet at u = 0. With the cavity's
+pressure pc and the curve of `exudyn_ehd.film.cavitation.oil_line` that a vertex may have (``whole``, ``drop``; both 0
+without),
+
+    full, without curve     P = pc + u,                                     fill = 1,
+    on the curve, u < 1     P = pc + whole u^2,                             fill = 1 - drop (1 - u)^2,
+    behind it, u >= 1       P = pc + whole (2 u - 1),                       fill = 1,
+    in the cavity           P = pc,                                         fill = 1 - drop + u.
+
+Pressure and fill rise with u and have continuous derivatives but at u = 0. Newton's matrix is that of
+`exudyn_ehd.film.reynolds.balance` in P at full vertices and in the fill at others, and its steps become those of u by
+dP/du: a scaling of columns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.cavitation.oil_line import FILLED, lack
+
+# Least u on a curve, where dP/du vanishes: below, a vertex is one of the cavity for all that can be told.
+LEAST = 1e-8
+# Pressures over the peak, and fills, by which a vertex may lie on the other side: some thousand roundings.
+ROUNDING = 1e-12
+
+
+@njit(cache=True)
+def start_states(film, curve, full, u):
+    """From the sets alone: fully developed curves, other unknowns at the kink."""
+    known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)
+    for c in range(x.size):
+        x[c] = 1.0 if sets[c] and not known[c] and curve.whole[c] > 0.0 else 0.0
+
+
+@njit(cache=True)
+def set_states(film, late, pc, curve, full, u, P, fill):
+    """Pressures, fills and slopes of the curves from the unknowns.
+
+    ``late`` is that of `exudyn_ehd.film.reynolds.lagging_void`; ``film.late`` gets what curves carry less than the
+    fill.
+    """
+    known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)
+    pressures, fills = P.reshape(-1), fill.reshape(-1)
+    rest, prompt, kept = film.late.reshape(-1), film.prompt.reshape(-1), late.reshape(-1)
+    for c in range(x.size):
+        whole, drop = curve.whole[c], curve.drop[c]
+        if curve.s[c] < 1.0:
+            curve.s[c], curve.slope[c], curve.rise[c] = 1.0, 0.0, 0.0
+            rest[c] = kept[c]
+        if known[c]:
+            sets[c], fills[c] = False, 1.0
+        elif not sets[c]:
+            pressures[c], fills[c] = pc, 1.0 - drop + x[c]
+        elif whole == 0.0:
+            pressures[c], fills[c] = pc + x[c], 1.0
+        elif x[c] >= 1.0:
+            pressures[c], fills[c] = pc + whole * (2.0 * x[c] - 1.0), 1.0
+        else:
+            s = max(x[c], LEAST)
+            carried, by_s = lack(s, 1.0)
+            held, rise = lack(s, FILLED)
+            pressures[c], fills[c] = pc + whole * s * s, 1.0 - drop * held
+            half = -0.5 * drop / (whole * s)
+            curve.s[c], curve.slope[c], curve.rise[c] = s, half * by_s, half * rise
+            rest[c] = kept[c] - prompt[c] * drop * (carried - held)
+
+
+@njit(cache=True)
+def move_states(pc, curve, order, count, dx, full, u, P):
+    """Take Newton's step dx (count,), of pressures where ``full``, else of fills; a vertex that crosses u = 0 stops
+    there and changes its side.
+
+    Returns how many do, the largest change of a pressure over the peak, of a place on a curve, of a fill, and that of a
+    place on a curve alone.
+    """
+    sets, x, pressures, peak, last_peak = full.reshape(-1), u.reshape(-1), P.reshape(-1), 0.0, 0.0
+    for r in range(count):
+        if sets[order[r]]:
+            before = pressures[order[r]] - pc
+            peak, last_peak = max(peak, abs(before + dx[r])), max(last_peak, abs(before))
+    changes, moved, bent, per_peak = 0, 0.0, 0.0, 1.0 / max(peak, ROUNDING * last_peak, 1e-300)
+    for r in range(count):
+        c = order[r]
+        whole, old, change = curve.whole[c], x[c], dx[r]
+        if not sets[c]:
+            new, size = old + change, abs(change)
+            crosses = new > ROUNDING
+        elif whole == 0.0:
+            new, size = old + change, abs(change) * per_peak
+            crosses = new < -ROUNDING * peak
+        else:
+            new = old + 0.5 * change / (whole * min(max(old, LEAST), 1.0))
+            size = abs(min(new, 1.0) - min(old, 1.0))
+            bent = max(bent, size)
+            if size == 0.0:
+                size = abs(change) * per_peak
+            crosses = new < 0.0
+        moved = max(moved, size) if size == size else np.inf
+        if crosses:
+            changes += 1
+            sets[c], x[c] = not sets[c], 0.0
+        else:
+            x[c] = new
+    return changes, moved, bent
+
+
+@njit(cache=True)
+def settle_states(film, full, pc, P, fill):
+    """Take back what lies on the other side by rounding; returns the least fill before."""
+    known, sets, pressures, fills = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1), fill.reshape(-1)
+    least = 1.0
+    for c in range(sets.size):
+        if not known[c]:
+            least = min(least, fills[c])
+            pressures[c] = max(pressures[c], pc) if sets[c] else pc
+            fills[c] = min(max(fills[c], 0.0), 1.0)
+    return least
