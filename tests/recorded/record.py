@@ -229,12 +229,13 @@ KINDS_OF = {
     "films": [
         [p + n for n in group] for p in ("", "d1 ", "d2 ", "d3 ") for group in (LOADS[:3], LOADS[3:6], LOADS[6:])
     ],
-    "equilibria": [EQUILIBRIUM[:2], EQUILIBRIUM[2:6], EQUILIBRIUM[6:10]],
+    "equilibria": [EQUILIBRIUM[:2], EQUILIBRIUM[2:6], EQUILIBRIUM[6:10], ["critical mass"], ["leakage"]],
     "runs": [RUN[1:3], RUN[3:5], RUN[6:9]],
 }
 
-# Sizes below which components of a run are round-off: rad.
-LEAST = {"bx": 1e-6}
+# Sizes below which components are round-off: rad; kg and m^3/s of films without a cavity and without a supply, whose
+# sums vanish to 1e-9 kg and 1e-19 m^3/s, while others are above 0.1 kg and 1e-8 m^3/s.
+LEAST = {"bx": 1e-6, "critical mass": 1e-3, "leakage": 1e-12}
 
 
 def read(kind):
