@@ -24,7 +24,7 @@ from exudyn_ehd.film.reynolds.lagging_void import hold_back
 
 MOST_STEPS = 60
 # What a step with an older factor may leave of a film, and a step whose own factor leaves its square.
-LEFT, SETTLED = 1e-13, 1e-7
+LEFT, SETTLED = 1e-13, 1e-8
 # Share that steps with an older factor have to shrink to, for another one: more takes longer than a factor of its own.
 REUSABLE = 0.01
 # Balance of a vertex over the largest flow: more is no rounding. Over the largest flow that drives the film: more is

@@ -21,7 +21,12 @@ the balance of q linear about a steady state, a small motion ``x exp(i nu t)`` g
 
     q = (1 - i nu M)^-1 (X + i nu V) x,    M = A dQ/dq_t, X = A dQ/dx, V = A dQ/dx_t,    A = (K_q - dQ/dq)^-1,
 
-of a bore or journal with the stiffness K_q and the film's loads Q on it. The dynamic stiffness is, exactly,
+of a bore or journal with the stiffness K_q and the film's loads Q on it. Of a mass-conserving film the loads depend
+on the frequency too: with Z of the journal's and the bore's coordinates together, as for the rigid journal,
+
+    Z(nu) = Z_xx - Z_xq (K_q + Z_qq)^-1 Z_qx.
+
+Without a memory of the oil the dynamic stiffness is, exactly,
 
     Z(nu) = K + i nu C + nu^2 L (1 - i nu M)^-1 R,    R = M X + V,    L = dF/dq M + dF/dq_t,
 
@@ -39,7 +44,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.sparse import coo_matrix, csc_matrix, diags_array
+from scipy.sparse import coo_matrix, csc_matrix, diags_array, issparse
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.cavitation.oil_line import add_curve
@@ -50,6 +55,7 @@ from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
+from exudyn_ehd.joint.tangent.bore import Balances, load_weights
 from exudyn_ehd.joint.tangent.line import add_by_motion, by_fills, true_fills
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients, liner_weights
 
@@ -60,7 +66,7 @@ LARGEST_SPACE, NOTHING_NEW = 60, 1e-10
 
 
 class FilmResponse:
-    """Dynamic stiffness of a film on a rigid bore or a liner that conserves mass.
+    """Dynamic stiffness of a film that conserves mass, on a rigid bore or a liner.
 
     Parameters
     ----------
@@ -106,10 +112,14 @@ class FilmResponse:
             by_fill = by_fills(film, fills, s.area * s.H, number, w.count) * scale
         # the content at a mass-conserving film's line follows position and velocity, its rate their rates
         self.by_pose, self.by_rate, self.by_sway = by_motion[:2].copy(), by_motion[4:6] + by_fill[:2], by_fill[4:6]
-        pose, rate = self._gradients(0.0)
-        self.rest = -tangent[:2, :2] - pose, -tangent[:2, 4:6] - rate
+        self._rest_of(tangent[:2, :2], tangent[:2, 4:6])
         # the tangent knows no rate of a liner's deflection
         self.by_rate = self.by_rate * followed
+
+    def _rest_of(self, by_place: np.ndarray, by_rate: np.ndarray) -> None:
+        """Keep what the derivatives of the forces hold besides the film's pressure."""
+        pose, rate = self._gradients(0.0)
+        self.rest = -by_place - pose, -by_rate - rate
 
     def at(self, frequency: float) -> np.ndarray:
         """Z (2, 2), N/m, at a frequency, rad/s."""
@@ -120,6 +130,46 @@ class FilmResponse:
         """What the film's pressure gives to stiffness and damping at a frequency (2, 2), complex."""
         lam = splu(csc_matrix(self.matrix + 1j * frequency * self.store)).solve(self.rows, trans="T")
         return (self.by_pose @ lam).T, ((self.by_rate + 1j * frequency * self.by_sway) @ lam).T
+
+
+class FilmOnBoreResponse(FilmResponse):
+    """The same on a flexible bore or journal, whose coordinates q are motions as the journal's are.
+
+    Parameters
+    ----------
+    evaluation : ElasticEvaluation
+        In balance with the bore.
+    """
+
+    def __init__(self, evaluation: ElasticEvaluation) -> None:
+        film, bore, elasticity = evaluation.film, evaluation.model.bore, evaluation.model.elasticity
+        assert film is not None
+        T, k, m = elasticity.refined_tangent(evaluation), bore.size, MOTION_SIZE
+        T = elasticity.tangent(evaluation) if T is None else T
+        super().__init__(film, T)
+        balances, vertices = Balances(film), film.grid.x.size * film.grid.z.size
+        unknowns, force = np.arange(len(balances.places)), film.scales.force
+
+        def on_shapes(weight: np.ndarray, places: np.ndarray) -> np.ndarray:
+            """Rows (count, k) of S, weighted."""
+            rows = np.repeat(unknowns, weight.size // unknowns.size)
+            picked = coo_matrix((weight.ravel(), (rows, places.ravel())), shape=(unknowns.size, vertices)).tocsr()
+            found = picked @ bore.shapes
+            return np.asarray(found.toarray() if issparse(found) else found)
+
+        loads = on_shapes(load_weights(film), balances.places)
+        self.rows = np.concatenate((self.rows, -loads), axis=1)
+        place, rate = (-force * on_shapes(*balances.stencil(*ends)).T for ends in ((1.0, 0.0), (0.0, 1.0)))
+        self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
+        self.by_sway = np.concatenate((self.by_sway, np.zeros_like(rate)))
+        forces = np.r_[0:2, 6 : 6 + k]
+        self._rest_of(T[np.ix_(forces, np.r_[0:2, m : m + k])], T[np.ix_(forces, np.r_[4:6, m + k : m + 2 * k])])
+        self.stiffness = elasticity.stiffness.copy()
+
+    def at(self, frequency: float) -> np.ndarray:
+        """Z (2, 2), N/m, at a frequency, rad/s."""
+        Z = super().at(frequency)
+        return Z[:2, :2] - Z[:2, 2:] @ np.linalg.solve(self.stiffness + Z[2:, 2:], Z[2:, :2])
 
 
 def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:

@@ -18,12 +18,19 @@ from exudyn_ehd.joint.balance.steadiest import steadiest
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.centre import evaluate_beside, is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
+from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, YieldingResponse, threshold, yielding_response
+from exudyn_ehd.joint.static.dynamic_stiffness import (
+    FilmOnBoreResponse,
+    FilmResponse,
+    YieldingResponse,
+    threshold,
+    yielding_response,
+)
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
+from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.balance.faces import FacesUnderLoad
@@ -36,11 +43,6 @@ SURE = 0.05
 ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
 # What is left inside the cells where nothing cancels.
 LEFT_IN_CELLS = 0.007
-LEFT_OUT = (
-    "equilibrium: with ElrodAdams on a flexible bore or journal damping, whirl_ratio and critical_mass are nan: they "
-    "leave out how the cavity's oil follows; position and stiffness hold. Take SwiftStieber(), a rigid bore or an "
-    "ElasticLiner for them."
-)
 LOADS = {"smallest": 1e-30, "largest": 1e15}
 # Without a load, what counts as one for the residual: share of L D mu omega / psi^2. A smaller one asks for a more
 # exact position, which round-off ends at 1e-16 of that force.
@@ -68,8 +70,7 @@ class EquilibriumResult:
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
         Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at
-        any. With `ElrodAdams` on a flexible bore or journal it is nan, as are ``damping``, ``whirl_ratio`` and the
-        error: how the cavity's oil follows there is not known.
+        any.
     critical_mass_error : float
         Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
         the grid does not tell whether the bearing is stable at any mass. Of all results the critical mass feels the
@@ -187,9 +188,8 @@ def equilibrium(
     come from `EquilibriumResult.dynamic_stiffness`. With ``thermal`` they hold at the temperature of the equilibrium;
     `EquilibriumResult.settled_stiffness` lets it follow. On a liner, a flexible bore or journal the stiffness is that
     of the steady film and the damping that of a slow motion; they follow quick ones with a delay, which the threshold
-    and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` on a liner all of it holds at the threshold's
-    frequency; on a flexible bore or journal damping and threshold are nan, and a UserWarning says why. An `ANCFBush`
-    strains as in `steady`, and stiffness and damping are those about its deformed state.
+    and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` all of it holds at the threshold's frequency. An
+    `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed state.
 
     Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
     of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
@@ -301,12 +301,9 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     tangent, film = evaluation.steady_tangent(found.tangent), found.film
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
-    if model.remembers_mass and model.flexible:
-        warn_user(LEFT_OUT, UserWarning)
-        unknown = math.nan
-        return _SmallMotions(-tangent[:2, :2], np.full((2, 2), unknown), 0.0, unknown, unknown, unknown, None)
     if model.remembers_mass:
-        response = FilmResponse(film, tangent)
+        on_bore = isinstance(evaluation, ElasticEvaluation)
+        response = FilmOnBoreResponse(evaluation) if on_bore else FilmResponse(film, tangent)
     else:
         # on a liner the damping is that of a slow motion, which it follows
         slow = evaluation.tangent(slow_motion=True) if model.parts.liner is not None else tangent
