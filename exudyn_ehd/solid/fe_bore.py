@@ -226,7 +226,7 @@ def add_bore_modes(
     radius: float,
     length: float,
     fixed_nodes: Sequence[int],
-    tolerance: float = 0.05,
+    tolerance: float = 0.07,
     tilted: bool = True,
     radius_tolerance: float = 0.02,
     nodes: tuple[int, ...] | None = None,

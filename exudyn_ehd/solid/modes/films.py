@@ -58,7 +58,7 @@ from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.status import InputError
 
 # Of the choice of modes: raise it with every change of what follows, so that files of older modes are not taken.
-FORMAT = 5
+FORMAT = 6
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
 # Films of the set and those that measure the error: eccentricity ratios; slopes and waves of the gap (shares of the
 # gap left at the loaded side); phases of both (rad, from the direction of the eccentricity); numbers of waves; crowns
@@ -80,7 +80,7 @@ DIRECTIONS = 0.2 + np.pi * (3.0 - np.sqrt(5.0)) * np.arange(6)
 BEYOND = (2, 4, 6, 8, 10)
 # Smallest share of a half space's displacement in the whole that makes the tolerance tighter. A smaller one takes more
 # modes of bushes on a narrow foot.
-LEAST_SHARE = 0.1
+LEAST_SHARE = 0.05
 # Share of the energy below which a combination of pressures adds nothing but round-off.
 DEPENDENT = 1e-11
 # Weight of uniform and linear pressures over that of all films: their modes leave no more than its inverse of them.

@@ -189,7 +189,7 @@ def test_modal_bush_under_a_rotating_load(measured):
     start = ehd.equilibrium(dataclasses.replace(BEARING, bush=None), speed=SPEED, load=(0.0, -25e3)).position
     rigid, nodal = under_rotating_load(None, start), under_rotating_load(ehd.ANCFBush(mesh=mesh, material=STEEL), start)
     assert nodal.peak_pressure.max() < 0.93 * rigid.peak_pressure.max()
-    for tolerance, limit in ((0.05, 0.01), (0.005, 0.001)):
+    for tolerance, limit in ((0.07, 0.01), (0.005, 0.001)):
         bush = ehd.ModalBush(mesh=mesh, material=STEEL, tolerance=tolerance, tilted=False)
         modal = under_rotating_load(bush, start)
         # the nodes' inertia responds to the start for some steps
