@@ -29,7 +29,7 @@ LEFT, SETTLED = 1e-13, 1e-8
 REUSABLE = 0.01
 # Balance of a vertex over the largest flow: more is no rounding. Over the largest flow that drives the film: more is
 # that of a singular matrix.
-EVEN, BALANCED = 1e-12, 1e-8
+EVEN, BALANCED = 1e-13, 1e-8
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.
 LARGEST_DEFICIT = 1e-6

@@ -46,6 +46,10 @@ class Bore(Protocol):
         """k, the number of coordinates."""
 
     @property
+    def shapes(self) -> np.ndarray | csr_matrix:
+        """S (n m, k)."""
+
+    @property
     def twist(self) -> np.ndarray | None:
         """Loads (k,) of a moment of 1 Nm of the film about the axis, 1/m; None: none."""
 

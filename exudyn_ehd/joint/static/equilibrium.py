@@ -302,8 +302,10 @@ def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
     yields = model.parts.liner is not None or model.flexible
     response: FilmResponse | YieldingResponse | None = None
     if model.remembers_mass:
-        on_bore = isinstance(evaluation, ElasticEvaluation)
-        response = FilmOnBoreResponse(evaluation) if on_bore else FilmResponse(film, tangent)
+        if isinstance(evaluation, ElasticEvaluation):
+            response = FilmOnBoreResponse(evaluation)
+        else:
+            response = FilmResponse(film, tangent)
     else:
         # on a liner the damping is that of a slow motion, which it follows
         slow = evaluation.tangent(slow_motion=True) if model.parts.liner is not None else tangent

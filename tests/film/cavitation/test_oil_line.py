@@ -87,7 +87,7 @@ def _check_states(count, seed, dense_matrix):
         cold.forget()
         for film in (warm, cold):
             state = _start(film, same)
-            status, taken = film.cavitation.solve(*state)
+            status, taken = film.solve(*state)
             assert status is Status.CONVERGED, (seed, k)
             steps.append(taken)
         pc, mass, step = state[2:]

@@ -85,7 +85,7 @@ def _check_states(count, seed, dense_matrix):
         assert _random_film(cold, np.random.default_rng(same)) == known
         cold.forget()
         for film in (warm, cold):
-            status, steps = film.cavitation.solve(*known)
+            status, steps = film.solve(*known)
             assert status is Status.CONVERGED, (seed, k)
             most = max(most, steps)
         # films at rest have no peak, only what is left of the last film
@@ -118,7 +118,7 @@ def test_a_supply_that_comes_and_goes_is_that_of_a_cold_film():
             film.grid.fixed[list(columns), 3] = True
             film.pressure[list(columns), 3] = 0.2
             film.refresh_fixed()
-            assert film.cavitation.solve(1.0, 0.0, -1.0)[0] is Status.CONVERGED
+            assert film.solve(1.0, 0.0, -1.0)[0] is Status.CONVERGED
         assert np.abs(warm.pressure - cold.pressure).max() < 1e-12 * cold.pressure.max()
 
 
@@ -130,13 +130,13 @@ def test_films_without_a_line_are_those_of_the_grid():
             film.H[:] = film.HF[:] = 1.0
             film.H_t[:] = -1.0
             film.pressure[:, -1] = 0.3
-            assert film.cavitation.solve(0.0, 0.0, 0.0)[0] is Status.CONVERGED
+            assert film.solve(0.0, 0.0, 0.0)[0] is Status.CONVERGED
         assert np.abs(line.pressure - plain.pressure).max() < 1e-13 * plain.pressure.max()
         rows = rng.normal(size=(2, line.work.count))
         assert np.abs(line.adjoint(rows.copy()) - plain.adjoint(rows.copy())).max() < 1e-12
         for film in (line, plain):
             film.H_t[:], film.pressure[:] = 0.0, 0.0
-            assert film.cavitation.solve(0.0, 0.0, 0.0)[0] is Status.CONVERGED
+            assert film.solve(0.0, 0.0, 0.0)[0] is Status.CONVERGED
         assert not line.pressure.any() and line.work.count == plain.work.count
 
 
