@@ -90,7 +90,7 @@ def solve_oil(film, late, b, since, pc, curve, in_cells, start, factor, x, full,
     if in_cells:
         curve_terms(film, b, curve)
     if not known:
-        start_states(film, curve, full, u)
+        start_states(film, pc, curve, full, u)
     flat, own, done, last, drift = rest.reshape(-1), False, False, LEFT, 0.0
     for step in range(MOST_STEPS):
         set_states(film, carried, pc, curve, full, u, P, fill)

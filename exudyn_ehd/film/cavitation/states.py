@@ -28,11 +28,13 @@ ROUNDING = 1e-12
 
 
 @njit(cache=True)
-def start_states(film, curve, full, u):
-    """From the sets alone: fully developed curves, other unknowns at the kink."""
+def start_states(film, pc, curve, full, u):
+    """From the sets alone: fully developed curves, no gauge pressure elsewhere, cavities at the kink."""
     known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)
     for c in range(x.size):
-        x[c] = 1.0 if sets[c] and not known[c] and curve.whole[c] > 0.0 else 0.0
+        x[c] = 0.0
+        if sets[c] and not known[c]:
+            x[c] = 1.0 if curve.whole[c] > 0.0 else max(-pc, 0.0)
 
 
 @njit(cache=True)
