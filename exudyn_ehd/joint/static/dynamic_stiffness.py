@@ -43,6 +43,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.optimize import brentq
 from scipy.sparse import coo_matrix, csc_matrix, diags_array, issparse
 from scipy.sparse.linalg import splu
@@ -61,6 +62,9 @@ from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients, lin
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
 SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
+# Whirl ratios at which a bore of many coordinates is asked how it follows. The space of the answers tells the critical
+# mass of soft bushes to 2e-9, and Z from 0 to 4 times the spin to 5e-7.
+SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
 # Vectors of the Krylov space, and share of a new one below which it lies in the space already.
 LARGEST_SPACE, NOTHING_NEW = 60, 1e-10
 
@@ -165,11 +169,27 @@ class FilmOnBoreResponse(FilmResponse):
         forces = np.r_[0:2, 6 : 6 + k]
         self._rest_of(T[np.ix_(forces, np.r_[0:2, m : m + k])], T[np.ix_(forces, np.r_[4:6, m + k : m + 2 * k])])
         self.stiffness = elasticity.stiffness.copy()
+        if k > 4 * len(SAMPLES):
+            speed, whole = abs(film.journal.omega), super().at
+            self._reduce([self._followed(whole(ratio * speed)) for ratio in SAMPLES])
 
     def at(self, frequency: float) -> np.ndarray:
         """Z (2, 2), N/m, at a frequency, rad/s."""
         Z = super().at(frequency)
-        return Z[:2, :2] - Z[:2, 2:] @ np.linalg.solve(self.stiffness + Z[2:, 2:], Z[2:, :2])
+        return Z[:2, :2] + Z[:2, 2:] @ self._followed(Z)
+
+    def _followed(self, Z: np.ndarray) -> np.ndarray:
+        """q (k, 2) of unit motions of the journal."""
+        return -np.linalg.solve(self.stiffness + Z[2:, 2:], Z[2:, :2])
+
+    def _reduce(self, found: list[np.ndarray]) -> None:
+        """Leave q in the space of what it was found to be at some frequencies."""
+        columns = [part for q in found for part in (q.real, q.imag)]
+        V = block_diag(np.eye(2), np.linalg.qr(np.concatenate(columns, axis=1))[0])
+        self.rows, self.by_sway = self.rows @ V, V.T @ self.by_sway
+        self.by_pose, self.by_rate = V.T @ self.by_pose, V.T @ self.by_rate
+        self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
+        self.stiffness = V[2:, 2:].T @ self.stiffness @ V[2:, 2:]
 
 
 def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:

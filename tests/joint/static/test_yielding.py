@@ -9,6 +9,7 @@ from exudyn.utilities import RigidBodyInertia
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.static import dynamic_stiffness
 
 R, L, C, SPEED = 0.03, 0.04, 30e-6, 1000.0
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
@@ -210,3 +211,18 @@ def test_hard_bores_respond_as_rigid_ones_with_a_cavity(surface):
         assert np.abs(getattr(found, name) - expected).max() < 1e-3 * np.abs(expected).max(), name
     slow = found.dynamic_stiffness([0.0])[0]
     assert np.abs(slow - found.settled_stiffness).max() < 1e-6 * np.abs(slow).max()
+
+
+@pytest.mark.parametrize("surface", ["pin", pytest.param("bush", marks=pytest.mark.slow)])
+def test_bores_answer_in_a_small_space(surface, monkeypatch):
+    """As with all of their coordinates, from standstill to four times the spin."""
+    made = bearing(surface, **ELROD)
+    small = ehd.equilibrium(made, speed=SPEED, load=(2000.0, 0.0))
+    monkeypatch.setattr(dynamic_stiffness, "SAMPLES", (0.0,) * 1000)
+    whole = ehd.equilibrium(made, speed=SPEED, load=(2000.0, 0.0))
+    assert small.response.rows.shape[1] < whole.response.rows.shape[1]
+    assert small.critical_mass == pytest.approx(whole.critical_mass, rel=1e-6)
+    for one, other in zip(
+        *(r.dynamic_stiffness(np.linspace(0.0, 4.0, 9) * SPEED) for r in (small, whole)), strict=True
+    ):
+        assert np.abs(one - other).max() < 1e-5 * np.abs(other).max()
