@@ -84,7 +84,7 @@ def test_films_on_thin_tongues_are_found():
 def test_the_film_on_a_tongue_is_the_one_reached_from_the_undeformed_bore():
     """The end of the viscous bore's motion ``K (q + tau dq/dt) = Q``, followed in short steps.
 
-    Two of eight have a second balance, nearer to the undeformed bore, to which Newton's method goes straight.
+    Two of eight have a second balance, nearer to the undeformed bore, at which Newton's method arrives first.
     """
     others = 0
     for model, motion in tongues(1, 8, ((4e-4, 8), (1e-3, 6))):
@@ -99,7 +99,6 @@ def test_the_film_on_a_tongue_is_the_one_reached_from_the_undeformed_bore():
             others += 1
             held = model.elasticity.force(found)
             assert np.linalg.norm(load - held) < 1e-8 * np.linalg.norm(held)
-            assert newton.solve(0.9 * found, 1.0, straight=True) is not None
             assert np.linalg.norm(found) < 0.1 * np.linalg.norm(q)
     assert others <= 2
 
