@@ -148,4 +148,5 @@ def test_a_state_stored_behind_a_static_solve_holds_the_film_of_the_run(what):
     settings.staticSolver.stabilizerODE2term = 1e12
     with pytest.raises(ehd.EHDError):
         ehd.SolveStatic(mbs, settings)
-    np.testing.assert_array_equal(memory(joint), expected)
+    # the film is found again, from where the failed solve has left its solver
+    np.testing.assert_allclose(memory(joint), expected, rtol=1e-12, atol=1e-13)
