@@ -36,7 +36,9 @@ def put(monkeypatch, stream):
 @pytest.fixture
 def terminal(monkeypatch):
     screen = put(monkeypatch, Terminal())
-    monkeypatch.setattr(progress.shutil, "get_terminal_size", lambda: progress.shutil.os.terminal_size((120, 24)))
+    monkeypatch.setattr(
+        progress.shutil, "get_terminal_size", lambda *_, **__: progress.shutil.os.terminal_size((120, 24))
+    )
     return screen
 
 
