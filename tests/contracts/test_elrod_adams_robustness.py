@@ -177,3 +177,33 @@ def test_oil_that_nothing_but_time_determines():
     ratio, angle = np.hypot(*place[:2]) / CLEARANCE, math.atan2(place[1], place[0])
     with pytest.raises(ehd.FilmError, match=r"steady: NO_OIL .* needs oil from somewhere"):
         ehd.steady(bearing, speed=1800.0, eccentricity_ratio=ratio, direction=angle, tilt=tuple(place[2:]))
+
+
+@pytest.mark.parametrize("line_in_cells", [False, True], ids=["vertices", "cells"])
+@pytest.mark.parametrize("cavity_pressure", [-1e5, -1e6])
+def test_slow_films_with_ends_at_the_cavity_s_pressure(cavity_pressure, line_in_cells):
+    """Small pressures are no rounding of the cavity's: forces go with the speed.
+
+    What the ends have above the cavity, 1e-7 Pa, is some 1e-4 of the slowest film's pressure.
+    """
+    ends = cavity_pressure * (1.0 - 1e-12)
+    bearing = ehd.JournalBearing(
+        journal_radius=RADIUS,
+        length=RADIUS,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+        cavitation=ehd.ElrodAdams(cavity_pressure=cavity_pressure, line_in_cells=line_in_cells),
+        end_pressures=(ends, ends),
+    )
+    model, motion, forces = build_model(bearing), np.zeros(10), []
+    motion[:2] = 0.5 * CLEARANCE, 0.3 * CLEARANCE
+    for speed in (1e-4, 1e-2, 1.0):
+        motion[8] = speed
+        history = model.initial_history(motion)
+        for _ in range(2):
+            found = model.evaluate(motion, history, 0.1 / speed)
+            assert found.status is ehd.Status.CONVERGED
+            history = found.history()
+        forces.append(found.wrench[:2] / speed)
+    np.testing.assert_allclose(forces[:2], [forces[2]] * 2, rtol=1e-3)

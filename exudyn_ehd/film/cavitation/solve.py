@@ -59,6 +59,54 @@ def factor_oil_film(film, since, curve, full, fill, factor):
     return factor_oil(film, film_terms(film, since[0], since[1]), curve, full, fill, factor)
 
 
+@njit(cache=True)
+def _newton(film, late, b, since, pc, curve, in_cells, start, factor, x, full, u, P, fill):
+    """`solve_oil` with pressures P above the cavity's."""
+    order, _, lower, upper, inv_diag, _ = factor
+    (known, ready, count, width), (inverse_step, mass_old) = start, since
+    film.late[:, :] = late
+    if inverse_step > 0.0:
+        hold_back(film, inverse_step, mass_old)
+    carried, rest, terms = film.late.copy(), film.kx.copy(), film_terms(film, inverse_step, mass_old)
+    curve.s[:] = 1.0
+    curve.slope[:] = 0.0
+    curve.rise[:] = 0.0
+    if in_cells:
+        curve_terms(film, b, curve)
+    if not known:
+        start_states(film, pc, curve, full, u)
+    flat, own, done, last, drift = rest.reshape(-1), False, False, LEFT, 0.0
+    for step in range(MOST_STEPS):
+        set_states(film, carried, curve, full, u, P, fill)
+        film_balance(P, fill, None, terms, rest)
+        if done:
+            of_drive, of_flows = imbalance(film, terms, P, rest)
+            if of_flows <= EVEN:
+                sound = settle_states(film, full, P, fill) > -LARGEST_DEFICIT and of_drive <= BALANCED
+                return sound, step, own and drift <= LEFT, count, width
+            ready = own
+        fresh = not ready
+        if fresh:
+            ok, count, width = factor_oil(film, terms, curve, full, fill, factor)
+            if not ok:
+                return False, step + 1, False, count, width
+            own, drift = True, 0.0
+        for r in range(count):
+            x[r] = -flat[order[r]]
+        solve_lu_one(dense_band(lower, count, width), dense_band(upper, count, width), inv_diag, count, width, x)
+        changes, moved, bent = move_states(curve, order, count, x, full, u, P)
+        if not moved < 1e300:
+            return False, step + 1, False, count, width
+        if fresh:
+            done, ready = changes == 0 and bent <= SETTLED and moved <= FAR, changes == 0 and bent <= WORN
+        else:
+            # nobody knows how the first step's successors will shrink
+            done = changes == 0 and moved * moved <= LEFT * last
+            ready = changes == 0 and moved <= REUSABLE * (last if step > 0 else 1.0)
+        drift, last = drift + bent, moved
+    return False, MOST_STEPS, False, count, width
+
+
 @njit(cache=True, nogil=True)
 def solve_oil(film, late, b, since, pc, curve, in_cells, start, factor, x, full, u, P, fill):
     """Solve from ``full`` and ``u``, in place; returns (found, steps, whether the factor is exact, count, width).
@@ -78,46 +126,12 @@ def solve_oil(film, late, b, since, pc, curve, in_cells, start, factor, x, full,
     x : (n m,) array
         Newton's step.
     """
-    order, _, lower, upper, inv_diag, _ = factor
-    (known, ready, count, width), (inverse_step, mass_old) = start, since
-    film.late[:, :] = late
-    if inverse_step > 0.0:
-        hold_back(film, inverse_step, mass_old)
-    carried, rest, terms = film.late.copy(), film.kx.copy(), film_terms(film, inverse_step, mass_old)
-    curve.s[:] = 1.0
-    curve.slope[:] = 0.0
-    curve.rise[:] = 0.0
-    if in_cells:
-        curve_terms(film, b, curve)
-    if not known:
-        start_states(film, pc, curve, full, u)
-    flat, own, done, last, drift = rest.reshape(-1), False, False, LEFT, 0.0
-    for step in range(MOST_STEPS):
-        set_states(film, carried, pc, curve, full, u, P, fill)
-        film_balance(P, fill, None, terms, rest)
-        if done:
-            of_drive, of_flows = imbalance(film, terms, P, rest, pc)
-            if of_flows <= EVEN:
-                sound = settle_states(film, full, pc, P, fill) > -LARGEST_DEFICIT and of_drive <= BALANCED
-                return sound, step, own and drift <= LEFT, count, width
-            ready = own
-        fresh = not ready
-        if fresh:
-            ok, count, width = factor_oil(film, terms, curve, full, fill, factor)
-            if not ok:
-                return False, step + 1, False, count, width
-            own, drift = True, 0.0
-        for r in range(count):
-            x[r] = -flat[order[r]]
-        solve_lu_one(dense_band(lower, count, width), dense_band(upper, count, width), inv_diag, count, width, x)
-        changes, moved, bent = move_states(pc, curve, order, count, x, full, u, P)
-        if not moved < 1e300:
-            return False, step + 1, False, count, width
-        if fresh:
-            done, ready = changes == 0 and bent <= SETTLED and moved <= FAR, changes == 0 and bent <= WORN
-        else:
-            # nobody knows how the first step's successors will shrink
-            done = changes == 0 and moved * moved <= LEFT * last
-            ready = changes == 0 and moved <= REUSABLE * (last if step > 0 else 1.0)
-        drift, last = drift + bent, moved
-    return False, MOST_STEPS, False, count, width
+    given, known = P.copy(), film.fixed.reshape(-1)
+    pressures, kept = P.reshape(-1), given.reshape(-1)
+    # flows follow differences alone: above the cavity's, small pressures keep their digits
+    for c in range(known.size):
+        pressures[c] = kept[c] - pc
+    found = _newton(film, late, b, since, pc, curve, in_cells, start, factor, x, full, u, P, fill)
+    for c in range(known.size):
+        pressures[c] = kept[c] if known[c] else pressures[c] + pc
+    return found

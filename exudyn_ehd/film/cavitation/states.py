@@ -1,15 +1,16 @@
 """One unknown u per vertex: pressure and film fraction of a mass-conserving film, with their derivatives.
 
-Where ``u >= 0`` the vertex is full, where ``u <= 0`` it is in the cavity; both sides meet at u = 0. With the cavity's
-pressure pc and the curve of `exudyn_ehd.film.cavitation.oil_line` that a vertex may have (``whole``, ``drop``; both 0
-without),
+Where ``u >= 0`` the vertex is full, where ``u <= 0`` it is in the cavity; both sides meet at u = 0. With the pressure P
+above the cavity's and the curve of `exudyn_ehd.film.cavitation.oil_line` that a vertex may have (``whole``, ``drop``;
+both 0 without),
 
-    full, without curve     P = pc + u,                                     fill = 1,
-    on the curve, u < 1     P = pc + whole u^2,                             fill = 1 - drop (1 - u)^2,
-    behind it, u >= 1       P = pc + whole (2 u - 1),                       fill = 1,
-    in the cavity           P = pc,                                         fill = 1 - drop + u.
+    full, without curve     P = u,                  flows carry 1,
+    on the curve, u < 1     P = whole u^2,          flows carry 1 - drop (1 - u)^2,
+    behind it, u >= 1       P = whole (2 u - 1),    flows carry 1,
+    in the cavity           P = 0,                  flows carry 1 - drop + u.
 
-Pressure and fill rise with u and have continuous derivatives but at u = 0. Newton's matrix is that of
+The vertex holds as much, but on its curve ``1 - drop (1 - u / FILLED)^2`` up to u = FILLED, and 1 behind. All of them
+rise with u and have continuous derivatives but at u = 0. Newton's matrix is that of
 `exudyn_ehd.film.reynolds.balance` in P at full vertices and in the fill at others, and its steps become those of u by
 dP/du: a scaling of columns.
 """
@@ -38,7 +39,7 @@ def start_states(film, pc, curve, full, u):
 
 
 @njit(cache=True)
-def set_states(film, late, pc, curve, full, u, P, fill):
+def set_states(film, late, curve, full, u, P, fill):
     """Pressures, fills and slopes of the curves from the unknowns.
 
     ``late`` is that of `exudyn_ehd.film.reynolds.lagging_void`; ``film.late`` gets what curves carry less than the
@@ -55,23 +56,23 @@ def set_states(film, late, pc, curve, full, u, P, fill):
         if known[c]:
             sets[c], fills[c] = False, 1.0
         elif not sets[c]:
-            pressures[c], fills[c] = pc, 1.0 - drop + x[c]
+            pressures[c], fills[c] = 0.0, 1.0 - drop + x[c]
         elif whole == 0.0:
-            pressures[c], fills[c] = pc + x[c], 1.0
+            pressures[c], fills[c] = x[c], 1.0
         elif x[c] >= 1.0:
-            pressures[c], fills[c] = pc + whole * (2.0 * x[c] - 1.0), 1.0
+            pressures[c], fills[c] = whole * (2.0 * x[c] - 1.0), 1.0
         else:
             s = max(x[c], LEAST)
             carried, by_s = lack(s, 1.0)
             held, rise = lack(s, FILLED)
-            pressures[c], fills[c] = pc + whole * s * s, 1.0 - drop * held
+            pressures[c], fills[c] = whole * s * s, 1.0 - drop * held
             half = -0.5 * drop / (whole * s)
             curve.s[c], curve.slope[c], curve.rise[c] = s, half * by_s, half * rise
             rest[c] = kept[c] - prompt[c] * drop * (carried - held)
 
 
 @njit(cache=True)
-def move_states(pc, curve, order, count, dx, full, u, P):
+def move_states(curve, order, count, dx, full, u, P):
     """Take Newton's step dx (count,), of pressures where ``full``, else of fills; a vertex that crosses u = 0 stops
     there and changes its side.
 
@@ -81,7 +82,7 @@ def move_states(pc, curve, order, count, dx, full, u, P):
     sets, x, pressures, peak, last_peak = full.reshape(-1), u.reshape(-1), P.reshape(-1), 0.0, 0.0
     for r in range(count):
         if sets[order[r]]:
-            before = pressures[order[r]] - pc
+            before = pressures[order[r]]
             peak, last_peak = max(peak, abs(before + dx[r])), max(last_peak, abs(before))
     changes, moved, bent, per_peak = 0, 0.0, 0.0, 1.0 / max(peak, ROUNDING * last_peak, 1e-300)
     for r in range(count):
@@ -110,13 +111,13 @@ def move_states(pc, curve, order, count, dx, full, u, P):
 
 
 @njit(cache=True)
-def settle_states(film, full, pc, P, fill):
+def settle_states(film, full, P, fill):
     """Take back what lies on the other side by rounding; returns the least fill before."""
     known, sets, pressures, fills = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1), fill.reshape(-1)
     least = 1.0
     for c in range(sets.size):
         if not known[c]:
             least = min(least, fills[c])
-            pressures[c] = max(pressures[c], pc) if sets[c] else pc
+            pressures[c] = max(pressures[c], 0.0) if sets[c] else 0.0
             fills[c] = min(max(fills[c], 0.0), 1.0)
     return least

@@ -50,9 +50,9 @@ def has_unfed_row(P, H, fixed, turns, pc):
 
 
 @njit(cache=True)
-def imbalance(film, terms, P, balance, pc):
+def imbalance(film, terms, P, balance):
     """Return the largest balance (n, m) of an unknown vertex over the largest flow that drives the film, and over the
-    largest flow that it has."""
+    largest flow that it has; P (n, m) above the cavity's."""
     worst = drive = most = 0.0
     n, m = P.shape
     for i in range(n):
@@ -60,7 +60,7 @@ def imbalance(film, terms, P, balance, pc):
             flows = abs(film.fx[i, j]) + abs(film.fz[i, j])
             flows += film.area[i, j] * (abs(terms.grow[i, j]) + abs(terms.kept[i, j]))
             conductance = max(film.kx[i, j], max(film.kz[i, j], film.kz[i, j - 1] if j > 0 else 0.0))
-            pressed = conductance * abs(P[i, j] - pc)
+            pressed = conductance * abs(P[i, j])
             most = max(most, flows + pressed)
             if film.fixed[i, j]:
                 flows += pressed
