@@ -9,9 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.active_set import solve_active_set
-from exudyn_ehd.film.cavitation.line_newton import find_line
 from exudyn_ehd.film.cavitation.rupture_line import line_of
+from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.reynolds.links import set_links
@@ -47,27 +46,26 @@ def solve_plain(
     if not work.warm:
         return None, 0
     out = np.empty(18)
-    found, steps, count, width, peak, own, smallest, couette, s_theta = _plain_film(
+    found, steps, count, width, smallest, couette, s_theta = _plain_film(
         motion,
         parts.motion_scale,
         known,
         (scales.force, scales.shear, g.reference_length, parts.half_length, s.flow_x, s.closure.cavity_shear),
-        (s.squeeze, work.known, work.count, work.width),
+        (s.squeeze, work.known, line is not None),
         g.directions,
         g.mesh,
         g.weight,
         y.fields,
         (g.fixed, work.active),
-        None if line is None else line.blocks,
+        y.rupture.blocks,
         work.factor,
         work.unknowns,
         out,
     )
     if not found and steps == 0:
         return None, 0
-    work.warm, work.count, work.width = found, count, width
-    if line is not None:
-        work.known, line.peak, line.own_links, line.exact = found, peak, own, False
+    work.warm = work.known = found
+    work.count, work.width, y.rupture.exact = count, width, False
     if not found:
         return None, steps
     _, _, _, _, _, _, _, _, omega, axial_speed = motion.tolist()
@@ -96,16 +94,16 @@ def solve_plain(
 
 
 @njit(cache=True, nogil=True)
-def _plain_film(motion, scale, known, sizes, last, at, mesh, weight, fields, sets, line, factor, x, out):
-    """Returns (found, steps, count, width, peak, own links, smallest gap, integrals of the Couette shear, s_theta).
+def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, factor, x, out):
+    """Returns (found, steps, count, width, smallest gap, integrals of the Couette shear, s_theta).
 
-    ``last``: whether there is a squeeze, whether pressures and factor are those of the film before, and that factor's
-    size; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
+    ``kinds``: whether there is a squeeze, whether pressures are those of the film before, and whether the line lies
+    inside the cells; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
     force, shear, radius, half_length, flow_x, cavity_shear = sizes
-    squeeze, is_known, count, width = last
+    squeeze, is_known, in_cells = kinds
     pc = known[2]
-    vx, vz, own, none = 0.5 * motion[8], 0.5 * motion[9] / radius, False, (0.0, 0.0)
+    vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
     kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[4]
     H, HF, H_t, P = fields[5], fields[6], fields[7], fields[8]
     fixed, active = sets
@@ -115,25 +113,17 @@ def _plain_film(motion, scale, known, sizes, last, at, mesh, weight, fields, set
     smallest = rigid_gaps(pose, rate, squeeze, at, half_length, H, HF, H_t)
     # not where motions are not finite
     if not (smallest > 0.0 and np.isfinite(vx + vz + rate[0] + rate[1] + rate[2] + rate[3])):
-        return False, 0, count, width, 0.0, own, smallest, none, 0.0
+        return False, 0, np.int64(0), np.int64(1), smallest, (0.0, 0.0), 0.0
     P[:, 0], P[:, -1] = known[0], known[1]
     set_links(H, HF, H_t if squeeze else None, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
-    peak = 0.0
-    if line is None:
-        order, old_order, number, band, inv_diag = factor
-        ok, steps, count, width = solve_active_set(
-            kx, kz, b, fixed, pc, active, order, old_order, number, band, inv_diag, x, P
-        )
-    else:
-        forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
-        last = (count, width) if is_known else (np.int64(0), np.int64(1))
-        ok, steps, count, width, peak, own = find_line(
-            (kx, kz, b), fixed, pc, forth, is_known, line_of(line), active, factor, last, x, P
-        )
+    forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
+    ok, steps, count, width = find_film(
+        (kx, kz, b), fixed, pc, in_cells, forth, is_known, line_of(line), active, factor, x, P
+    )
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     ends = end_forces(H, known)
     s_theta = journal_wrench(
         pose, integrals, couette[0], 0.0, 0.0, ends, force, shear, radius, motion[8], motion[9], out
     )
-    return ok, steps, count, width, peak, own, smallest, couette, s_theta
+    return ok, steps, count, width, smallest, couette, s_theta

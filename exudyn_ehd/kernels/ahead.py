@@ -32,7 +32,7 @@ PATIENCE = 60.0
 FEWEST = 10
 # A kernel of each group that compiles in a moment, and that no other film needs
 PROBES = {
-    "film": "film.cavitation.active_set:prolong_set",
+    "film": "film.loads:end_forces",
     "swift": "film.loads:couette_integral",
     "elrod": "film.reynolds.lagging_void:lag_void",
     "bodies": "coupling.kinematics.relative:_jac_column",

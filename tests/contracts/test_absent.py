@@ -118,12 +118,8 @@ EFFECTS = {
         ("film.solvers.impedance_map", "joint.model.impedance"),
         {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
-    "line": (
-        ("film.cavitation.rupture_line", "film.cavitation.line_newton"),
-        {"cavitation": ehd.SwiftStieber(line_in_cells=True)},
-    ),
     "line on a liner": (
-        ("film.cavitation.line_kernels", "film.solvers.liner.line"),
+        ("film.solvers.liner.line_kernels", "film.solvers.liner.line"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
     ),
     "holes": (
@@ -148,7 +144,10 @@ SHARED = {
     "banded.lu",
     "banded.lanes",
     "cavitation.closures",
-    "cavitation.active_set",
+    "cavitation.linear_film",
+    "cavitation.rupture_line",
+    "cavitation.swift_stieber",
+    "cavitation.system",
     "cavitation.steady_oil",
     "cavitation.states",
     "models",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 
 import numpy as np
@@ -86,12 +85,13 @@ def test_many_random_states_of_swift_stieber(make_bearing, film):
 
 @every_closure
 @both_films
-def test_warm_start_changes_no_bit(make_bearing, closure, film):
-    """Nor the film by more than rounding where the rupture line lies in the cells."""
+def test_a_warm_start_changes_nothing_but_rounding(make_bearing, closure, film):
+    """No bit of films whose unknowns are the same everywhere."""
     if closure is ehd.SwiftStieber:
-        compare_warm_with_cold(make_bearing(0.8, film=film), 1e-12)
-        closure = functools.partial(closure, line_in_cells=False)
-    compare_warm_with_cold(make_bearing(0.8, cavitation=closure(), film=film), 0.0)
+        for in_cells in {film is FILMS[0], False}:
+            compare_warm_with_cold(make_bearing(0.8, cavitation=closure(line_in_cells=in_cells), film=film), 1e-12)
+    else:
+        compare_warm_with_cold(make_bearing(0.8, cavitation=closure(), film=film), 0.0)
 
 
 def compare_warm_with_cold(bearing, error):
@@ -99,11 +99,11 @@ def compare_warm_with_cold(bearing, error):
     for _ in range(60):
         motion = _random_motion(rng, bearing)
         a, b = warm.evaluate(motion), build_model(bearing).evaluate(motion)
-        # a tangent's factor counts as exact at 1e-9; small quantities are differences of large ones
+        # small quantities are differences of large ones
         q, r = (np.array(list(e.quantities().values())) for e in (a, b))
         for found, expected, left in (
             (a.wrench, b.wrench, error * np.abs(b.wrench).max()),
-            (a.tangent(), b.tangent(), 1e4 * error * np.abs(b.tangent()).max()),
+            (a.tangent(), b.tangent(), error * np.abs(b.tangent()).max()),
             (q, r, 1e3 * error * np.abs(r)),
         ):
             assert np.all(np.abs(found - expected) <= left)

@@ -225,14 +225,14 @@ def balance_error(model):
     else:
         vertex_balance(y.linear_pressure, y.kx, y.kz, y.b, out)
     P, joins = y.linear_pressure, 0.0
+    if s.complementary:
+        # pressures above the cavity's are the unknowns
+        P = P - y.cavity_pressure
     peak = np.abs(P).max()
     if s.line is not None:
-        # what appears at the line, what a vertex without film has to lack for it to join, pressures above the cavity's
+        # what appears at the line, and what a vertex without film has to lack for it to join
         out -= np.where(s.line.s < 1.0, 0.5 * s.line.f * (1.0 - s.line.s) ** 2, 0.0)
         joins = 0.5 * s.line.f
-    if s.line is not None or closure.conserves_mass:
-        # pressures above the cavity's are the unknowns
-        peak = (P - y.cavity_pressure).max()
     flow = np.maximum(np.abs(y.fx), np.abs(np.roll(y.fx, 1, axis=0)))
     flow = np.maximum(flow, np.abs(y.kx * P) + np.abs(y.kx * np.roll(P, -1, axis=0)))
     flow = np.maximum(flow, np.abs(np.roll(y.kx * P, 1, axis=0)))

@@ -23,14 +23,9 @@ import numpy as np
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.active_set import (
-    FilmSystem,
-    clip_in_cells,
-    clip_pressure,
-    solve_active_set,
-    solve_on_active,
-)
-from exudyn_ehd.film.cavitation.line_newton import solve_with_line
+from exudyn_ehd.film.cavitation.linear_film import clip_in_cells, clip_pressure, solve_linear
+from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
+from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
 
 # Gauge pressure of the absolute vacuum, Pa, where the air presses most.
@@ -106,8 +101,7 @@ class FullSommerfeld(SymmetricClosure):
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Solve on all free vertices."""
-        np.logical_not(system.fixed, out=work.active)
-        return _solve_linear(system, work)
+        return _solve_free(system, work)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,8 +144,7 @@ class Gumbel(SymmetricClosure):
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Solve on all free vertices, then clip into ``system.pressure``; ``work.active`` marks the unbroken film."""
-        np.logical_not(system.fixed, out=work.active)
-        outcome = _solve_linear(system, work)
+        outcome = _solve_free(system, work)
         linear, known, pc = system.linear_pressure, system.fixed, system.cavity_pressure
         if self.line_in_cells:
             clip_in_cells(linear, known, system.linked, pc, system.pressure, work.active)
@@ -209,46 +202,15 @@ class SwiftStieber(SymmetricClosure):
         """Primal-dual active set from ``work.active``, or from all free vertices if ``work.warm`` is False."""
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
-        if system.line is not None:
-            work.warm, steps = solve_with_line(system, system.line, work)
-            return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
-        ok, steps, count, width = solve_active_set(
-            system.kx,
-            system.kz,
-            system.b,
-            system.fixed,
-            system.cavity_pressure,
-            work.active,
-            work.order,
-            work.old_order,
-            work.number,
-            work.band,
-            work.inv_diag,
-            work.unknowns,
-            system.pressure,
-        )
-        work.count, work.width, work.warm = count, width, ok
-        return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
+        work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
+        return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
 
 
-def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Solve on ``work.active`` into ``system.linear_pressure``."""
-    ok, count, width = solve_on_active(
-        system.kx,
-        system.kz,
-        system.b,
-        work.active,
-        work.order,
-        work.old_order,
-        0,
-        0,
-        work.number,
-        work.band,
-        work.inv_diag,
-        work.unknowns,
-        system.linear_pressure,
-    )
-    work.count, work.width = count, width
+def _solve_free(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """The linear film of all vertices that are not prescribed, into ``system.linear_pressure``."""
+    np.logical_not(system.fixed, out=work.active)
+    links = system.kx, system.kz, system.b
+    ok, work.count, work.width = solve_linear(links, work.active, work.factor, work.unknowns, system.linear_pressure)
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
 
 

@@ -26,11 +26,11 @@ from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.closures import check_cavity_pressure
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.cavitation.solve import factor_oil_film, solve_oil
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
+from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.reynolds.links import Coefficients
 from exudyn_ehd.status import Status, require_bool
 

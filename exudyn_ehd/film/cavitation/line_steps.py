@@ -1,4 +1,4 @@
-"""What one step of `exudyn_ehd.film.cavitation.line_newton` does to a film with its rupture line inside its cells.
+"""What one step of `exudyn_ehd.film.cavitation.swift_stieber` does to a film with its rupture line inside its cells.
 
 Symbols as there and in `exudyn_ehd.film.cavitation.rupture_line`; pressures are those above the cavity's.
 """
@@ -9,14 +9,9 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
-from exudyn_ehd.film.cavitation.rupture_line import LEAST
 
 # s that a vertex starts from whose pressure says nothing of it.
 START = 1e-3
-# Steps after which vertices no longer leave the film at once: two may drive each other out and in again for ever. Of an
-# s that would vanish so much is left. Steps after which pressures are the unknowns everywhere: then Newton's method
-# can't miss, since balances are concave in them, but it takes longer.
-PATIENT, KEPT, SAFE = 8, 0.1, 30
 # Pressure below the cavity's, over the peak, by which a vertex without a line leaves the film: about 100 roundings.
 ROUNDING = 1e-13
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -146,25 +141,21 @@ def line_rows(lack, line, number, order, count, active, rhs_out):
 
 
 @njit(cache=True)
-def factor_line(links, line, factor, count, width, first, kept, peak):
-    """Assemble and factor from the first row that changes, which is ``first`` or whose s does, by more than ``kept``.
+def factor_line(links, line, factor, count, width, first, kept):
+    """Assemble and factor from the first row that changes, which is ``first`` or whose s does, by more than ``kept``
+    of itself.
 
-    What counts is the change over s. With a ``peak`` it is what the change of s makes of the pressure over the peak,
-    times the change over s if that is larger than 1.
     Returns whether there is a factor, and the largest change over s that it does not know of.
     """
     kx, kz, _ = links
     order, _, number, band, inv_diag = factor
-    f, k, s, _, _, _, shift, share = line
+    _, k, s, _, _, _, shift, share = line
     row, stale = 0, 0.0
     while row < first:
         if share[row] != shift[row]:
             c = order[row]
-            change = abs(s[c] - k[c] / (k[c] + shift[row]))
-            counts = over_s = change / s[c]
-            if peak > 0.0:
-                counts = max(counts, 1.0) * change * f[c] / (k[c] * peak)
-            if counts > kept:
+            over_s = abs(1.0 - k[c] / ((k[c] + shift[row]) * s[c]))
+            if over_s > kept:
                 break
             stale = max(stale, over_s)
         row += 1
@@ -177,14 +168,13 @@ def factor_line(links, line, factor, count, width, first, kept, peak):
 
 
 @njit(cache=True)
-def _move_line(line, rows, steps, taken, free, pressures):
+def _move_line(line, rows, steps, free, pressures):
     """s of the vertices at the line after a step, and their pressures' true change into ``steps``.
 
     Returns in_line, stale and left of `move_film`.
     """
     _, k, s, whole, _, places, shift, _ = line
     in_line, stale, stay, left = 0.0, 0.0, 0, 0
-    kept = KEPT if taken > PATIENT else 0.0
     for q in range(places[-1]):
         c = places[q]
         r, own = rows[c], s[c]
@@ -194,11 +184,6 @@ def _move_line(line, rows, steps, taken, free, pressures):
             continue
         new = pressures[c] + steps[r]
         place = own + 0.5 * steps[r] / (whole[c] * own)
-        if taken > SAFE:
-            place = np.sqrt(max(new, 0.0) / whole[c])
-        if own > LEAST and place < kept * own:
-            # on its way out, whatever little it moves
-            place, in_line = kept * own, 1.0
         if not place > 0.0:
             free[c], new, place = False, pressures[c], 1.0
             pressures[c] = 0.0
@@ -217,8 +202,8 @@ def _move_line(line, rows, steps, taken, free, pressures):
 
 
 @njit(cache=True)
-def move_film(line, number, order, count, steps, taken, active, p):
-    """Take a step, the one that is ``taken`` after so many.
+def move_film(line, number, order, count, steps, active, p):
+    """Take a step.
 
     Returns
     -------
@@ -231,7 +216,7 @@ def move_film(line, number, order, count, steps, taken, active, p):
     """
     _, _, s, whole, _, places, _, _ = line
     pressures, free = p.reshape(-1), active.reshape(-1)
-    in_line, stale, left = _move_line(line, number.reshape(-1), steps, taken, free, pressures)
+    in_line, stale, left = _move_line(line, number.reshape(-1), steps, free, pressures)
     step, peak, lowest = 0.0, 0.0, 0.0
     for r in range(count):
         c = order[r]
@@ -284,3 +269,17 @@ def place_line(line, fixed, active, p):
             places[count] = c
             count += 1
     places[-1] = count
+
+
+@njit(cache=True)
+def prolong_set(coarse, fixed, fine_out):
+    """Active set of a grid from that of every second vertex: active if a coarse vertex next to it is."""
+    n, m = fine_out.shape
+    nc = coarse.shape[0]
+    for i in range(n):
+        a = i // 2
+        b = (a + i % 2) % nc
+        for j in range(m):
+            c = j // 2
+            d = c + j % 2
+            fine_out[i, j] = (coarse[a, c] or coarse[a, d] or coarse[b, c] or coarse[b, d]) and not fixed[i, j]

@@ -91,10 +91,8 @@ class RuptureLine:
         The same for `line_of`.
     f, k, s, whole, places, share : arrays
         Of ``fields``, the first three (n, m).
-    peak : float
-        Largest pressure of the last solution above the cavity's.
-    own_links, exact : bool
-        Whether the factor holds the last solution's conductances, and also its line.
+    exact : bool
+        Whether the factor holds the last solution's line.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
@@ -107,8 +105,7 @@ class RuptureLine:
         self.f, self.k, self.s = (field.reshape(shape) for field in (f, k, s))
         self.whole, self.places, self.share = whole, places, share
         s[:] = 1.0
-        self.own_links = self.exact = False
-        self.peak = 0.0
+        self.exact = False
 
     def gradients(
         self,
@@ -143,10 +140,14 @@ def line_of(blocks):
 
 
 @njit(cache=True)
-def line_terms(kx, b, fixed, line):
-    """f and k of all vertices, and what follows from them."""
+def line_terms(kx, b, fixed, in_cells, line):
+    """f and k of all vertices, and what follows from them; f = 0 where the line is not looked for ``in_cells``."""
     links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]
     f, k, _, whole, limit, _, _, _ = line
+    if not in_cells:
+        for c in range(f.size):
+            f[c], whole[c], limit[c] = 0.0, 0.0, np.inf if known[c] else 0.0
+        return
     last = rest.size - m
     for start, end, prv, nxt in ((0, m, last, m), (m, last, 0, 2 * m), (last, rest.size, last - m, 0)):
         at, before, behind = slice(start, end), slice(prv, prv + end - start), slice(nxt, nxt + end - start)

@@ -18,7 +18,7 @@ Anal. Appl. 32 (1970) 274). Two kinds of films do not have that:
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.active_set import FilmSystem
+from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import Status
 
 # Pressure times the gap's square over the scaled speed, below which a vertex has none: a share of the Couette flow. A

@@ -4,12 +4,12 @@ on a liner without further effects, and one between rigid surfaces whose density
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.line_kernels import is_there, meet_line
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
 from exudyn_ehd.film.solvers.liner.elements import plain_slopes
 from exudyn_ehd.film.solvers.liner.gap_response import link_gradients
 from exudyn_ehd.film.solvers.liner.kernels import plain_residual
+from exudyn_ehd.film.solvers.liner.line_kernels import is_there, meet_line
 from exudyn_ehd.film.solvers.newton import RULE, improves, is_final, pays_again, too_slow
 from exudyn_ehd.film.solvers.steps import (
     BALANCED,
@@ -154,6 +154,7 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
         select(P, residual, fixed, pc, active)
     reused = ready
     last = last_left = moved = 0.0
+    once = False
     for step in range(1, RULE.most_steps + 1):
         fresh = not ready
         if fresh:
@@ -194,6 +195,8 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
         ready = changes == 0 and share == 1.0
         if ready:
             converged = converged and (not clips or norm <= BALANCED / ROUNDING * flow_rounding(terms, rate))
+            # a share of the suction that is cut off may be many of the peak: another step
+            converged, once = converged and (not clips or once), converged
             if converged or (not from_last and is_final(left, last_left, fresh)):
                 return True, step, not from_last and moved <= RULE.exact, count, width
         ready = ready and pays_again(size, last, fresh or from_last)

@@ -29,7 +29,6 @@ import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
 from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
@@ -39,6 +38,7 @@ from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.compiled import factor, solve
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
 from exudyn_ehd.film.solvers.liner.line import FilmLine
+from exudyn_ehd.film.solvers.liner.line_kernels import NO_LINE
 from exudyn_ehd.film.solvers.steps import admit
 from exudyn_ehd.status import Status
 
@@ -219,7 +219,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             self.trial,
             fixed,
             self._speeds(),
-            (False, self.complementary and not fills),
+            (self.closure.clips, self.complementary and not fills),
             self.fields,
             self.H_t,
             None,

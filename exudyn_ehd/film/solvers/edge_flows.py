@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 
 

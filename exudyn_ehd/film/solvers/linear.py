@@ -8,13 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.active_set import FilmSystem, prolong_set
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.elrod_adams import factor_solution
-from exudyn_ehd.film.cavitation.line_newton import refine_factor
+from exudyn_ehd.film.cavitation.line_steps import prolong_set
 from exudyn_ehd.film.cavitation.oil_line import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
 from exudyn_ehd.film.cavitation.steady_oil import status_of
+from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
+from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
@@ -74,7 +75,7 @@ class FilmSolver:
         if closure.line_in_cells and closure.conserves_mass:
             self.oil_line = self.system.oil_line = OilLine(shape)
         elif closure.line_in_cells and not closure.clips:
-            self.line = self.system.line = RuptureLine(shape)
+            self.line = self.system.line = self.system.rupture
         self.work, self.flux_effects = Workspace(*shape), flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
         self.ones, self.nothing, self.link_fields = np.ones(shape), np.zeros(shape), np.zeros((5, *shape))
@@ -85,14 +86,13 @@ class FilmSolver:
         self.complementary = self.ruptures and not closure.clips
         # derivative of what `keep` returned to the gap
         self.follows = self.nothing
-        coarse = grid.coarser()
         self.coarse: FilmSolver | None = None
-        if coarse is not None and self.complementary:
+        coarse = grid.coarser() if self.complementary and not closure.conserves_mass else None
+        if coarse is not None:
+            # of which the sets alone are asked for
             self.coarse = FilmSolver(
                 coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
             )
-            # of which the sets alone are asked for
-            self.coarse.oil_line = self.coarse.system.oil_line = None
 
     @property
     def pressure(self) -> np.ndarray:
@@ -162,12 +162,12 @@ class FilmSolver:
         steps, was_warm = 0, self.work.warm and not s.closes
         if not was_warm:
             self.forget()
-            steps = self._guess_from_coarse(mass_old, step)
+            steps = self._guess_from_coarse()
         status, fine_steps = self.closure.solve(s, self.work)
-        if was_warm and status is Status.NOT_CONVERGED and self.coarse is not None:
+        if was_warm and status is Status.NOT_CONVERGED and self.complementary:
             # a start from another state can mislead where the film itself is benign
             self.forget()
-            steps += fine_steps + self._guess_from_coarse(mass_old, step)
+            steps += fine_steps + self._guess_from_coarse()
             status, fine_steps = self.closure.solve(s, self.work)
         return status_of(s, status), steps + fine_steps
 
@@ -247,7 +247,8 @@ class FilmSolver:
         """Gap (n, m) at the start of a step as the rates at its end have it, and its derivative to the gap now."""
         return self.H - step * self.H_t, self.ones
 
-    def _guess_from_coarse(self, mass_old: np.ndarray | None, step: float) -> int:
+    def _guess_from_coarse(self) -> int:
+        """Sets of a coarser grid's film, on which the way from the full film is short; returns its steps."""
         coarse = self.coarse
         if coarse is None or (self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any()):
             return 0  # the coarser grid has lost the supply and would starve
@@ -256,8 +257,7 @@ class FilmSolver:
         coarse.H_t[:] = self.H_t[::2, ::2]
         coarse.pressure[:] = self.pressure[::2, ::2]
         coarse.forget()
-        coarse_mass = None if mass_old is None else mass_old[::2, ::2]
-        status, steps = coarse.solve(self.vx, self.vz, self.system.cavity_pressure, coarse_mass, step)
+        status, steps = coarse.solve(self.vx, self.vz, self.system.cavity_pressure)
         if status is Status.CONVERGED:
             prolong_set(coarse.work.active, self.grid.fixed, self.work.active)
             self.work.warm = True

@@ -34,7 +34,7 @@ from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import PAD
-from exudyn_ehd.film.cavitation.active_set import clip_pressure
+from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.status import Status, require_count, require_number

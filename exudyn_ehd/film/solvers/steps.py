@@ -13,10 +13,10 @@ from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble,
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.banded.substitution import solve_lu_one
-from exudyn_ehd.film.cavitation.line_kernels import add_line, bend_to_line, is_there, lean_to_line
 from exudyn_ehd.film.reynolds.balance import film_slopes, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
+from exudyn_ehd.film.solvers.liner.line_kernels import add_line, bend_to_line, is_there, lean_to_line
 
 # Share of the smallest gap: a peak pressure that deflects the liner by less counts as one that does by so much.
 LEAST_DEFLECTION = 1e-10

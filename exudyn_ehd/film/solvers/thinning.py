@@ -45,10 +45,10 @@ class ThinningFilmSolver(NonlinearFilmSolver):
     ) -> None:
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects, oil=density, density=density)
         self.thins = next(e for e in flux_effects if isinstance(e, ShearThinning))
-        coarse = grid.coarser()
         self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
         self.thins.place(grid, self.flow_x)
-        if coarse is not None and self.complementary:
+        coarse = grid.coarser() if self.complementary and not closure.conserves_mass else None
+        if coarse is not None:
             # for the sets of a start alone
             self.coarse = FilmSolver(
                 coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze

@@ -28,8 +28,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.cavitation.closures import Closure, SwiftStieber
+from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.loads import end_flows
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.edge_flows import shear_share

@@ -10,8 +10,8 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.substitution import solve_ldl
-from exudyn_ehd.film.cavitation.line_newton import refine_line
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_of, line_weights
+from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
@@ -41,13 +41,12 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
     """d wrench / d motion (6, 10) in SI units of a film that `is_plain`."""
     s, p, g, w, scales, out = film.solver, film.parts, film.grid, film.journal, film.scales, np.empty((6, MOTION_SIZE))
     y, line, work = s.system, s.line, s.work
-    known = (0, 0.0, True) if line is None else (work.count if line.own_links else 0, line.peak, line.exact)
     _plain_tangent(
         y.fields,
         None if line is None else line.blocks,
         work.factor,
         (work.count, work.width),
-        known,
+        line is None or line.exact,
         (s.ones, s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.link_fields),
         (g.fixed, work.active),
         g.directions,
@@ -59,26 +58,25 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         out,
     )
     if line is not None:
-        line.own_links = line.exact = True
+        line.exact = True
     return out
 
 
 @njit(cache=True, nogil=True)
-def _plain_tangent(film, line, factor, size, known, fields, sets, at, mesh, speeds, squeeze, pose, scales, out):
+def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, speeds, squeeze, pose, scales, out):
     """Write the tangent.
 
-    ``film``: ``FilmSystem.fields``; ``known``: ``first`` and ``peak`` of `refine_line`, and whether the factor is that
-    of the solution.
+    ``film``: ``FilmSystem.fields``; ``exact``: whether the factor is that of the solution.
     """
     order, _, number, band, inv_diag = factor
-    (count, width), (first, peak, exact) = size, known
+    count, width = size
     kx, kz, b, H, HF, P = film[0], film[1], film[4], film[5], film[6], film[8]
     ones, by_rate, by_gap, weight, link_fields = fields
     fixed, active = sets
     cos_x, sin_x, _, _, z = at
     vx, vz, flow_x, cavity_shear = speeds
     if line is not None and not exact:
-        refine_line((kx, kz, b), line_of(line), factor, count, width, first, peak)
+        refine_line((kx, kz, b), line_of(line), factor, count, width)
     lam = np.empty((4, count))
     load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
     solve_ldl(band, inv_diag, count, width, lam)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.active_set import rows_of_linear
+from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import (
     couette_gradient,

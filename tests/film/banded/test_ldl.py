@@ -7,10 +7,10 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
-from exudyn_ehd.film.banded.ldl import assemble_band
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
+from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.active_set import gather_rhs, solve_on_active
+from exudyn_ehd.film.cavitation.linear_film import solve_linear
 
 
 def _active_sets(n, m, seed):
@@ -45,9 +45,7 @@ def test_against_sparse_solution(make_film, dense_matrix, name, cut, n, m):
         w.band[:] = np.nan  # nothing may be read that was not written
         P = np.where(active, 0.0, np.random.default_rng(seed).normal(size=(n, m)))
         known = P.copy()
-        ok, count, width = solve_on_active(
-            f.kx, f.kz, f.b, active, w.order, w.old_order, 0, 0, w.number, w.band, w.inv_diag, w.unknowns, P
-        )
+        ok, count, width = solve_linear((f.kx, f.kz, f.b), active, w.factor, w.unknowns, P)
         assert ok
         assert count == active.sum()
         assert width <= 2 * m
@@ -95,65 +93,27 @@ def test_factoring_behind_the_first_change_gives_the_same_bits(make_film, cut):
         i, j = int(rng.integers(n)), int(rng.integers(m))
         new[i, j] = not new[i, j]
         w, full = Workspace(n, m), Workspace(n, m)
-        P, Q = np.zeros((n, m)), np.zeros((n, m))
-        _, count, width = solve_on_active(
-            f.kx, f.kz, f.b, old, w.order, w.old_order, 0, 0, w.number, w.band, w.inv_diag, w.unknowns, P
-        )
+        _, count, width = _factor(f, old, w, 0, 1)
         w.old_order[:] = w.order
-        P[~new] = 0.0
-        got = solve_on_active(
-            f.kx, f.kz, f.b, new, w.order, w.old_order, count, width, w.number, w.band, w.inv_diag, w.unknowns, P
-        )
-        expected = solve_on_active(
-            f.kx,
-            f.kz,
-            f.b,
-            new,
-            full.order,
-            full.old_order,
-            0,
-            0,
-            full.number,
-            full.band,
-            full.inv_diag,
-            full.unknowns,
-            Q,
-        )
+        got, expected = _factor(f, new, w, count, width), _factor(f, new, full, 0, 1)
         assert got == expected
-        np.testing.assert_array_equal(P, Q)
         k, reach = got[1], got[2] + 1
         np.testing.assert_array_equal(w.band[:k, :reach], full.band[:k, :reach])
+        np.testing.assert_array_equal(w.inv_diag[:k], full.inv_diag[:k])
 
 
-def test_known_neighbours_move_to_the_right(make_film, dense_matrix):
-    f = make_film(5)
-    active = _active_sets(12, 6, 5)["random"]
-    w = Workspace(12, 6)
-    count, _ = number_cells(active, f.kx, w.order, w.number)
-    P, rhs = np.random.default_rng(5).normal(size=(12, 6)), np.empty(count)
-    gather_rhs(f.kx, f.kz, f.b, active, w.order, count, P, rhs)
-    known = np.where(active, 0.0, P).ravel()
-    expected = (f.b.ravel() - dense_matrix(f.kx, f.kz) @ known)[w.order[:count]]
-    np.testing.assert_allclose(rhs, expected, rtol=1e-12, atol=1e-13)
+def _factor(film, active, w, old_count, old_width):
+    """Factor of the active vertices, from the first row that differs from the one at hand."""
+    count, width = number_cells(active, film.kx, w.order, w.number)
+    first = first_changed_row(w.order, w.old_order, old_count, count, width) if width == old_width else 0
+    assemble_band(film.kx, film.kz, w.number, w.order, count, width, first, w.band)
+    return factor_band(w.band, count, width, first, w.inv_diag), count, width
 
 
 def test_a_singular_film_is_refused(make_film):
     # A ring without any prescribed pressure: the last pivot is zero up to rounding, an isolated vertex has none at all.
     f = make_film(9)
     w = Workspace(12, 6)
-    ok, _, _ = solve_on_active(
-        np.zeros_like(f.kx),
-        np.zeros_like(f.kz),
-        f.b,
-        np.ones((12, 6), dtype=bool),
-        w.order,
-        w.old_order,
-        0,
-        0,
-        w.number,
-        w.band,
-        w.inv_diag,
-        w.unknowns,
-        np.zeros((12, 6)),
-    )
+    zero, active = np.zeros_like(f.kx), np.ones((12, 6), dtype=bool)
+    ok, _, _ = solve_linear((zero, zero, f.b), active, w.factor, w.unknowns, np.zeros((12, 6)))
     assert not ok

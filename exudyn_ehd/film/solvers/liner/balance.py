@@ -7,7 +7,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
 from exudyn_ehd.film.cavitation.solve import LARGEST_DEFICIT
 from exudyn_ehd.film.reynolds.links import FilmState, add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
@@ -15,6 +14,7 @@ from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import GapChain
+from exudyn_ehd.film.solvers.liner.line_kernels import NO_LINE
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step
 from exudyn_ehd.film.solvers.steps import (

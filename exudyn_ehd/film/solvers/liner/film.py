@@ -7,7 +7,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.line_kernels import meet_line
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, violation
 from exudyn_ehd.film.reynolds.links import FilmState, LinkFlux
@@ -29,6 +28,7 @@ from exudyn_ehd.film.solvers.liner.elements import (
 from exudyn_ehd.film.solvers.liner.gap_response import link_gradients, speed_gradients
 from exudyn_ehd.film.solvers.liner.kernels import density_of_load, liner_residual, plain_residual
 from exudyn_ehd.film.solvers.liner.line import FilmLine
+from exudyn_ehd.film.solvers.liner.line_kernels import meet_line
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.surfaces.contact import Contact
 

@@ -39,7 +39,7 @@ class FilmLine(RuptureLine):
     Attributes
     ----------
     state : tuple of arrays
-        As `exudyn_ehd.film.cavitation.line_kernels` takes it.
+        As `exudyn_ehd.film.solvers.liner.line_kernels` takes it.
     gaps : (2, n, m) array
         At vertices and links, at the cavity's pressure.
     flux : LinkFlux or None
@@ -62,7 +62,7 @@ class FilmLine(RuptureLine):
     def take(self, gaps: tuple[np.ndarray, np.ndarray], kx: np.ndarray, b: np.ndarray, fixed: np.ndarray) -> None:
         """f and k from the film's gaps, conductances and right-hand side (n, m) at the cavity's pressure."""
         self.gaps[:], self.s[:] = gaps, 1.0
-        line_terms(kx, self.density * b, fixed, self.fields)
+        line_terms(kx, self.density * b, fixed, True, self.fields)
 
     def yield_to(self, beta: float, vx: float, width: np.ndarray) -> None:
         """f and k on a liner of scaled compliance ``beta``; ``width`` (m,) of the vertices."""

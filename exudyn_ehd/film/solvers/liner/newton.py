@@ -40,7 +40,7 @@ def newton(film: LinerBalance) -> tuple[bool, int]:
     film.begin()
     reused = ready = film.reusable
     film.reusable = film.exact = False
-    last, last_left, moved = 0.0, 0.0, 0.0
+    last, last_left, moved, once = 0.0, 0.0, 0.0, False
     for count in range(1, RULE.most_steps + 1):
         fresh = not ready
         if fresh:
@@ -75,6 +75,8 @@ def newton(film: LinerBalance) -> tuple[bool, int]:
         ready = changes == 0 and share == 1.0
         if ready:
             converged = converged and film.settled(norm)
+            # a share of the suction that is cut off may be many of the peak: another step
+            converged, once = converged and (once or not film.clips), converged
             if converged or (not from_last and is_final(step.left, last_left, fresh)):
                 if not converged:
                     film.correct(gap)

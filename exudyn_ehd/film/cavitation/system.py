@@ -1,0 +1,95 @@
+"""One film problem and its solution, as arrays that closures read and write.
+
+Symbols: kx, kz conductances of the links, b right-hand side, P pressure, all scaled (see
+`exudyn_ehd.film.reynolds.links`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, straight
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.reynolds.links import Coefficients
+
+
+class FilmSystem:
+    """One film problem and its solution, as arrays that closures read and write.
+
+    Attributes
+    ----------
+    kx, kz, b : (n, m) arrays
+        Link conductances and right-hand side.
+    fixed : (n, m) bool array
+        Vertices whose entry of ``pressure`` is prescribed.
+    cavity_pressure : float
+        Scaled.
+    pressure : (n, m) array
+        In: prescribed values at fixed vertices. Out: the film's pressure.
+    linear_pressure : (n, m) array
+        Pressure before clipping, on which the adjoint is received; the same array as ``pressure`` unless the closure
+        clips.
+    fx, fz, H, H_t, area : (n, m) arrays
+        Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
+    fill, mass_old : (n, m) arrays
+        Film fraction, and the old value of fill H; only used by closures that conserve mass.
+    prompt, late : (n, m) arrays
+        Couette flows take ``prompt fill + late`` along, of `exudyn_ehd.film.reynolds.lagging_void`; 1 and 0 without.
+    inverse_step : float
+        1 / time step since ``mass_old``, 1/s; 0: steady.
+    closes : bool
+        Whether a steady film conserves mass and its gap closes somewhere; see
+        `exudyn_ehd.film.cavitation.steady_oil`.
+    turns : float
+        Scaled speed with which oil goes round in the rows of a steady film that conserves mass, 1/s; 0 with axial
+        speed.
+    line : RuptureLine or None
+        Where the film's edge lies inside its cells; None: on vertices.
+    oil_line : OilLine or None
+        The same of a film that conserves mass.
+    straight : Curve or None
+        That of a film that conserves mass without one.
+    linked : (n,) bool array
+        Columns with a link to the next one.
+    fields : (9, n, m) array
+        Holds kx, kz, fx, fz, b, H, HF (gap on the links i -> i+1), H_t and pressure.
+    """
+
+    def __init__(self, grid: FilmGrid, clips: bool, fills: bool) -> None:
+        shape = grid.shape
+        self.fields = np.zeros((9, *shape))
+        self.kx, self.kz, self.fx, self.fz, self.b, self.H, self.HF, self.H_t, self.pressure = self.fields
+        self.H[:] = self.HF[:] = 1.0
+        self.fixed = grid.fixed
+        self.cavity_pressure = 0.0
+        self.linear_pressure = np.zeros(shape) if clips else self.pressure
+        self.area = grid.area
+        self.inverse_step = 0.0
+        self.closes, self.turns = False, 0.0
+        empty = np.ones(shape) if fills else np.ones((0, 0))
+        self.fill, self.mass_old = empty, empty.copy()
+        self.prompt, self.late = np.ones(shape), np.zeros(shape)
+        self.line: RuptureLine | None = None
+        self.rupture = RuptureLine(shape)
+        self.oil_line: OilLine | None = None
+        self.straight = straight(shape) if fills else None
+        self.linked = grid.link_x != 0.0
+
+    def see_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
+        """Take over the gap's rate (n, m) and the scaled speeds of a film that conserves mass."""
+        self.closes = steady and bool(rate.min() < 0.0)
+        self.turns = abs(vx) if steady and vz == 0.0 else 0.0
+
+    @property
+    def curve(self) -> Curve | None:
+        """Of a film that conserves mass: where its edge lies."""
+        return self.straight if self.oil_line is None else self.oil_line.fields
+
+    @property
+    def coefficients(self) -> Coefficients:
+        """These arrays as kernels take them."""
+        late = self.late if self.oil_line is None else self.oil_line.late
+        return Coefficients(
+            self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed, self.prompt, late
+        )
