@@ -114,7 +114,8 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     # not where motions are not finite
     if not (smallest > 0.0 and np.isfinite(vx + vz + rate[0] + rate[1] + rate[2] + rate[3])):
         return False, 0, np.int64(0), np.int64(1), smallest, (0.0, 0.0), 0.0
-    P[:, 0], P[:, -1] = known[0], known[1]
+    for i in range(P.shape[0]):
+        P[i, 0], P[i, -1] = known[0], known[1]
     set_links(H, HF, H_t if squeeze else None, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
     forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
     ok, steps, count, width = find_film(

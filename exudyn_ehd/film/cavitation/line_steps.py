@@ -39,75 +39,29 @@ def lacks(links, p, out):
         lack[c] += kz[c - _1] * (x[c - _1] - x[c]) - kz[c] * (x[c] - x[on])
 
 
-@njit(cache=True, inline="always")
-def _meet(c, m, kx, kz, f, k, s, whole, rest, free, pressures):
-    """Let the vertex c at the line meet its own balance between given neighbours: ``g s^2 / 2 + s = e``.
-
-    It leaves if s would be negative. ``rest`` follows.
-    """
-    size, old = rest.size, pressures[c]
-    on = c + m if c + m < size else c + m - size
-    diagonal = kx[c - m] + kx[c] + kz[c - 1] + kz[c]
-    known = rest[c] + diagonal * old
-    excess = 0.5 + known / f[c]
-    place = 2.0 * excess / (1.0 + np.sqrt(max(1.0 + 2.0 * (diagonal / k[c] - 1.0) * excess, 0.0)))
-    free[c] = place > 0.0
-    if place >= 1.0:
-        s[c], new = 1.0, known / diagonal
-    elif free[c]:
-        s[c], new = place, whole[c] * place * place
-    else:
-        s[c], new = 1.0, 0.0
-    step = new - old
-    pressures[c] = new
-    rest[c] -= diagonal * step
-    rest[c - m] += kx[c - m] * step
-    rest[on] += kx[c] * step
-    rest[c - 1] += kz[c - 1] * step
-    rest[c + 1 if c + 1 < size else 0] += kz[c] * step
-
-
-@njit(cache=True)
-def relax_line(links, line, active, lack, p):
-    """The vertices at the line meet their own balances, one after the other: those whose s is small follow their
-    neighbours at once, whatever their factor. ``lack`` (n, m) of `lacks`, in and out; returns how many leave."""
-    kx, kz, m = links[0].reshape(-1), links[1].reshape(-1), p.shape[1]
-    rest, free, pressures = lack.reshape(-1), active.reshape(-1), p.reshape(-1)
-    f, k, s, whole, _, places, _, _ = line
-    kept, left = 0, 0
-    for q in range(places[-1]):
-        c = places[q]
-        _meet(c, m, kx, kz, f, k, s, whole, rest, free, pressures)
-        left += not free[c]
-        if s[c] < 1.0:
-            places[kept] = c
-            kept += 1
-    places[-1] = kept
-    return left
-
-
 @njit(cache=True)
 def join_film(links, line, active, lack, p):
-    """Vertices at which oil piles up join the film; returns their number. ``lack`` (n, m) of `lacks`, in and out."""
-    rest, free, limit = lack.reshape(-1), active.reshape(-1), line[4]
-    waiting = 0
-    for c in range(rest.size):
-        waiting += (rest[c] >= limit[c]) & (not free[c])
-    if waiting == 0:
-        return 0
-    kx, kz, m = links[0].reshape(-1), links[1].reshape(-1), p.shape[1]
-    f, k, s, whole, _, places, _, _ = line
+    """Vertices at which oil piles up join the film; returns their number. ``lack`` (n, m) of `lacks`, in and out.
+
+    At the line they meet their own balances between given neighbours: ``g s^2 / 2 + s = e``.
+    """
+    kx, kz, rest, free, m = links[0].reshape(-1), links[1].reshape(-1), lack.reshape(-1), active.reshape(-1), p.shape[1]
+    f, k, s, whole, limit, places, _, _ = line
     pressures, joined = p.reshape(-1), 0
     for c in range(rest.size):
-        if free[c] | (rest[c] < limit[c]):
+        if (rest[c] < limit[c]) | free[c]:
             continue
         joined += 1
         free[c] = True
         if f[c] > 0.0:
-            _meet(c, m, kx, kz, f, k, s, whole, rest, free, pressures)
+            excess, g = 0.5 + rest[c] / f[c], (kx[c - m] + kx[c] + kz[c - 1] + kz[c]) / k[c] - 1.0
+            s[c] = min(2.0 * excess / (1.0 + np.sqrt(1.0 + 2.0 * g * excess)), 1.0)
+            pressures[c] = whole[c] * s[c] * s[c]
             if s[c] < 1.0:
                 places[places[-1]] = c
                 places[-1] += 1
+    if joined > 0:
+        lacks(links, p, lack)
     return joined
 
 

@@ -1,12 +1,12 @@
 """Newton's method for films of Swift and Stieber, ``P >= pc, A P - b - N >= 0`` with a zero in one of them everywhere.
 
-The linear film of a set of vertices is a step of it, and so are the active sets of the primal-dual method, which for an
+A step solves the linear film of a set of vertices. Without a line inside the cells
+(`exudyn_ehd.film.cavitation.rupture_line`) the steps are those of the primal-dual active set method, which for an
 M-matrix is Howard's policy iteration (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso,
-Zidani, SIAM J. Numer. Anal. 47 (2009) 3001). Of vertices next to a line inside the cells
-(`exudyn_ehd.film.cavitation.rupture_line`) the unknown is s, in which the balances are nearly linear, elsewhere it is
-the pressure. Between the steps every vertex at the line meets its own balance, and vertices at which oil piles up join.
-With vertices numbered towards the line, a changed diagonal or set near it leaves the larger part of the factor as it
-is. Pressures here are those above the cavity's.
+Zidani, SIAM J. Numer. Anal. 47 (2009) 3001). Of vertices next to a line the unknown is s, in which the balances are
+nearly linear, elsewhere it is the pressure. Between the steps vertices at which oil piles up join. With vertices
+numbered towards the line, a changed diagonal or set near it leaves the larger part of the factor as it is. Pressures
+here are those above the cavity's.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from exudyn_ehd.film.cavitation.line_steps import (
     line_rows,
     move_film,
     place_line,
-    relax_line,
 )
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 from exudyn_ehd.film.cavitation.system import FilmSystem
@@ -52,7 +51,7 @@ def _newton(links, line, active, factor, x, forth, p):
     count, width, changes, done = FIRST_ROW, np.int64(1), 1, False
     most = max(MOST_STEPS, p.shape[0])
     for step in range(most + 1):
-        changes += relax_line(links, line, active, lack, p) + join_film(links, line, active, lack, p)
+        changes += join_film(links, line, active, lack, p)
         if done and changes == 0:
             return True, step, count, width
         first = count
@@ -104,10 +103,13 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
         P.reshape(-1),
     )
     line_terms(links[0], links[2], fixed, in_cells, line)
-    above = P - pc
+    above, ruptures = np.empty(P.shape), False
     p = above.reshape(-1)
+    for c in range(f.size):
+        p[c] = pressures[c] - pc
+        ruptures |= f[c] > 0.0
     # pressures that are left over in a film at rest lead nowhere
-    if is_known and f.any():
+    if is_known and ruptures:
         place_line(line, fixed, active, above)
     else:
         places[-1] = 0

@@ -86,7 +86,10 @@ def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, spee
     if line is not None:
         f, k, s, _, _, places, _, _ = line_of(line)
         places = places[: places[-1]]
-        weights, by, rows = np.empty((2, places.size)), np.zeros((8, places.size)), number.reshape(-1)[places]
+        weights, by, rows = np.empty((2, places.size)), np.zeros((8, places.size)), np.empty_like(places)
+        numbers = number.reshape(-1)
+        for q in range(places.size):
+            rows[q] = numbers[places[q]]
         line_weights(places, f, k, s, weights)
         line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
         add_line_columns((rows, places, by), at, columns)
@@ -95,5 +98,6 @@ def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, spee
     by_pose, dc = np.zeros((1, 4)), np.zeros(10)
     couette_gradient(H, weight, active, fixed, cavity_shear, field[0])
     contract_pose(field, cos_x, sin_x, z, by_pose)
-    dc[:4] = by_pose[0]
+    for q in range(4):
+        dc[q] = by_pose[0, q]
     wrench_gradient(gradient, dc, np.zeros((2, 10)), np.zeros(4), *pose[:2], pose[2], *scales, out)
