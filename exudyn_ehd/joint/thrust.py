@@ -23,8 +23,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
-from exudyn_ehd.joint.model.centre import BESIDE, CENTRE, LARGEST_SPREAD, quotients
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
 from exudyn_ehd.status import Status
 
 NAMES = (

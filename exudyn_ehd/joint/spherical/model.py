@@ -51,10 +51,10 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.joint.model.centre import BESIDE, CENTRE, quotients
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.patch import PAIRS, sphere_patch
+from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, quotients
 from exudyn_ehd.status import Status
 
 PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)

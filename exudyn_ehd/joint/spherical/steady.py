@@ -10,9 +10,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
-from exudyn_ehd.joint.model.centre import LARGEST_SPREAD
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
+from exudyn_ehd.joint.tangent.one_sided import LARGEST_SPREAD
 from exudyn_ehd.pictures.records import Target, shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
 
