@@ -76,8 +76,7 @@ class ThrustEvaluation:
         out = np.zeros((6, MOTION_SIZE + 1))
         for face in self.model.faces:
             height, own = self.model.height(face), face.tangent()
-            if is_at_rest(face):
-                own += self.model.change_at_rest(face, own)
+            own += self.model.change_at_rest(face) if is_at_rest(face) else 0.0
             out += about_origin(own, height) @ face_motion_map(self.motion, height)
         return out
 
@@ -153,15 +152,19 @@ class ThrustModel:
         status = max((state.status for state in states), key=lambda found: found.value)
         return ThrustEvaluation(status, motion, position, wrench, states, self, self.serial)
 
-    def change_at_rest(self, face: FaceFilm, tangent: np.ndarray) -> np.ndarray:
-        """Difference (6, 9) between the mean of one-sided derivatives and the tangent of the unbroken film."""
-        motion = face.motion
-        key = (face.side, float(motion[0]), float(motion[6]))
+    def change_at_rest(self, face: FaceFilm) -> np.ndarray:
+        """Difference (6, 9) between the mean of one-sided derivatives and the tangent of the unbroken film.
+
+        Of a collar that turns about the bearing's axis; its shift changes this by clearance over radius.
+        """
+        motion, key = face.motion, (face.side, float(face.motion[0]), float(face.motion[6]))
         if key not in self._changes:
-            spin, lengths = abs(key[2]) or 1.0, face.scales.c / np.array([1.0, face.scales.R, face.scales.R])
+            still, spin = motion * np.eye(FACE_SIZE)[[0, 6]].sum(axis=0), abs(key[2]) or 1.0
+            lengths = face.scales.c / np.array([1.0, face.scales.R, face.scales.R])
             steps = BESIDE * np.array([0.0, *lengths[1:], *(spin * lengths), spin, 0.0, 0.0])
-            change = quotients(lambda there: face.evaluate(there).wrench, motion, steps).mean(axis=0)
-            change[:, steps > 0.0] -= tangent[:, steps > 0.0]
+            sides = quotients(lambda there: face.evaluate(there).wrench, still, steps)
+            face.evaluate(still)
+            change = np.where(steps > 0.0, sides.mean(axis=0) - face.tangent(), 0.0)
             face.evaluate(motion)
             self._changes = {key: change} | {k: v for k, v in self._changes.items() if k[0] != face.side}
         return self._changes[key]
