@@ -5,10 +5,16 @@ its axis that lies at O in the reference configuration. The collars are planes a
 distances from the centre. With the axis at (x, y) in the mid-plane and e = (x, y) + (bx, by) z_f at a face, z_f =
 +-L/2, they cross the bearing's axis at ``zeta = z + bx x + by y`` from their middle places and slide with
 ``u = de/dt - omega e_z x e`` there. What is left out is of second order in the tilt, clearance squared over length.
+
+Between parallel planes at the cavity pressure that are at rest along the axis nothing presses, and a film that ruptures
+has one-sided derivatives only: it carries where it closes. The tangent there is the mean of both sides of every
+coordinate. In the middle of two equal faces both sides are the same, as they are for tilts anywhere: about half of an
+unbroken film.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -18,6 +24,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
 from exudyn_ehd.status import Status
 
 NAMES = (
@@ -68,10 +75,16 @@ class ThrustEvaluation:
             return np.full((6, MOTION_SIZE + 1), np.nan)
         out = np.zeros((6, MOTION_SIZE + 1))
         for face in self.model.faces:
-            out += about_origin(face.tangent(), self.model.height(face)) @ face_motion_map(
-                self.motion, self.model.height(face)
-            )
+            height, own = self.model.height(face), face.tangent()
+            own += self.model.change_at_rest(face) if is_at_rest(face) else 0.0
+            out += about_origin(own, height) @ face_motion_map(self.motion, height)
         return out
+
+    def axial_damping(self) -> float:
+        """-dF/dw, N s/m; nan between planes at rest whose motions to either side meet different damping."""
+        damping = -float(self.tangent()[2, 9])
+        uneven = sum(face.side * float(face.tangent()[2, 3]) for face in self.model.faces if is_at_rest(face))
+        return math.nan if abs(uneven) > 2.0 * LARGEST_SPREAD * damping else damping
 
     def quantities(self) -> Mapping[str, float]:
         """Scalars by the names of `NAMES`.
@@ -118,6 +131,8 @@ class ThrustModel:
             for k, (side, present) in enumerate(((-1, faces.lower), (1, faces.upper)))
             if present
         ]
+        # change of the tangent of faces at rest by side, axial position and spin: aligned journals stay at rest
+        self._changes: dict[tuple[float, ...], np.ndarray] = {}
 
     def height(self, face: FaceFilm) -> float:
         """z of a face, m."""
@@ -136,6 +151,32 @@ class ThrustModel:
             wrench += about_origin(state.wrench, self.height(face))
         status = max((state.status for state in states), key=lambda found: found.value)
         return ThrustEvaluation(status, motion, position, wrench, states, self, self.serial)
+
+    def change_at_rest(self, face: FaceFilm) -> np.ndarray:
+        """Difference (6, 9) between the mean of one-sided derivatives and the tangent of the unbroken film.
+
+        Of a collar that turns about the bearing's axis; its shift changes this by clearance over radius.
+        """
+        motion, key = face.motion, (face.side, float(face.motion[0]), float(face.motion[6]))
+        if key not in self._changes:
+            still, spin = motion * np.eye(FACE_SIZE)[[0, 6]].sum(axis=0), abs(key[2]) or 1.0
+            lengths = face.scales.c / np.array([1.0, face.scales.R, face.scales.R])
+            steps = BESIDE * np.array([0.0, *lengths[1:], *(spin * lengths), spin, 0.0, 0.0])
+            sides = quotients(lambda there: face.evaluate(there).wrench, still, steps)
+            face.evaluate(still)
+            change = np.where(steps > 0.0, sides.mean(axis=0) - face.tangent(), 0.0)
+            face.evaluate(motion)
+            self._changes = {key: change} | {k: v for k, v in self._changes.items() if k[0] != face.side}
+        return self._changes[key]
+
+
+def is_at_rest(face: FaceFilm) -> bool:
+    """Return whether a film that may rupture lies between parallel surfaces at rest and presses nowhere."""
+    source = CENTRE * abs(float(face.motion[6]))
+    if np.abs(face.pose[1:]).max() > CENTRE or np.abs(face.rate).max() > source:
+        return False
+    cavity = float(face.known[2])
+    return math.isfinite(cavity) and bool(np.abs(face.solver.pressure - cavity).max() <= source + 1e-12 * abs(cavity))
 
 
 def no_film(found: ThrustEvaluation, where: str) -> str:

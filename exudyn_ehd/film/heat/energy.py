@@ -8,10 +8,17 @@ mass:
     A m* (T - T_old)/dt + sum over inflows F (T - T_link) + sum over outflows F (T_link - T)
         + S+ (T - T_source) + A walls (T - T_wall) = heat,
 
-m* the old content, or the present one where the old one is not kept. In theta T_link is the temperature upstream. In
-z, where oil that turns with the journal borders on oil that the ends suck in, that would leak as much heat to the sides
-as the bearing gives off: there it is of second order, by a limiter that makes no extrema. What a link carries leaves
-one side and reaches the other, so that the balance holds.
+m* = m' + (dt / 2) dh/dt with m' = m - dt dm/dt. The rate dm/dt comes from the gap's rate, so that m' is not the content
+m_old of the step before but ``m_old - (dt^2 / 2) d2h/dt2``. With m* the storage of a step is
+
+    m* (T - T_old) + dt T dm/dt = m T - m_old T_old + (dt^2 / 2) d(T dh/dt)/dt,
+
+which adds up to nothing over a settled cycle. With m' or m in place of m* up to 2 % of the loss would remain, in 64
+steps a turn.
+
+In theta T_link is the temperature upstream. In z, where oil that turns with the journal borders on oil that the ends
+suck in, that would leak as much heat to the sides as the bearing gives off: there it is of second order, by a limiter
+that makes no extrema. What a link carries leaves one side and reaches the other, so that the balance holds.
 
 Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A
 areas.

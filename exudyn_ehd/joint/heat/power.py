@@ -102,7 +102,7 @@ class OilFlows:
     Attributes
     ----------
     rate, content : (n, m) arrays
-        d(fill H)/dt, 1/s; content of the storage term (scaled gap, times the density ratio).
+        d(fill H)/dt, 1/s; content of the storage term (scaled gap, times the density ratio), in the middle of the step.
     x, z : (n, m) arrays
         Over the links i -> i+1 and j -> j+1.
     outside : (n, m) array
@@ -128,7 +128,9 @@ class OilFlows:
             fill, carried = oil.rho * fill, s.ones
         stepped = conserves and y.inverse_step > 0.0 and not s.instant
         self.rate = content_rate(s.H, s.H_t, fill, y.mass_old, y.inverse_step if stepped else 0.0, s.squeeze)
-        self.content = y.mass_old.copy() if stepped else fill * s.H
+        # in the middle of the step: the gap's half of a step on from its start as the rates have it
+        before = y.mass_old if stepped else fill * s.H - film.step * self.rate
+        self.content = np.maximum(before + 0.5 * film.step * s.H_t, 0.0)
         self.x, self.z, balance = np.empty((3, *film.grid.shape))
         film_flows(s.pressure, carried, y.kx, y.kz, fx, fz, self.x, self.z, balance)
         if conserves:

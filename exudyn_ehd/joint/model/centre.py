@@ -25,18 +25,12 @@ import numpy as np
 from exudyn_ehd.bearing import MaximumGap
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
+from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD
 from exudyn_ehd.status import FilmError
 
-# Shares of the clearance. Eccentricity up to which a journal is at the centre: larger than the round-off of a position
-# of 1 m in a clearance of 1 um. Eccentricity of the films beside it, by which K and C differ from their limits.
-CENTRE, BESIDE = 1e-9, 1e-6
 # Angle of the first of four directions, rad; along a column of the grid, Gümbel's linear pressure would be zero there,
 # and its set undecided.
 FIRST = 1.0
-# Largest difference of K or C between a direction and the mean of all, over the mean, up to which that is given; on few
-# columns n 2 / n. Bearings that are the same in all directions have at most 0.12 on 17 columns, 0.057 on 31, 0.023 from
-# 48 on; an axial groove of 0.3 rad at the cavity pressure over two thirds of the length has 0.16.
-LARGEST_SPREAD = 0.05
 
 
 class FilmModel(Protocol):

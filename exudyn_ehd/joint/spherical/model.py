@@ -13,6 +13,10 @@ in a frame that turns with half the relative angular velocity there is squeeze a
 relative counts: a motion of ball and socket together changes none of it. Left out, as in every Reynolds film, is what
 is c / R of what is there: the ball's translation along the film in the flow, and the pressure's shear forces.
 
+With u = 0 (a ball at rest, or one that spins about the line to its place) nothing presses. The pressure is homogeneous
+of degree one in u, so that a film that ruptures at the edges' pressure has one-sided derivatives only: it carries where
+u closes the gap.
+
 Loads on the ball, N and A the integrals of n and of 1 over the control volumes, f = 12 mu R^4 / c^2, P = p c^2 / (12 mu
 R^2), H = h / c:
 
@@ -42,6 +46,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
@@ -49,6 +54,7 @@ from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.patch import PAIRS, sphere_patch
+from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, quotients
 from exudyn_ehd.status import Status
 
 PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
@@ -120,11 +126,29 @@ class SphericalEvaluation:
     serial: int = field(repr=False)
 
     def tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 11), exact for the current active set; until the model's next evaluation."""
+        """d wrench / d motion (6, 11), exact for the current active set; until the model's next evaluation.
+
+        Of a ball at rest the mean of `sides`.
+        """
         if self.film is None:
             return np.full((6, SIZE), np.nan)
-        self._require_current()
+        if (sides := self.sides()) is not None:
+            return np.asarray(sides.mean(axis=0))
         return self.model.tangent(self.motion, self.film)
+
+    def sides(self) -> np.ndarray | None:
+        """One-sided derivatives (2, 6, 11) of the film of a ball at rest; None of one that has derivatives."""
+        self._require_current()
+        if not self.model.is_at_rest(self.motion):
+            return None
+        spin = float(np.linalg.norm(self.motion[SPIN])) or 1.0
+        length = BESIDE * self.model.bearing.radial_clearance
+        steps = np.repeat([length, 0.0, spin * length, 0.0, BESIDE * spin], [3, 1, 3, 1, 3])
+        sides = quotients(lambda motion: self.model.evaluate(motion).wrench, self.motion, steps)
+        # the same film into the model's buffers again
+        self.model.evaluate(self.motion)
+        self.model.serial = self.serial
+        return sides
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state: m, Pa, N m, W, N."""
@@ -193,6 +217,13 @@ class SphericalModel:
     def initial_history(self, motion: np.ndarray) -> History | None:
         """None: the film remembers nothing."""
         return None
+
+    def is_at_rest(self, motion: np.ndarray) -> bool:
+        """Return whether the last film, at this motion, has no source and may rupture at any."""
+        source = CENTRE * self.bearing.radial_clearance * float(np.linalg.norm(motion[SPIN]))
+        entrained = motion[VELOCITY] + 0.5 * skew(motion[PLACE]) @ motion[SPIN]
+        ruptures = not isinstance(self.bearing.cavitation, FullSommerfeld) and self._cavity == 0.0
+        return ruptures and float(np.linalg.norm(entrained)) <= source
 
     def smallest_gap(self, place: np.ndarray) -> float:
         """Smallest gap (m) of the rigid surfaces for the ball's centre at ``place`` (3,), exact."""

@@ -11,7 +11,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
+from exudyn_ehd.joint.tangent.one_sided import LARGEST_SPREAD
 from exudyn_ehd.pictures.records import Target, shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
 
@@ -39,6 +40,8 @@ class SphericalResult:
         the torque.
     tangent : (6, 9) array
         Derivative of the force and of the moment about the socket's centre to place, velocity and angular velocity.
+        A film that ruptures where the ball moves away has one-sided derivatives at rest: entries are nan where both
+        sides of that coordinate differ, by more than 5 % of the largest of their kind.
     minimum_gap, peak_pressure : float
         m, Pa.
     power_loss, contact_load : float
@@ -88,6 +91,16 @@ class SphericalResult:
         from exudyn_ehd.pictures.maps import plot_patch
 
         return plot_patch(self.phi, self.chi, self.pressure, title=title, ax=ax, path=path)
+
+
+def _derivatives(found: SphericalEvaluation) -> np.ndarray:
+    """Tangent (6, 9); nan where both sides of a film at rest differ."""
+    tangent, sides = np.delete(found.tangent(), (3, 7), axis=1), found.sides()
+    if sides is not None:
+        blocks = np.delete(sides, (3, 7), axis=2).reshape(2, 2, 3, 3, 3)
+        largest = LARGEST_SPREAD * np.abs(blocks).max(axis=(0, 2, 4), keepdims=True)[0]
+        tangent[(np.abs(blocks[0] - blocks[1]) > 2.0 * largest).reshape(6, 9)] = np.nan
+    return tangent
 
 
 def steady_spherical(
@@ -155,7 +168,7 @@ def steady_spherical(
         unbroken=film.unbroken,
         force=force,
         torque=film.torque,
-        tangent=np.delete(found.tangent(), (3, 7), axis=1),
+        tangent=_derivatives(found),
         minimum_gap=quantities["minimum_gap"],
         peak_pressure=peak,
         power_loss=quantities["power_loss"],

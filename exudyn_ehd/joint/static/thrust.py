@@ -25,7 +25,8 @@ class ThrustResult:
     axial_force, friction_torque : float
         N along z; Nm about the bearing's axis.
     axial_stiffness, axial_damping : float
-        -dF/dz, N/m, and -dF/dw, N s/m.
+        -dF/dz, N/m, and -dF/dw, N s/m. Plane faces at rest that rupture carry where they close only: in the middle of
+        two equal faces the damping is that of one, elsewhere it is nan, as both ways of the journal differ.
     minimum_gap, peak_pressure, power_loss, contact_load : float
         m, Pa, W, N, of all faces.
     edge_pressures : (k,) array
@@ -38,6 +39,7 @@ class ThrustResult:
         Of every face, Pa (gauge) and m; the lower one first. On edges of pads the gap is the mean of both sides.
     tangent : (6, 11) array
         Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units.
+        Of plane faces at rest it is the mean of both ways.
 
     Examples
     --------
@@ -105,7 +107,7 @@ def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
         axial_force=float(found.wrench[2]),
         friction_torque=float(found.wrench[5]),
         axial_stiffness=-float(tangent[2, 10]),
-        axial_damping=-float(tangent[2, 9]),
+        axial_damping=found.axial_damping(),
         minimum_gap=values["thrust_minimum_gap"],
         peak_pressure=values["thrust_peak_pressure"],
         power_loss=values["thrust_power_loss"],

@@ -16,9 +16,6 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from tests.sampling import sample
 
 SUPPLY = 313.0
-# K; hotter films that breathe have ten times the viscosity in the row at an end, between which and the next one
-# the grid has no answer: `HotFilmWarning` tells of them.
-HOT = 423.0 - SUPPLY
 OIL = ehd.oil("ISO VG 46")
 CAPACITY = OIL.density * OIL.specific_heat
 
@@ -83,8 +80,8 @@ def reported(model, evaluation):
     return loss, np.maximum(areas, 0.0).sum(), out
 
 
-def check(number, film_fed, end_fed, **options):
-    """Defects of the balance are below ``film_fed``, of films that breathe through their ends below ``end_fed``."""
+def check(number, tolerance, **options):
+    """Defects of the balance, relative to loss and flow, are below ``tolerance``."""
     model, evaluation = settled(number, **options)
     film, thermal = evaluation.film, model.effects.thermal
     T = thermal.steady_temperature(film)
@@ -94,38 +91,33 @@ def check(number, film_fed, end_fed, **options):
     closure, rise = model.bearing.cavitation, np.asarray(thermal.split(T)[0]) - SUPPLY
     breathes = isinstance(closure, ehd.FullSommerfeld) or closure.cavity_pressure < 0.0
     lumped = isinstance(model.bearing.thermal, ehd.LumpedThermal)
-    if breathes and not lumped and rise.max() > HOT:
-        return
-    assert balance["heat_in"] == pytest.approx(loss, rel=1e-3 if lumped else end_fed if breathes else film_fed)
+    # losses count the pressure flow by the loads' integrals, of higher order along z
+    assert balance["heat_in"] == pytest.approx(loss, rel=1e-3 if lumped else 0.25 * tolerance)
     if not breathes:
         carried = CAPACITY * OilFlows(film, 1.0).exchanged * film.parts.flow_scale
-        assert carried == pytest.approx(CAPACITY * through, rel=film_fed)
+        assert carried == pytest.approx(CAPACITY * through, rel=tolerance)
         if model.bearing.thermal.carry_over == 1.0:
             # no oil leaves hotter than the hottest place
-            assert balance["convected"] < (1.0 + film_fed) * CAPACITY * through * rise.max()
+            assert balance["convected"] < (1.0 + tolerance) * CAPACITY * through * rise.max()
 
 
 @pytest.mark.parametrize("numbers", [(0, 7, 16, 22, 34), pytest.param(range(200), marks=pytest.mark.slow)])
 def test_what_leaves_carries_the_loss(numbers):
-    """2 % is the error of flows and losses on ten rows; without supply 6 %, see `exudyn_ehd.film.heat.options`."""
+    """2 % is the error of flows on ten rows."""
     for number in numbers:
-        check(number, 0.02, 0.06)
+        check(number, 0.02)
 
 
 @pytest.mark.slow
 def test_balance_on_a_fine_grid():
     for number in range(0, 200, 7):
-        check(number, 0.005, 0.01, film=ehd.FiniteLength(n_theta=96, n_z=40))
+        check(number, 0.005, film=ehd.FiniteLength(n_theta=96, n_z=40))
 
 
-def cycle(number, turns, per_turn=64):
-    """Means over the last turn of a journal that whirls: heat, W, exchanged flow, m3/s, and those of `reported`.
-
-    The film is isothermal, as only the oil in the film has to settle.
-    """
+def whirl(number, turns, per_turn=64, **options):
+    """Model, evaluation and history of every step of a journal that whirls."""
     spec, speed, eccentricity, tilt = draw(number)
-    c, rows = spec["radial_clearance"], []
-    model = build_model(ehd.JournalBearing(**spec | {"thermal": None}))
+    c, model = spec["radial_clearance"], build_model(ehd.JournalBearing(**spec | options))
     step, size = 2.0 * math.pi / speed / per_turn, 0.3 * (1.0 - eccentricity)
     at, history = np.zeros(MOTION_SIZE), None
     at[2], at[8] = tilt[0], speed
@@ -134,7 +126,18 @@ def cycle(number, turns, per_turn=64):
         at[:2] = c * (eccentricity + size * math.cos(angle)), c * size * math.sin(angle)
         at[4:6] = -c * size * speed * math.sin(angle), c * size * speed * math.cos(angle)
         evaluation = model.evaluate(at, model.initial_history(at) if history is None else history, step)
-        history, (heat, exchanged) = evaluation.history(), heat_and_exchange(evaluation.film, 1.0)
+        history = evaluation.history()
+        yield model, evaluation, history
+
+
+def cycle(number, turns, per_turn=64):
+    """Means over the last turn: heat, W, exchanged flow, m3/s, and those of `reported`.
+
+    The film is isothermal, as only the oil in the film has to settle.
+    """
+    rows = []
+    for model, evaluation, _ in whirl(number, turns, per_turn, thermal=None):
+        heat, exchanged = heat_and_exchange(evaluation.film, 1.0)
         rows.append((heat, exchanged * evaluation.film.parts.flow_scale, *reported(model, evaluation)))
     return np.mean(rows[-per_turn:], axis=0)
 
@@ -145,6 +148,37 @@ def test_balance_over_a_settled_cycle(number):
     heat, exchanged, loss, *flows = cycle(number, 6 if number == 14 else 15)
     assert heat == pytest.approx(loss, rel=0.005)
     assert exchanged == pytest.approx(max(flows), rel=0.02)
+
+
+def check_cycle(number, tolerance, per_turn=64, **options):
+    """Over the last turn the loss leaves by oil and walls, but for the heat by which the film's oil still gains."""
+    rows, held = [], []
+    for model, evaluation, history in whirl(number, 15, per_turn, **options):
+        film, T, thermal = evaluation.film, history.temperature, model.effects.thermal
+        balance, rise = thermal.balance(film, T), thermal.split(T)[0] - SUPPLY
+        content = film.solver.content if film.solver.closure.conserves_mass else film.solver.H
+        full = CAPACITY * film.parts.flow_scale * np.sum(film.solver.area * content * rise)
+        held.append(getattr(thermal, "capacity", 0.0) * rise if np.isscalar(rise) else full)
+        parts = [balance[name] for name in ("heat_in", "convected", "conducted", "stored")]
+        rows.append([reported(model, evaluation)[0], *parts])
+    loss, heat, convected, conducted, stored = np.mean(rows[-per_turn:], axis=0)
+    gained = (held[-1] - held[-1 - per_turn]) / (per_turn * film.step)
+    assert heat == pytest.approx(loss, rel=0.5 * tolerance)
+    assert stored == pytest.approx(gained, abs=0.1 * tolerance * loss)
+    assert convected + conducted == pytest.approx(loss - gained, abs=tolerance * loss)
+
+
+@pytest.mark.parametrize("numbers", [(23,), pytest.param(range(0, 200, 3), marks=pytest.mark.slow)])
+def test_heat_balance_over_a_settled_cycle(numbers):
+    """0.5 %: heat of the pressure flow on ten rows; 0.1 %: storage that 64 steps a turn leave."""
+    for number in numbers:
+        check_cycle(number, 0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [14, 24, 29, 35, 46])
+def test_heat_balance_over_a_settled_cycle_on_a_fine_grid(number):
+    check_cycle(number, 0.005, film=ehd.FiniteLength(n_theta=96, n_z=40))
 
 
 SMALL = {"journal_radius": 0.02, "length": 0.032, "radial_clearance": 25e-6, "lubricant": OIL}

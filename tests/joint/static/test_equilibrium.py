@@ -280,14 +280,8 @@ def test_random_loads_are_found():
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*the load is carried at:UserWarning")
 def test_many_random_loads_are_found():
-    lost = 0
     for seed in range(24, 424):
-        try:
-            carries(seed)
-        except ehd.FilmError:
-            lost += 1
-    # starved films of ElrodAdams; damped steps end in a valley of the unbalance
-    assert lost <= 2
+        carries(seed)
 
 
 def test_of_several_positions_the_steadiest_is_returned_and_all_are_named():
