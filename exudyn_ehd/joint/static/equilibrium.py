@@ -47,6 +47,8 @@ LOADS = {"smallest": 1e-30, "largest": 1e15}
 # Without a load, what counts as one for the residual: share of L D mu omega / psi^2. A smaller one asks for a more
 # exact position, which round-off ends at 1e-16 of that force.
 NO_LOAD = 1e-5
+# Share of the largest stiffness that the k of a threshold may miss.
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -370,10 +372,15 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     (kxx, kxy), (kyx, kyy) = stiffness
     (cxx, cxy), (cyx, cyy) = damping
     trace = cxx + cyy
-    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace if trace > 0.0 else 0.0
-    if k <= 0.0:
+    if trace <= 0.0:
         return math.nan, 0.0
+    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
     above, below = (k - kxx) * (k - kyy) - kxy * kyx, cxx * cyy - cxy * cyx
+    # an unbroken film about the centre has k = 0, to rounding of either sign
+    rounding = ROUNDING * max(map(abs, (kxx, kxy, kyx, kyy)))
+    if k < -rounding or (k <= rounding and above <= 0.0):
+        return math.nan, 0.0
+    k = max(k, 0.0)
     if below == 0.0 < above:
         # it whirls ever faster, at ever smaller a mass
         return math.nan, 0.0
