@@ -134,8 +134,8 @@ def check_balls(seed, draws):
             moved[part] += size * along
             quotient = (model.evaluate(moved).wrench[:3] - middle) / size
             given = result.tangent[:2, columns]
-            # a force is known to some hundred roundings of that of the cavity's pressure
-            rounding = 3e-14 * max(0.0, -cavitation.cavity_pressure) * bearing.ball_radius**2 / size
+            # a film is solved to some hundred roundings of its pressures above the cavity's
+            rounding = 1e-13 * max(0.0, -cavitation.cavity_pressure) * bearing.ball_radius**2 / size
             rounding = rounding if math.isfinite(rounding) else 0.0
             # lines lie on vertices; 48 columns: measured at most 1e-3
             most = 3e-3 * np.abs(given).max() + 1e-9 + rounding
