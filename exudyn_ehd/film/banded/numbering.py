@@ -8,7 +8,7 @@ unknown rows. The ring of columns is cut
 * where the fewest active cells are linked in theta, if these are not more than may be left out of the band, or
 * nowhere: the ring is folded (columns 0, n-1, 1, n-2, ...), which doubles the bandwidth.
 
-The numbering, and with it every bit of the solution, depends on the active set alone and not on how it was found.
+The numbering depends on the active set alone and not on how it was found.
 """
 
 import numpy as np

@@ -199,7 +199,7 @@ class SwiftStieber(SymmetricClosure):
         _check_closure(self)
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        """Primal-dual active set from ``work.active``, or from all free vertices if ``work.warm`` is False."""
+        """Newton's method from ``work.active``, or from all free vertices if ``work.warm`` is False."""
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
         work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
