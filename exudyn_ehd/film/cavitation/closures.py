@@ -6,11 +6,9 @@ here are scaled (see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of t
 * `FullSommerfeld`: nothing; negative pressures stay.
 * `Gumbel` (half Sommerfeld): the linear problem is solved, then pressures below the cavity pressure are cut off.
 * `SwiftStieber` (Reynolds condition): the complementarity problem ``P >= Pc, A P - b >= 0, (P - Pc)(A P - b) = 0``,
-  solved by the primal-dual active set method, which for an M-matrix is Howard's policy iteration and ends after
-  finitely many steps (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J.
-  Numer. Anal. 47 (2009) 3001). Vertices with neither pressure nor source (a film at rest) count as active, so that a
-  film at rest has the tangent of the whole film: the sum of what a motion and its opposite meet (a concentric journal
-  meets half of it).
+  which `exudyn_ehd.film.cavitation.swift_stieber` solves. Vertices with neither pressure nor source (a film at rest)
+  count as active, so that a film at rest has the tangent of the whole film: the sum of what a motion and its opposite
+  meet (a concentric journal meets half of it).
 """
 
 from __future__ import annotations
