@@ -250,11 +250,12 @@ def next_error(
         impulse, spread = _impulses(time, load[:, places], load[:, OFFSET])
         impulse += _momenta(time, load, first, k)
         jump = load[-1, OFFSET] * h * departure(time, load[:, places])[-1]
-        moved[:3] += [
-            float(np.linalg.norm(mobility @ p)) for p in (jump, math.sqrt(3.0) * spread[-1], h * load[-1, places])
-        ]
-        response = _steps(K[-1:], mean[None], M[None], np.array([0.5 * h]))[0, :k, k:]
-        moved[3] += lever * float(np.linalg.norm(response @ (load[-1, places] - load[-2, places]))) * h
+        soft = lever * np.linalg.pinv(D[-2:], rcond=1e-9)
+        loads = (jump, math.sqrt(3.0) * spread[-1], h * load[-1, places])
+        moved[:3] += [float(np.linalg.norm(soft @ p, axis=1).max()) for p in loads]
+        response = _steps(K[-2:], D[-2:], np.stack([M, M]), np.full(2, 0.5 * h))[:, :k, k:]
+        change = h * (load[-1, places] - load[-2, places])
+        moved[3] += lever * float(np.linalg.norm(response @ change, axis=1).max())
         kept = np.abs(1.0 / (1.0 + h * np.linalg.eigvals(np.linalg.pinv(D[-1], rcond=1e-9) @ K[-1]))).max()
         # time for which a rate of the error goes on
         m, d, s = (float(np.linalg.norm(matrix)) for matrix in (M, mean, K[-1]))
