@@ -3,11 +3,9 @@
 A reference takes `FINE` times the steps and the load's mean over each of them, so that no jump is misplaced in it; its
 own error lies below 0.4 % of the gap.
 
-Measured on the seeds 0 to 299: 138 errors lie above 2 %. Their estimates are 0.28 to 4.7 times as large, 126 of them
-0.5 to 2.5 times. Seven are smaller: jumps at the end of their step, with errors of up to 39 %, and a heavy journal that
-is relieved. Five are larger, of jumps that happen to lie where they hardly matter. `StepControl` keeps at most 1.42
-times the error that is asked for, 2 or 5 %, but with three pulses and knocks of 1.2 to 2.2 steps: they begin and end
-within one chosen step, which may be `LARGEST` times as long, and leave no trace in any state (16 times at worst).
+Measured on the seeds 3000 to 3299 and 4000 to 4129, on which nothing of the estimate was tuned: 194 errors lie above
+2 %. Their estimates are 0.40 to 2.0 times as large, 190 of them 0.5 to 2.5 times. `StepControl` keeps 1.5 times the
+error that is asked for, 2 or 5 %, in 258 of 260 runs of the seeds 4000 to 4129; two jumps end at up to 2.3 times.
 """
 
 import math
@@ -18,7 +16,6 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.run.step_size import LARGEST
 from tests.mechanisms.planar import PlanarRotor
 
 FILM = ehd.FiniteLength(n_theta=40, n_z=5)
@@ -135,19 +132,23 @@ def test_a_jump_is_told_and_kept():
 
 
 def test_a_pulse_of_a_single_state_is_two_jumps():
-    """An error of 4 %, told at 0.4 of its size if the load is taken to go back along the line of its jump."""
+    """An error of 4 %, told at 0.4 of its size if the load is taken to go back along the line of its jump.
+
+    Chosen steps keep 2 %, 1.5 times at most; a pulse that begins and ends within one of them ends at 2.9 times.
+    """
     scene = Scene(87)
     told, true = told_and_true(scene, scene.reference())
     assert scene.kind == "pulse" and scene.last < 1.5 * scene.step
     assert true > 0.04 and 0.5 < told / true < 2.5
+    assert true_error(scene.run(stepControl=ehd.StepControl(error=0.02)), scene.reference()) < 0.03
 
 
 @pytest.mark.slow
 def test_told_and_chosen_errors_of_many():
     """Seeds that were not drawn for the table above, with bounds around it.
 
-    Four in five errors above 2 % are told at 0.5 to 2.5 times their size (91 % there), all at 0.25 to 5 times (0.28 to
-    4.7). Chosen steps keep 1.5 times what is asked for, unless a knock fits into one of them.
+    Nineteen in twenty errors above 2 % are told at 0.5 to 2.5 times their size, all at 0.3 to 3 times. Chosen steps
+    keep 1.5 times what is asked for, pulses within one of them included.
     """
     ratios, kept = [], []
     for seed in range(1000, 1040):
@@ -156,12 +157,10 @@ def test_told_and_chosen_errors_of_many():
         told, true = told_and_true(scene, reference)
         if true > 0.02:
             ratios.append(told / true)
-        if scene.kind in ("pulse", "knock") and scene.last < LARGEST * scene.step:
-            continue
         kept += [
             true_error(scene.run(stepControl=ehd.StepControl(error=error)), reference) / error for error in (0.02, 0.05)
         ]
     ratios = np.array(ratios)
-    assert len(ratios) > 10 and ratios.min() > 0.25 and ratios.max() < 5.0
-    assert np.mean((ratios > 0.5) & (ratios < 2.5)) >= 0.8
+    assert len(ratios) > 10 and ratios.min() > 0.3 and ratios.max() < 3.0
+    assert np.mean((ratios > 0.5) & (ratios < 2.5)) > 0.95 - 1.0 / len(ratios)
     assert len(kept) > 50 and max(kept) < 1.5

@@ -6,26 +6,32 @@ mass that a force between the two bodies feels, W = J M^-1 J^T with the Jacobian
     L = W^-1 J q'' - F
 
 follows from an accepted state alone, with the accelerations that the equations of motion demand there. What alternates
-between film and inertia from step to step cancels in L; a load that jumps does not. Constraints and terms of the
-second order in the rates are left out of W and of J q'': they change smoothly. Only rigid bodies and mass points have a
+between film and inertia from step to step cancels in L; a load that jumps does not. The momentum that a step has
+missed is W^-1 J (q'1 - q'0 - integral of q''). It is kept with the trapezoid; the record knows what parabolas add,
+also behind a restart. Constraints and terms of the second order in
+the rates are left out of W and of J q'': they change smoothly. Only rigid bodies and mass points have a
 mass here; with any other body at the joint L = -F, the load on a film that outweighs the inertia.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Side, Trial
+from exudyn_ehd.coupling.element.load_functions import LoadFunctions
 from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.items.object_mass import object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.watch import solver_state
+from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, missed_in_steps
 
-UNKNOWN = np.full(4, np.nan)
+UNKNOWN = np.full(LOADS, np.nan)
 # Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
+_State: TypeAlias = tuple[float, np.ndarray, np.ndarray]
 JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
 
 
@@ -41,8 +47,10 @@ class OuterLoad:
 
     Attributes
     ----------
-    load : (4,) array
-        At the state taken last; nan where it is not known.
+    load : (19,) array
+        At the state taken last, with what the step to it has missed; nan where it is not known.
+    functions : LoadFunctions or None
+        Loads of the system that are functions of time, from the first state of a run on.
     """
 
     def __init__(self, sides: tuple[Side, Side], blocks: Sequence[list[int]]) -> None:
@@ -53,17 +61,34 @@ class OuterLoad:
     def begin(self, solver: solver_state.Solver | None) -> None:
         """Begin a run of ``solver``: masses are read at its first state, loads are known in implicit runs."""
         self.masses: list[np.ndarray] | None = None
+        self.functions: LoadFunctions | None = None
         self.is_known = solver_state.is_implicit(solver)
         self.is_heavy, self.places = False, list[int]()
+        # times, velocities and accelerations of the last two accepted states
+        self.states: list[_State] = []
 
     def take(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> None:
         """Keep the load at a state, an accepted one."""
+        begins = self.functions is None
         self.load = self.at(mbs, where, trial)
+        if self.functions is not None:
+            time = mbs.systemData.GetTime(where)
+            self.functions.accept(mbs, time)
+            # a run may begin with accelerations that no equations demand
+            if self.is_heavy and not begins:
+                self.states = self._states(mbs, where, time)
+
+    def _states(self, mbs: exu.MainSystem, where: exu.ConfigurationType, time: float) -> list[_State]:
+        """The one accepted before a time, and the one there; the end of a run is taken more than once."""
+        data, before = mbs.systemData, [state for state in self.states if state[0] < time][-1:]
+        rates, demanded = data.GetODE2Coordinates_t(where), data.GetODE2Coordinates_tt(where)
+        return [*before, (time, np.asarray(rates)[self.places], np.asarray(demanded)[self.places])]
 
     def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> np.ndarray:
-        """Load (4,) at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
+        """Load (19,) at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
 
-        Its entries are those of the blocks, of a ball with a zero behind them; nan without a film.
+        Its columns are those of `exudyn_ehd.joint.step_error`, those of a ball's blocks with a zero behind them; nan
+        without a film.
         """
         if not self.is_known or trial.evaluation is None:
             return UNKNOWN
@@ -71,17 +96,23 @@ class OuterLoad:
         housing, journal = self.sides
         J = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
         if self.masses is None:
-            self.masses = self._masses(mbs, J)
+            self.masses, self.functions = self._masses(mbs, J), LoadFunctions(mbs)
             self.is_heavy = any(mass.any() for mass in self.masses)
             nodes = [int(node) for side in self.sides for node in side.nodes]
             self.places = [int(place) for node in nodes for place in mbs.systemData.GetNodeLTGODE2(node)]
-        out, demanded = np.zeros(4), np.zeros(6)
+        assert self.functions is not None
+        time, out, demanded, missed = mbs.systemData.GetTime(where), np.zeros(LOADS), np.zeros(6), np.zeros(6)
         if self.is_heavy:
-            demanded = np.asarray(mbs.systemData.GetODE2Coordinates_tt(where))[self.places] @ J
+            times, rates, accelerations = (np.array(x) for x in zip(*self._states(mbs, where, time), strict=True))
+            demanded, missed = accelerations[-1] @ J, missed_in_steps(times, rates, accelerations)[-1] @ J
         place = 0
         for rows, mass in zip(self.blocks, self.masses, strict=True):
             out[place : place + len(rows)] = mass @ demanded[rows] - wrench[rows]
+            out[MOMENTUM + place :][: len(rows)] = mass @ missed[rows]
+            out[DEMANDED + place :][: len(rows)] = mass @ demanded[rows]
             place += len(rows)
+        out[OFFSET] = self.functions.offset(mbs, time)
+        out[MASS:MOMENTUM] = np.concatenate([mass[np.triu_indices(len(mass))] for mass in self.masses])
         return out
 
     def _masses(self, mbs: exu.MainSystem, J: np.ndarray) -> list[np.ndarray]:

@@ -27,7 +27,7 @@ HEAD = 512
 LEAD = 1000
 # Rows in memory while a column is read.
 PART = 4096
-FORMAT = "exudyn_ehd rows 2"
+FORMAT = "exudyn_ehd rows 3"
 NAME = "{name}"
 
 

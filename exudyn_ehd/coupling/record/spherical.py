@@ -20,7 +20,7 @@ class BallRecord(Record):
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """The record, with ``final`` as its last row if given."""
         rows = self.rows(final)
-        packed, load = rows[:, PACK].copy(), rows[:, LOAD][:, :3].copy()
+        packed, load = rows[:, PACK].copy(), rows[:, LOAD].copy()
         rows[:, FIRST_BLOCK:] = np.nan
         clearance = self._dimensions["radial_clearance"]
         history = history_of(rows, self._dimensions, False)

@@ -6,8 +6,10 @@ method recommends the size); else the function after the step sets the size of t
 with the cube of its size, and what it may miss with its size: a step's demand is the root of the quotient over its
 size, and the next one follows the largest demand of late.
 
-A step in which a load jumps is repeated by half of it as long as the jump, at an end of the step, would make more than
-the error that is asked for.
+A step in which a load jumps is repeated as long as the jump would make more than the error that is asked for. Where the
+load is a function of time its jump is found within the step; the integration takes jumps to be in the middle of their
+step, and the next step, or the one after it, has the jump there. So a pulse within a step is met, too. Jumps of other
+loads count as at an end of the step, which is halved.
 
 A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
 over to the new one within a step or two. So sizes grow by a tenth at a time, and smaller changes are left out.
@@ -28,7 +30,7 @@ from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, largest_jump_error, next_error
+from exudyn_ehd.joint.step_error import NO_BALL_ERROR, NO_ERROR, OFFSET, REFUSED, SMALLEST_GAP_SHARE, next_error
 from exudyn_ehd.status import Status
 
 # First and largest step, in steps of the settings.
@@ -39,6 +41,12 @@ SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 KEPT = 0.94
 # What steps may miss, over what the error asked for allows: errors of steps that follow each other cancel in part.
 CANCELLED = 1.5
+# Shares of a step in which a repeated one ends that has a jump in its middle.
+LEAST_OF_STEP, MOST_OF_STEP = 0.25, 0.75
+# Error of a step with a jump in its middle, over the square of the displacement by the jump in half of the step; each
+# over the gap. With 0 errors of 150 random scenes end at up to 10 times the 2 % asked for, with 0.5 at 1.1 times; 2
+# takes 8 % more steps.
+BEND = 0.5
 # Shares of a step: one that ended so early was repeated; rounding.
 SHORTENED, ROUNDING = 0.99, 1e-6
 # Steps that Exudyn never takes before it doubles one of itself.
@@ -58,10 +66,12 @@ class _Joint:
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_State] = []
         self.now: _State | None = None
-        self.before = self.after = np.zeros(4)
+        self.before = list(NO_BALL_ERROR if film.failures.axes == 3 else NO_ERROR)
+        self.after, self.wanted = self.before, math.inf
 
     def used(self, mbs: exu.MainSystem, time: float) -> float | None:
         """What the step to ``time`` has missed over what it may miss; None if it is not known."""
+        self.wanted = math.inf
         trial, tangent, bearing = self.film.last, self.film.steps.tangent, self.film.model.bearing
         if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:
             self.now = None
@@ -77,22 +87,24 @@ class _Joint:
         )
         gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
         deflection = deflections if self.lags else None
-        allowed, ball = CANCELLED * self.error * gap, self.film.failures.axes == 3
-        last = slice(-3, None)
-        self.after, used = next_error(
-            times[last],
-            motions[last],
-            tangent,
-            self.before,
-            bearing.length,
-            allowed,
-            None if deflection is None else deflection[last],
-            ball=ball,
+        allowed = CANCELLED * self.error * gap
+        before = self.states[-1][4]
+        tangents = (tangent if before is None else before), tangent
+        self.after, used, moved = next_error(
+            times, motions, tangents, loads, self.before, bearing.length, allowed, deflection
         )
-        if (before := self.states[-1][4]) is None:
-            return used
-        jump = largest_jump_error(times, loads, (before, tangent), bearing.length, ball=ball)
-        less = self._asks_for_less(times[-2], times[-1] - times[-2], jump, self.error * gap)
+        start, step, asked = times[-2], times[-1] - times[-2], self.error * gap
+        functions, jump = self.film.outer.functions, moved[0] + BEND * moved[3] ** 2 / gap
+        if functions is not None:
+            share, place = functions.largest_change(mbs, time)
+            jump = jump if math.isfinite(loads[-1, OFFSET]) else share * moved[2]
+            if jump > asked:
+                most = step * min(MOST_OF_STEP, max(LEAST_OF_STEP, math.sqrt(asked / jump)))
+                # a whole number of steps and a half to the jump, so that the last one has it in its middle
+                centred = (place - start) / (max(1.0, math.ceil((place - start) / most + 0.5)) - 0.5)
+                self.wanted = max(centred, min(most, 0.5 * step * asked / jump))
+                return max(used, REFUSED)
+        less = self._asks_for_less(start, step, moved[1], asked)
         return max(used, REFUSED) if less else used
 
     def _asks_for_less(self, start: float, step: float, error: float, allowed: float) -> bool:
@@ -162,7 +174,7 @@ class StepSize:
         if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + ROUNDING):
             return [error, wanted]
         self.refused += 1
-        step *= max(SHRINK, self.used**-0.5)
+        step = min(step * max(SHRINK, self.used**-0.5), *(joint.wanted for joint in self.joints))
         return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
 
     def choose(self, own: Any, mbs: exu.MainSystem, time: float) -> bool:

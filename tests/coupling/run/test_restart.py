@@ -84,8 +84,9 @@ def assert_same(one, other, tolerance):
         a, b = np.asarray(getattr(one, field.name)), np.asarray(getattr(other, field.name))
         assert a.shape == b.shape, field.name
         scale = np.nanmax(np.abs(a), initial=0.0)
-        # an estimate with the tangents of Newton's last iterations, which need not start alike
-        share = max(tolerance, 1e-5) if field.name == "step_error" else tolerance
+        # an estimate with the tangents of Newton's last iterations, which need not start alike, without the momentum
+        # that the first step behind a restart has missed: 2e-5 of the largest estimate
+        share = max(tolerance, 1e-4) if field.name == "step_error" else tolerance
         np.testing.assert_allclose(b, a, rtol=0.0, atol=share * scale, err_msg=field.name)
 
 
