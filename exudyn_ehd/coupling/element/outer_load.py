@@ -30,8 +30,8 @@ from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, missed_in_steps
 
 UNKNOWN = np.full(LOADS, np.nan)
-# Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
 _State: TypeAlias = tuple[float, np.ndarray, np.ndarray]
+# Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
 JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
 
 
