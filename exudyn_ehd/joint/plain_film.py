@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.rupture_line import line_of
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
@@ -57,7 +56,7 @@ def solve_plain(
         g.weight,
         y.fields,
         (g.fixed, work.active),
-        y.rupture.blocks,
+        y.rupture.block,
         work.factor,
         work.unknowns,
         out,
@@ -118,9 +117,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
         P[i, 0], P[i, -1] = known[0], known[1]
     set_links(H, HF, H_t if squeeze else None, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
     forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
-    ok, steps, count, width = find_film(
-        (kx, kz, b), fixed, pc, in_cells, forth, is_known, line_of(line), active, factor, x, P
-    )
+    ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, is_known, line, active, factor, x, P)
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     ends = end_forces(H, known)

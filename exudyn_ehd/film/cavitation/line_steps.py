@@ -46,7 +46,7 @@ def join_film(links, line, active, lack, p):
     At the line they meet their own balances between given neighbours: ``g s^2 / 2 + s = e``.
     """
     kx, kz, rest, free, m = links[0].reshape(-1), links[1].reshape(-1), lack.reshape(-1), active.reshape(-1), p.shape[1]
-    f, k, s, whole, limit, places, _, _ = line
+    f, k, s, whole, limit = line[0], line[1], line[2], line[3], line[4]
     pressures, joined = p.reshape(-1), 0
     for c in range(rest.size):
         if (rest[c] < limit[c]) | free[c]:
@@ -57,41 +57,20 @@ def join_film(links, line, active, lack, p):
             excess, g = 0.5 + rest[c] / f[c], (kx[c - m] + kx[c] + kz[c - 1] + kz[c]) / k[c] - 1.0
             s[c] = min(2.0 * excess / (1.0 + np.sqrt(1.0 + 2.0 * g * excess)), 1.0)
             pressures[c] = whole[c] * s[c] * s[c]
-            if s[c] < 1.0:
-                places[places[-1]] = c
-                places[-1] += 1
     if joined > 0:
         lacks(links, p, lack)
     return joined
 
 
 @njit(cache=True)
-def line_rows(lack, line, number, order, count, active, rhs_out):
-    """What the balances of the unknowns lack (count,) with the line; its share of their diagonals.
-
-    Returns the largest change of an s since the factor, over s.
-    """
-    rest, free, rows = lack.reshape(-1), active.reshape(-1), number.reshape(-1)
-    f, k, s, _, _, places, shift, share = line
-    stale = 0.0
+def line_rows(lack, line, order, count, rhs_out):
+    """What the balances of the unknowns lack (count,) with the line; its share of their diagonals."""
+    rest, f, k, s, share = lack.reshape(-1), line[0], line[1], line[2], line[6]
     for r in range(count):
-        rhs_out[r] = rest[order[r]] if free[order[r]] else 0.0
-        share[r] = 0.0
-    for q in range(places[-1]):
-        c = places[q]
-        r = rows[c]
-        # one that has joined since the factor has no row yet
-        if r >= 0:
-            rhs_out[r] += 0.5 * f[c] * (1.0 - s[c]) * (1.0 - s[c])
-            share[r] = k[c] * (1.0 - s[c]) / s[c]
-            stale = max(stale, abs(1.0 - k[c] / (k[c] + shift[r]) / s[c]))
-    gone = 0
-    for r in range(count):
-        gone += (shift[r] > 0.0) & (share[r] == 0.0)
-    for r in range(count if gone > 0 else 0):
-        if shift[r] > 0.0 and share[r] == 0.0:
-            stale = max(stale, shift[r] / (k[order[r]] + shift[r]))
-    return stale
+        c = order[r]
+        short = 1.0 - s[c]
+        rhs_out[r] = rest[c] + 0.5 * f[c] * short * short
+        share[r] = k[c] * short / s[c]
 
 
 @njit(cache=True)
@@ -103,7 +82,7 @@ def factor_line(links, line, factor, count, width, first, kept):
     """
     kx, kz, _ = links
     order, _, number, band, inv_diag = factor
-    _, k, s, _, _, _, shift, share = line
+    k, s, shift, share = line[1], line[2], line[5], line[6]
     row, stale = 0, 0.0
     while row < first:
         if share[row] != shift[row]:
@@ -122,41 +101,7 @@ def factor_line(links, line, factor, count, width, first, kept):
 
 
 @njit(cache=True)
-def _move_line(line, rows, steps, free, pressures):
-    """s of the vertices at the line after a step, and their pressures' true change into ``steps``.
-
-    Returns in_line, stale and left of `move_film`.
-    """
-    _, k, s, whole, _, places, shift, _ = line
-    in_line, stale, stay, left = 0.0, 0.0, 0, 0
-    for q in range(places[-1]):
-        c = places[q]
-        r, own = rows[c], s[c]
-        if r < 0:
-            places[stay] = c
-            stay += 1
-            continue
-        new = pressures[c] + steps[r]
-        place = own + 0.5 * steps[r] / (whole[c] * own)
-        if not place > 0.0:
-            free[c], new, place = False, pressures[c], 1.0
-            pressures[c] = 0.0
-            left += 1
-        elif place < 1.0:
-            new = whole[c] * place * place
-            places[stay] = c
-            stay += 1
-        else:
-            new, place = max(new, whole[c]), 1.0
-        stale = max(stale, abs(1.0 - k[c] / (k[c] + shift[r]) / place))
-        in_line = max(in_line, abs(place - own))
-        s[c], steps[r] = place, new - pressures[c]
-    places[-1] = stay
-    return in_line, stale, left
-
-
-@njit(cache=True)
-def move_film(line, number, order, count, steps, active, p):
+def move_film(line, order, count, steps, active, p):
     """Take a step.
 
     Returns
@@ -168,29 +113,30 @@ def move_film(line, number, order, count, steps, active, p):
     left : int
         Number of vertices that leave the film.
     """
-    _, _, s, whole, _, places, _, _ = line
-    pressures, free = p.reshape(-1), active.reshape(-1)
-    in_line, stale, left = _move_line(line, number.reshape(-1), steps, free, pressures)
-    step, peak, lowest = 0.0, 0.0, 0.0
+    k, s, whole, shift, pressures, free = line[1], line[2], line[3], line[5], p.reshape(-1), active.reshape(-1)
+    in_line = stale = largest = peak = lowest = 0.0
+    left = 0
     for r in range(count):
         c = order[r]
-        if not free[c]:
-            continue
-        new = pressures[c] + steps[r]
-        step = max(step, abs(steps[r]))
-        peak = max(peak, new)
-        if 0.0 < whole[c] > new and s[c] == 1.0:
+        own, new = s[c], pressures[c] + steps[r]
+        if own < 1.0:
+            place = own + 0.5 * steps[r] / (whole[c] * own)
+        else:
             # the line comes into reach
-            place = np.sqrt(max(new, 0.0) / whole[c])
-            in_line = max(in_line, 1.0 - place)
-            if place > 0.0:
-                s[c], stale = place, max(stale, 1.0 / place - 1.0)
-                places[places[-1]] = c
-                places[-1] += 1
-            else:
-                free[c], new = False, 0.0
-                left += 1
-        lowest = min(lowest, new)
+            place = np.sqrt(max(new, 0.0) / whole[c]) if 0.0 < whole[c] > new else 1.0
+        if not place > 0.0:
+            free[c], s[c], pressures[c] = False, 1.0, 0.0
+            left += 1
+            continue
+        if place < 1.0:
+            new = whole[c] * place * place
+        elif own < 1.0:
+            place, new = 1.0, max(new, whole[c])
+        if min(own, place) < 1.0:
+            stale = max(stale, abs(1.0 - k[c] / ((k[c] + shift[r]) * place)))
+            in_line = max(in_line, abs(place - own))
+            s[c] = place
+        largest, peak, lowest = max(largest, abs(new - pressures[c])), max(peak, new), min(lowest, new)
         pressures[c] = new
     if lowest < -ROUNDING * peak:
         for r in range(count):
@@ -199,15 +145,13 @@ def move_film(line, number, order, count, steps, active, p):
                 free[c] = False
                 pressures[c] = 0.0
                 left += 1
-    return in_line, step / peak if peak > 0.0 else 0.0, stale, left
+    return in_line, largest / peak if peak > 0.0 else 0.0, stale, left
 
 
 @njit(cache=True)
 def place_line(line, fixed, active, p):
     """s of all vertices from the last film's, or from their pressures."""
-    _, _, s, whole, _, places, _, _ = line
-    known, free, pressures = fixed.reshape(-1), active.reshape(-1), p.reshape(-1)
-    count = 0
+    s, whole, known, free, pressures = line[2], line[3], fixed.reshape(-1), active.reshape(-1), p.reshape(-1)
     for c in range(s.size):
         own = s[c]
         s[c] = 1.0
@@ -218,11 +162,8 @@ def place_line(line, fixed, active, p):
         elif whole[c] > 0.0 and (own < 1.0 or pressures[c] < whole[c]):
             if not own < 1.0:
                 own = np.sqrt(max(pressures[c], 0.0) / whole[c])
-            s[c] = own = max(own, START)
-            pressures[c] = whole[c] * own * own
-            places[count] = c
-            count += 1
-    places[-1] = count
+            s[c] = max(own, START)
+            pressures[c] = whole[c] * s[c] * s[c]
 
 
 @njit(cache=True)

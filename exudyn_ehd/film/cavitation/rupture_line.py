@@ -64,8 +64,6 @@ class Line(NamedTuple):
         Symbols of the module; f is 0 where there can be no line, s is 1 where there is none.
     whole, limit : (n m,) arrays
         Pressure at s = 1; what the balance of a vertex without film has to lack for it to join, never at known ones.
-    places : (n m + 1,) int array
-        Vertices at the line, and last of all their number.
     shift, share : (n m,) arrays
         The line's share of the unknowns' diagonals, in the factor and of the present film.
     """
@@ -75,7 +73,6 @@ class Line(NamedTuple):
     s: np.ndarray
     whole: np.ndarray
     limit: np.ndarray
-    places: np.ndarray
     shift: np.ndarray
     share: np.ndarray
 
@@ -85,26 +82,18 @@ class RuptureLine:
 
     Attributes
     ----------
-    fields : tuple
-        The arrays of a `Line`.
-    blocks : (7, n m) array, (n m + 1,) array
-        The same for `line_of`.
-    f, k, s, whole, places, share : arrays
-        Of ``fields``, the first three (n, m).
+    block : (7, n m) array
+        The arrays of a `Line`, as kernels are handed it.
+    f, k, s : (n, m) arrays
+        Of ``block``.
     exact : bool
         Whether the factor holds the last solution's line.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        size = shape[0] * shape[1]
-        block, places = np.zeros((7, size)), np.zeros(size + 1, dtype=np.int64)
-        f, k, s, whole, limit, shift, share = block
-        self.blocks = block, places
-        # kernels are handed plain tuples, see `exudyn_ehd.film.grid.Mesh`
-        self.fields: tuple[np.ndarray, ...] = tuple(Line(f, k, s, whole, limit, places, shift, share))
-        self.f, self.k, self.s = (field.reshape(shape) for field in (f, k, s))
-        self.whole, self.places, self.share = whole, places, share
-        s[:] = 1.0
+        self.block = np.zeros((7, shape[0] * shape[1]))
+        self.f, self.k, self.s = (field.reshape(shape) for field in self.block[:3])
+        self.s[:] = 1.0
         self.exact = False
 
     def gradients(
@@ -118,7 +107,7 @@ class RuptureLine:
         mesh: tuple[np.ndarray, ...],
     ) -> LineGradients:
         """`LineGradients` of the last solution, to the film's ``gaps`` at vertices and links."""
-        places = self.places[: self.places[-1]].copy()
+        places = np.flatnonzero(self.s < 1.0)
         rows, by = work.number.reshape(-1)[places], np.zeros((8, places.size))
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
         weights = self.weights(places)
@@ -133,17 +122,10 @@ class RuptureLine:
 
 
 @njit(cache=True)
-def line_of(blocks):
-    """The arrays of a `Line` from two that hold them all, which are sooner handed to a kernel."""
-    block, places = blocks
-    return block[0], block[1], block[2], block[3], block[4], places, block[5], block[6]
-
-
-@njit(cache=True)
 def line_terms(kx, b, fixed, in_cells, line):
     """f and k of all vertices, and what follows from them; f = 0 where the line is not looked for ``in_cells``."""
     links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]
-    f, k, _, whole, limit, _, _, _ = line
+    f, k, whole, limit = line[0], line[1], line[3], line[4]
     if not in_cells:
         for c in range(f.size):
             f[c], whole[c], limit[c] = 0.0, 0.0, np.inf if known[c] else 0.0

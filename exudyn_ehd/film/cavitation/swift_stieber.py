@@ -32,14 +32,11 @@ from exudyn_ehd.film.cavitation.system import FilmSystem
 MOST_STEPS = 100
 # What a step may leave of s and of pressures over the peak: some hundred roundings.
 LEFT = 1e-13
-# Share of the largest flow that balances may lack before another step follows, in thick films a rounding of the peak.
-UNBALANCED = 5e-13
 # Change of pressures over the peak that takes digits of small ones with it: another step brings them back.
 FAR = 10.0
 # Change of s up to which rows in front of all others keep their factor.
 KEPT_ROWS = 0.01
 _NONE = np.int64(0)
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True)
@@ -62,12 +59,12 @@ def _newton(links, line, active, factor, x, forth, p):
             count, width = number_along(active, links[0], forth, _NONE, order, number)
             # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
             first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else FIRST_ROW
-        line_rows(lack, line, number, order, count, active, x)
+        line_rows(lack, line, order, count, x)
         ok, kept = factor_line(links, line, factor, count, width, first, KEPT_ROWS)
         if not ok:
             return False, step + 1, count, width
         solve_ldl_one(band, inv_diag, count, width, x)
-        in_line, in_film, stale, changes = move_film(line, number, order, count, x, active, p)
+        in_line, in_film, stale, changes = move_film(line, order, count, x, active, p)
         lacks(links, p, lack)
         done = in_line * max(kept, stale) <= LEFT and in_film * kept <= LEFT and in_film <= FAR
     return False, most, count, width
@@ -87,21 +84,15 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
     forth : int
         1: the columns are numbered in theta, -1: against it.
     is_known : bool
-    line : Line
+    line : (7, n m) array
+        `Line`.
     active : (n, m) bool array
         In and out.
     factor : `Workspace.factor`
     x : (n m,) array
         Newton's step.
     """
-    f, s, places, known, free, pressures = (
-        line[0],
-        line[2],
-        line[5],
-        fixed.reshape(-1),
-        active.reshape(-1),
-        P.reshape(-1),
-    )
+    f, s, known, free, pressures = line[0], line[2], fixed.reshape(-1), active.reshape(-1), P.reshape(-1)
     line_terms(links[0], links[2], fixed, in_cells, line)
     above, ruptures = np.empty(P.shape), False
     p = above.reshape(-1)
@@ -112,7 +103,6 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
     if is_known and ruptures:
         place_line(line, fixed, active, above)
     else:
-        places[-1] = 0
         for c in range(f.size):
             s[c] = 1.0
             free[c] &= not known[c]
@@ -132,7 +122,7 @@ def solve_rupturing(system: FilmSystem, line: RuptureLine, work: Workspace, in_c
     # the line lies where the flow leads
     forth = 1 if y.fx[-1, y.fx.shape[1] // 2] >= 0.0 else -1
     work.known, steps, work.count, work.width = find_film(
-        (y.kx, y.kz, y.b), y.fixed, y.cavity_pressure, in_cells, forth, work.warm and work.known, line.fields,
+        (y.kx, y.kz, y.b), y.fixed, y.cavity_pressure, in_cells, forth, work.warm and work.known, line.block,
         work.active, work.factor, work.unknowns, y.pressure,
     )  # fmt: skip
     line.exact = False
@@ -142,18 +132,15 @@ def solve_rupturing(system: FilmSystem, line: RuptureLine, work: Workspace, in_c
 def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace) -> None:
     """Make the factor that of the last solution, where it is that of a film close by."""
     if not line.exact:
-        refine_line((system.kx, system.kz, system.b), line.fields, work.factor, work.count, work.width)
+        refine_line((system.kx, system.kz, system.b), line.block, work.factor, work.count, work.width)
         line.exact = True
 
 
 @njit(cache=True, nogil=True)
 def refine_line(links, line, factor, count, width):
     """Factor of a solution; rows whose diagonals are its own to rounding stay."""
-    _, k, s, _, _, places, _, share = line
-    rows = factor[2].reshape(-1)
+    (order, _, _, _, _), k, s, share = factor, line[1], line[2], line[6]
     for r in range(count):
-        share[r] = 0.0
-    for q in range(places[-1]):
-        c = places[q]
-        share[rows[c]] = k[c] * (1.0 - s[c]) / s[c]
+        c = order[r]
+        share[r] = k[c] * (1.0 - s[c]) / s[c]
     factor_line(links, line, factor, count, width, count, LEFT)

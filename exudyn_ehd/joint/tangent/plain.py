@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.substitution import solve_ldl
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_of, line_weights
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_weights
 from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_pose
@@ -43,7 +43,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
     y, line, work = s.system, s.line, s.work
     _plain_tangent(
         y.fields,
-        None if line is None else line.blocks,
+        None if line is None else line.block,
         work.factor,
         (work.count, work.width),
         line is None or line.exact,
@@ -68,7 +68,7 @@ def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, spee
 
     ``film``: ``FilmSystem.fields``; ``exact``: whether the factor is that of the solution.
     """
-    order, _, number, band, inv_diag = factor
+    order, _, _, band, inv_diag = factor
     count, width = size
     kx, kz, b, H, HF, P = film[0], film[1], film[4], film[5], film[6], film[8]
     ones, by_rate, by_gap, weight, link_fields = fields
@@ -76,7 +76,7 @@ def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, spee
     cos_x, sin_x, _, _, z = at
     vx, vz, flow_x, cavity_shear = speeds
     if line is not None and not exact:
-        refine_line((kx, kz, b), line_of(line), factor, count, width)
+        refine_line((kx, kz, b), line, factor, count, width)
     lam = np.empty((4, count))
     load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
     solve_ldl(band, inv_diag, count, width, lam)
@@ -84,12 +84,13 @@ def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, spee
     columns = np.empty((10, count))
     motion_columns(order, count, link_fields, ones, by_rate, by_gap, at, columns)
     if line is not None:
-        f, k, s, _, _, places, _, _ = line_of(line)
-        places = places[: places[-1]]
-        weights, by, rows = np.empty((2, places.size)), np.zeros((8, places.size)), np.empty_like(places)
-        numbers = number.reshape(-1)
-        for q in range(places.size):
-            rows[q] = numbers[places[q]]
+        f, k, s, found = line[0], line[1], line[2], 0
+        places, rows = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+        for r in range(count):
+            if s[order[r]] < 1.0:
+                places[found], rows[found] = order[r], r
+                found += 1
+        places, rows, weights, by = places[:found], rows[:found], np.empty((2, found)), np.zeros((8, found))
         line_weights(places, f, k, s, weights)
         line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
         add_line_columns((rows, places, by), at, columns)

@@ -130,7 +130,7 @@ def test_clip_pressure_twin():
 def test_a_singular_start_is_reported():
     w, shape = Workspace(8, 4), (8, 4)
     fixed, zero, active = np.zeros(shape, dtype=bool), np.zeros(shape), np.ones(shape, dtype=bool)
-    line, P = RuptureLine(shape).fields, np.zeros(shape)
+    line, P = RuptureLine(shape).block, np.zeros(shape)
     ok, steps, _, _ = find_film((zero, zero, zero), fixed, 0.0, False, 1, False, line, active, w.factor, w.unknowns, P)
     assert not ok
     assert steps == 1

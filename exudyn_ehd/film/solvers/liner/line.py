@@ -50,7 +50,7 @@ class FilmLine(RuptureLine):
 
     def __init__(self, shape: tuple[int, int]) -> None:
         super().__init__(shape)
-        a = Line(*self.fields)
+        a = Line(*self.block)
         self.state = a.f, a.k, a.s, a.whole, a.shift, a.share
         self.gaps = np.ones((2, *shape))
         self.flux: LinkFlux | None = None
@@ -62,11 +62,11 @@ class FilmLine(RuptureLine):
     def take(self, gaps: tuple[np.ndarray, np.ndarray], kx: np.ndarray, b: np.ndarray, fixed: np.ndarray) -> None:
         """f and k from the film's gaps, conductances and right-hand side (n, m) at the cavity's pressure."""
         self.gaps[:], self.s[:] = gaps, 1.0
-        line_terms(kx, self.density * b, fixed, True, self.fields)
+        line_terms(kx, self.density * b, fixed, True, self.block)
 
     def yield_to(self, beta: float, vx: float, width: np.ndarray) -> None:
         """f and k on a liner of scaled compliance ``beta``; ``width`` (m,) of the vertices."""
-        f, k, whole = self.f, self.k, self.whole.reshape(self.f.shape)
+        f, k, whole = self.f, self.k, Line(*self.block).whole.reshape(self.f.shape)
         k += 0.5 * beta * abs(vx) * width
         there = f > 0.0
         k_there, gap = np.where(there, k, 1.0), 0.5 * (self.gaps[1] + np.roll(self.gaps[1], 1, axis=0))
@@ -81,15 +81,12 @@ class FilmLine(RuptureLine):
     def settle(self, active: np.ndarray) -> None:
         """The line of the film that is solved, among its ``active`` vertices (n, m)."""
         self.s[~active] = 1.0
-        places, s = self.places, self.s.reshape(-1)
-        found = np.flatnonzero(s < 1.0)
-        places[: found.size], places[-1] = found, found.size
 
     @property
     def factored(self) -> bool:
         """Whether the factor holds the line of the film that is solved."""
-        _, k, s, _, _, places, shift, _ = self.fields
-        c = places[: places[-1]]
+        a = Line(*self.block)
+        k, s, shift, c = a.k, a.s, a.shift, np.flatnonzero(a.s < 1.0)
         place = np.maximum(s[c], LEAST)
         own = k[c] * (1.0 - place) / place
         return bool(np.all(np.abs(shift[c] - own) <= RULE.exact * (k[c] + own)) and np.count_nonzero(shift) == c.size)
