@@ -56,19 +56,23 @@ def test_warm_transient_step_with_tangent(benchmark, n_theta, n_z, target):
 
 
 def test_steady_cold(benchmark):
-    """Limit 3.6 ms at 100 x 26, where 3.2 were measured; the target is 10."""
+    """At most 8 warm films a degree apart on 100 x 26; 5.8 were measured."""
     model = _model(100, 26)
-    motion = _motion(0)
-    motion[4:8] = 0.0
+    motions = [_motion(k) for k in range(41)]
+    for motion in motions:
+        motion[4:8] = 0.0
 
-    def cold():
-        model.forget()
-        model.evaluate(motion)
+    def time_of(forgets):
+        times = []
+        for motion in motions:
+            if forgets:
+                model.forget()
+            start = time.process_time()
+            model.evaluate(motion)
+            times.append(time.process_time() - start)
+        return np.median(times[1:])
 
-    benchmark.pedantic(cold, rounds=20, warmup_rounds=2)
-    times = []
-    for _ in range(40):
-        start = time.process_time()
-        cold()
-        times.append(time.process_time() - start)
-    assert min(times) < 3.6e-3
+    benchmark.pedantic(time_of, args=(True,), rounds=1, warmup_rounds=1)
+    ratio = min(time_of(True) for _ in range(3)) / min(time_of(False) for _ in range(3))
+    print(f"cold over warm: {ratio:.2f}")
+    assert ratio < 8.0
