@@ -85,8 +85,8 @@ def assert_same(one, other, tolerance):
         assert a.shape == b.shape, field.name
         scale = np.nanmax(np.abs(a), initial=0.0)
         # an estimate with the tangents of Newton's last iterations, which need not start alike, without the momentum
-        # that the first step behind a restart has missed: 2e-5 of the largest estimate
-        share = max(tolerance, 1e-4) if field.name == "step_error" else tolerance
+        # that the first step behind a restart has missed: up to 2e-4 of the largest estimate
+        share = max(tolerance, 1e-3) if field.name == "step_error" else tolerance
         np.testing.assert_allclose(b, a, rtol=0.0, atol=share * scale, err_msg=field.name)
 
 
