@@ -86,9 +86,9 @@ def test_many_random_states_of_swift_stieber(make_bearing, film):
 @every_closure
 @both_films
 def test_a_warm_start_changes_nothing_but_rounding(make_bearing, closure, film):
-    """No bit of films whose unknowns are the same everywhere."""
+    """To 1e-12 with `SwiftStieber`, whose steps add to the film before; with the other closures no bit."""
     if closure is ehd.SwiftStieber:
-        for in_cells in {film is FILMS[0], False}:
+        for in_cells in (False, True) if film is FILMS[0] else (False,):
             compare_warm_with_cold(make_bearing(0.8, cavitation=closure(line_in_cells=in_cells), film=film), 1e-12)
     else:
         compare_warm_with_cold(make_bearing(0.8, cavitation=closure(), film=film), 0.0)

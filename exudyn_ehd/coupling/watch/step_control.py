@@ -36,9 +36,11 @@ class StepControl:
     **Of a run** (``SolveDynamic(mbs, simulationSettings, stepControl=StepControl(error=0.02))``, `SolveDynamicSparse`
     alike): steps grow and shrink so that the estimated error of the gaps of all joints, ``history.step_error``, stays
     near ``error``; steps that miss far more are refused. ``numberOfSteps`` of the settings then stands for a usual
-    step: the first one is an eighth of it, the largest four of it. A load that comes and goes within one step leaves
-    no trace: give as many steps as let the shortest knock last five of them. Steps end at the times at which solution
-    file and sensors are written (``writePeriod``).
+    step: the first one is an eighth of it, the largest four of it. Loads that are user functions may jump
+    anywhere: their functions are called again at earlier times within such a step, so they must depend on time alone.
+    A pulse is found if it lasts a sixteenth of a step. Impacts and loads that are set from step to step leave no trace
+    where they come and go within one step: let the shortest knock last five steps. Steps end at the times at which
+    solution file and sensors are written (``writePeriod``).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What one step of `exudyn_ehd.film.cavitation.swift_stieber` does to a film with its rupture line inside its cells.
+"""Parts of a step of `exudyn_ehd.film.cavitation.swift_stieber`: balances, joining vertices, factor, new state.
 
 Symbols as there and in `exudyn_ehd.film.cavitation.rupture_line`; pressures are those above the cavity's.
 """
@@ -21,7 +21,7 @@ _0, _1 = _unsigned(0), _unsigned(1)
 
 @njit(cache=True, fastmath=_FAST)
 def lacks(links, p, out):
-    """What the balances lack without the line: b less what the pressure flows take away, (n, m)."""
+    """Write the balances' lack without the line (n, m): b less what the pressure flows take away."""
     kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
     x, lack, m, size = p.reshape(-1), out.reshape(-1), _unsigned(p.shape[1]), _unsigned(p.size)
     last = size - m
@@ -64,7 +64,7 @@ def join_film(links, line, active, lack, p):
 
 @njit(cache=True)
 def line_rows(lack, line, order, count, rhs_out):
-    """What the balances of the unknowns lack (count,) with the line; its share of their diagonals."""
+    """Write the lack of the unknowns' balances (count,) with the line, and its share of their diagonals."""
     rest, f, k, s, share = lack.reshape(-1), line[0], line[1], line[2], line[6]
     for r in range(count):
         c = order[r]

@@ -1,4 +1,4 @@
-"""The linear film on given vertices, and what Gümbel's condition cuts off it.
+"""Linear film on given vertices, and Gümbel's condition, which cuts it off.
 
 Symbols: P pressure, pc cavity pressure, scaled.
 """

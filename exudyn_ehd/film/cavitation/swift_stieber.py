@@ -41,7 +41,7 @@ _NONE = np.int64(0)
 
 @njit(cache=True)
 def _newton(links, line, active, factor, x, forth, p):
-    """The film from the sets and pressures at hand; returns (ok, steps, count, width)."""
+    """Film from the sets and pressures at hand; returns (ok, steps, count, width)."""
     order, old_order, number, band, inv_diag = factor
     lack = np.empty(p.shape)
     lacks(links, p, lack)
@@ -72,7 +72,7 @@ def _newton(links, line, active, factor, x, forth, p):
 
 @njit(cache=True, nogil=True)
 def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor, x, P):
-    """The film from ``active``, if it ``is_known`` also from its pressures P; returns (ok, steps, count, width).
+    """Film from the set ``active``, if it ``is_known`` also from the pressures P; returns (ok, steps, count, width).
 
     Parameters
     ----------
@@ -84,6 +84,7 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
     forth : int
         1: the columns are numbered in theta, -1: against it.
     is_known : bool
+        Whether P are pressures of a film close by.
     line : (7, n m) array
         `Line`.
     active : (n, m) bool array

@@ -44,8 +44,10 @@ class FilmSystem:
     turns : float
         Scaled speed with which oil goes round in the rows of a steady film that conserves mass, 1/s; 0 with axial
         speed.
+    rupture : RuptureLine
+        Where a film of Swift and Stieber ends.
     line : RuptureLine or None
-        Where the film's edge lies inside its cells; None: on vertices.
+        The same if it may end inside its cells; None: on vertices.
     oil_line : OilLine or None
         The same of a film that conserves mass.
     straight : Curve or None

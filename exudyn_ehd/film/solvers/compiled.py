@@ -195,7 +195,7 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
         ready = changes == 0 and share == 1.0
         if ready:
             converged = converged and (not clips or norm <= BALANCED / ROUNDING * flow_rounding(terms, rate))
-            # a share of the suction that is cut off may be many of the peak: another step
+            # the suction that is cut off may be far larger than what stays: one more step finds its last digits
             converged, once = converged and (not clips or once), converged
             if converged or (not from_last and is_final(left, last_left, fresh)):
                 return True, step, not from_last and moved <= RULE.exact, count, width

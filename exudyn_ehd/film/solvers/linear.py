@@ -118,7 +118,7 @@ class FilmSolver:
         return self.system.fill * self.H
 
     def forget(self) -> None:
-        """Drop the warm start; the next solution starts from a coarser grid."""
+        """Drop the warm start; the next solution starts from a coarser grid where there is one."""
         self.work.warm = self.work.known = False
 
     def refresh_fixed(self) -> None:

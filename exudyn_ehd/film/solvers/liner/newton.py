@@ -75,7 +75,7 @@ def newton(film: LinerBalance) -> tuple[bool, int]:
         ready = changes == 0 and share == 1.0
         if ready:
             converged = converged and film.settled(norm)
-            # a share of the suction that is cut off may be many of the peak: another step
+            # the suction that is cut off may be far larger than what stays: one more step finds its last digits
             converged, once = converged and (once or not film.clips), converged
             if converged or (not from_last and is_final(step.left, last_left, fresh)):
                 if not converged:
