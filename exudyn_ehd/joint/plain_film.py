@@ -115,7 +115,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
         return False, 0, np.int64(0), np.int64(1), smallest, (0.0, 0.0), 0.0
     for i in range(P.shape[0]):
         P[i, 0], P[i, -1] = known[0], known[1]
-    set_links(H, HF, H_t if squeeze else None, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
+    set_links(H, HF, H_t, squeeze, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
     forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
     ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, is_known, line, active, factor, x, P)
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)

@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
 from numba.core.base import BaseContext
 from numba.core.errors import TypingError
 from numba.core.typing.templates import Signature
@@ -70,46 +69,3 @@ def subtract_lanes(typingctx, target, at, source, p, f):
 def subtract_four_lanes(typingctx, target, at, source, p0, p1, p2, p3, f0, f1, f2, f3):
     """target[at : at + 4] -= f0 source[p0 : p0 + 4] + f1 source[p1 : p1 + 4] + ..., flat arrays, unsigned places."""
     return _signature(target, source, 4), _subtract(4)
-
-
-def _dots(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]) -> ir.Value:
-    """Code of `dot_four_lanes`."""
-    source, *places, x, at, size = arguments
-    sums = [cgutils.alloca_once_value(builder, ir.Constant(_vector, [0.0] * LANES)) for _ in places]
-    with cgutils.for_range_slice(builder, size.type(0), size, size.type(LANES), size.type) as (step, _):
-        known = builder.load(_place(context, builder, signature.args[5], x, builder.add(at, step)), align=8)
-        for total, place in zip(sums, places, strict=True):
-            row = _place(context, builder, signature.args[0], source, builder.add(place, step))
-            product = builder.fmul(builder.load(row, align=8), known, flags=("contract", "nsz"))
-            builder.store(builder.fadd(builder.load(total), product, flags=("contract", "nsz")), total)
-    found = []
-    for total in map(builder.load, sums):
-        a, b, c, d = (builder.extract_element(total, _int32(lane)) for lane in range(LANES))
-        found.append(builder.fadd(builder.fadd(a, b), builder.fadd(c, d)))
-    return context.make_tuple(builder, signature.return_type, found)
-
-
-@intrinsic
-def dot_four_lanes(typingctx, source, p0, p1, p2, p3, x, at, size):
-    """Products of x[at : at + size] with source[p : p + size] for four places p, flat arrays and unsigned places; the
-    size counts in whole fours."""
-    _require_contiguous(source, x)
-    four = types.UniTuple(types.float64, 4)
-    return four(source, *4 * (types.uint64,), x, types.uint64, types.uint64), _dots
-
-
-def _join(context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]) -> ir.Value:
-    """Code of `put_four_lanes`."""
-    target, at, *values = arguments
-    vector: ir.Value = ir.Constant(_vector, ir.Undefined)
-    for lane, value in enumerate(values):
-        vector = builder.insert_element(vector, value, _int32(lane))
-    builder.store(vector, _place(context, builder, signature.args[0], target, at), align=8)
-    return context.get_dummy_value()
-
-
-@intrinsic
-def put_four_lanes(typingctx, target, at, s0, s1, s2, s3):
-    """target[at : at + 4] = s0, s1, s2, s3 in one piece, as a vector that is read next waits for several."""
-    _require_contiguous(target)
-    return types.void(target, types.uint64, *4 * (types.float64,)), _join

@@ -64,7 +64,9 @@ def _newton(film, late, b, since, pc, curve, in_cells, start, factor, x, full, u
     """`solve_oil` with pressures P above the cavity's."""
     order, _, lower, upper, inv_diag, _ = factor
     (known, ready, count, width), (inverse_step, mass_old) = start, since
-    film.late[:, :] = late
+    flat, given = film.late.reshape(-1), late.reshape(-1)
+    for c in range(flat.size):
+        flat[c] = given[c]
     if inverse_step > 0.0:
         hold_back(film, inverse_step, mass_old)
     carried, rest, terms = film.late.copy(), film.kx.copy(), film_terms(film, inverse_step, mass_old)

@@ -237,12 +237,12 @@ def add_squeeze(H_t, width_x, width_z, b_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def set_links(H, HF, H_t, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz_out, b_out):
-    """Coefficients of the links and right-hand side in one call; ``H_t``: None without the storage term."""
+def set_links(H, HF, H_t, squeeze, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz_out, b_out):
+    """Coefficients of the links and right-hand side in one call; without a ``squeeze`` H_t is not read."""
     conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out)
     couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out)
     right_hand_side(fx_out, fz_out, b_out)
-    if H_t is not None:
+    if squeeze:
         add_squeeze(H_t, mesh[0], mesh[1], b_out)
 
 

@@ -179,8 +179,9 @@ class FilmSolver:
             first.start(f, self.H, self.vx, self.vz)
             for effect in others:
                 effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
-        H_t, flow = self.H_t if self.squeeze else None, None if f is None else f.flow
-        set_links(self.H, self.HF, H_t, flow, self.vx, self.vz, self.flow_x, mesh, s.kx, s.kz, s.fx, s.fz, s.b)
+        H, HF, flow = self.H, self.HF, None if f is None else f.flow
+        speeds, flows = (self.vx, self.vz, self.flow_x), (s.kx, s.kz, s.fx, s.fz, s.b)
+        set_links(H, HF, self.H_t, self.squeeze, flow, *speeds, mesh, *flows)
         self.grid.cut(s.kx, s.kz)
 
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
