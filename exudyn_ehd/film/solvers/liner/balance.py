@@ -8,13 +8,13 @@ from collections.abc import Callable
 import numpy as np
 
 from exudyn_ehd.film.cavitation.solve import LARGEST_DEFICIT
-from exudyn_ehd.film.reynolds.links import FilmState, add_squeeze, right_hand_side
+from exudyn_ehd.film.reynolds.links import FilmState
 from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import GapChain
-from exudyn_ehd.film.solvers.liner.line_kernels import NO_LINE
+from exudyn_ehd.film.solvers.liner.line_kernels import NO_LINE, open_gaps
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step
 from exudyn_ehd.film.solvers.steps import (
@@ -32,9 +32,6 @@ from exudyn_ehd.film.solvers.steps import (
     take_over,
     take_step,
 )
-
-# Gap over the clearance below which surfaces at the cavity's pressure touch: no line is looked for there.
-TOUCHING = 1e-6
 
 
 class LinerBalance(LinerFilm):
@@ -58,9 +55,7 @@ class LinerBalance(LinerFilm):
         self.rates = rates._replace(liner=0.0)
         self.update_elements(np.where(g.fixed, self.u.P, s.cavity_pressure))
         self.rates = rates
-        touching = self.gaps.HF < TOUCHING
-        for gap in (self.gaps.H, self.gaps.HF):
-            np.maximum(gap, TOUCHING, out=gap)
+        open_gaps(self.gap_fields, line.touching)
         if self.links is None:
             plain_links(self.gap_fields, self.metric, f.vx, f.vz, self.term_fields)
         else:
@@ -70,24 +65,18 @@ class LinerBalance(LinerFilm):
             line.flux = copy.deepcopy(self.links)
             if self.thin is not None:
                 s.kx *= self.thin.slide(line.flux, f.vx)
-        s.kx[touching] = 0.0
-        right_hand_side(s.fx, s.fz, s.b)
-        if f.squeeze:
-            add_squeeze(self.gaps.rate, g.width_x, g.width_z, s.b)
         if self.rho is not None:
             line.density = float(self.rho[~g.fixed].min(initial=np.inf))
-        line.take((self.gaps.H, self.gaps.HF), s.kx, s.b, g.fixed)
+        widths = (g.width_x, g.width_z)
+        line.see(self.gap_fields, self.term_fields, s.b, f.squeeze, widths, g.fixed, self.beta, f.vx)
         if self.limiter is not None or self.contact is not None:
             a, follow = self.gap_slopes, 1.0 / (1.0 - self.beta * self.contact_G) - 1.0
             line.chain = GapChain(a.rate_t.copy(), self.bend.copy(), a.link.copy(), follow)
-        if self.beta > 0.0:
-            line.yield_to(self.beta, f.vx, g.width_z)
 
     def settle_line(self) -> None:
-        """The line of the film that is solved, and the balances with it."""
+        """The line of the film that is solved."""
         if self.line is None:
             return
-        self.balance(self.u)
         self.line.settle(self.film.work.active)
         self.exact = self.exact and self.line.factored
 
@@ -253,8 +242,8 @@ class LinerBalance(LinerFilm):
         self.u.P[:] = self.trial.P
         if self.fills:
             self.u.fill[:] = self.trial.fill
-        if self.thin is not None:
-            # conductances follow the last correction, too
+        if self.thin is not None or self.met is not None:
+            # conductances and the line follow the last correction, too
             self.balance(self.u)
 
     def sound(self) -> bool:

@@ -18,9 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.rupture_line import LEAST, Line, LineGradients, RuptureLine, line_terms, to_true_gap
+from exudyn_ehd.film.cavitation.rupture_line import Line, LineGradients, RuptureLine, line_terms, to_true_gap
 from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.film.solvers.newton import RULE
+from exudyn_ehd.film.solvers.liner.line_kernels import add_yielding, is_factored, see_line, weigh_yielding
 
 
 class GapChain(NamedTuple):
@@ -56,27 +56,33 @@ class FilmLine(RuptureLine):
         self.flux: LinkFlux | None = None
         self.chain: GapChain | None = None
         self.density = 1.0
-        # derivatives of f to itself without a liner, to k, to the mean gap of the links, and of k to vx; None without
-        self.yields: np.ndarray | None = None
+        # where surfaces touch at the cavity's pressure; t of the module, and (compliance, vx, widths) of the liner
+        self.touching, self.lean = np.zeros(shape, dtype=np.bool_), np.zeros(shape)
+        self.liner = 0.0, 0.0, np.zeros(shape[1])
 
     def take(self, gaps: tuple[np.ndarray, np.ndarray], kx: np.ndarray, b: np.ndarray, fixed: np.ndarray) -> None:
         """f and k from the film's gaps, conductances and right-hand side (n, m) at the cavity's pressure."""
         self.gaps[:], self.s[:] = gaps, 1.0
         line_terms(kx, self.density * b, fixed, True, self.block)
 
-    def yield_to(self, beta: float, vx: float, width: np.ndarray) -> None:
-        """f and k on a liner of scaled compliance ``beta``; ``width`` (m,) of the vertices."""
-        f, k, whole = self.f, self.k, Line(*self.block).whole.reshape(self.f.shape)
-        k += 0.5 * beta * abs(vx) * width
-        there = f > 0.0
-        k_there, gap = np.where(there, k, 1.0), 0.5 * (self.gaps[1] + np.roll(self.gaps[1], 1, axis=0))
-        t = 0.5 * beta * f / (k_there * gap)
-        held = 1.0 / (1.0 + t * t)
-        turned = 2.0 * (t * held) ** 2
-        by_speed = np.broadcast_to(0.5 * beta * np.sign(vx) * width, f.shape)
-        self.yields = np.stack((held - turned, turned * f / k_there, turned * f / gap, by_speed))
-        f *= held
-        np.divide(0.5 * f, k_there, out=whole)
+    def see(
+        self,
+        gap_fields: np.ndarray,
+        term_fields: np.ndarray,
+        b: np.ndarray,
+        squeeze: bool,
+        widths: tuple[np.ndarray, np.ndarray],
+        fixed: np.ndarray,
+        beta: float,
+        vx: float,
+    ) -> None:
+        """As `take` from the fields of `LinerFilm` at the cavity's pressure, on its liner of scaled compliance
+        ``beta``; ``widths`` of the vertices in theta and z."""
+        self.liner = beta, vx, widths[1]
+        see_line(
+            gap_fields, term_fields, self.touching, b, squeeze, widths, fixed, self.density, (beta, vx), self.block,
+            self.gaps, self.lean,
+        )  # fmt: skip
 
     def settle(self, active: np.ndarray) -> None:
         """The line of the film that is solved, among its ``active`` vertices (n, m)."""
@@ -85,19 +91,12 @@ class FilmLine(RuptureLine):
     @property
     def factored(self) -> bool:
         """Whether the factor holds the line of the film that is solved."""
-        a = Line(*self.block)
-        k, s, shift, c = a.k, a.s, a.shift, np.flatnonzero(a.s < 1.0)
-        place = np.maximum(s[c], LEAST)
-        own = k[c] * (1.0 - place) / place
-        return bool(np.all(np.abs(shift[c] - own) <= RULE.exact * (k[c] + own)) and np.count_nonzero(shift) == c.size)
+        return bool(is_factored(self.block))
 
     def weights(self, places: np.ndarray) -> np.ndarray:
         """As `RuptureLine.weights`, of a film with this density, on its liner."""
         out = super().weights(places)
-        if self.yields is not None:
-            by_f, by_k, _, _ = self.yields.reshape(4, -1)[:, places]
-            out[1] -= out[0] * by_k
-            out[0] *= by_f
+        weigh_yielding(places, self.f, self.k, self.lean, out)
         out[0] *= self.density
         return out
 
@@ -113,10 +112,7 @@ class FilmLine(RuptureLine):
     ) -> LineGradients:
         """As `RuptureLine.gradients`, to the gaps of the undeformed surfaces; gaps and flux are those of the cavity."""
         line = super().gradients(work, (self.gaps[0], self.gaps[1]), self.flux, speeds, flow_x, squeeze, mesh)
-        if self.yields is not None:
-            _, _, by_gap, by_speed = self.yields.reshape(4, -1)[:, line.places]
-            line.by[:2] -= 0.25 * (1.0 - self.s.reshape(-1)[line.places]) * by_gap
-            line.by[6] += self.weights(line.places)[1] * by_speed
+        add_yielding(line.places, self.block, self.lean, self.gaps[1], self.liner, line.by)
         return line if self.chain is None else undeformed(line, self.chain)
 
 
