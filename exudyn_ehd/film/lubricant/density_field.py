@@ -6,7 +6,7 @@ pressure q, p, s = dp/dq and s's first three derivatives; Taylor's polynomial ab
 the compiler vectorises.
 
 Symbols: P scaled transformed pressures (n, m), ``scale`` Pa per unit of P, ``floor`` the scaled pressure below which
-the density stays; ``share`` = 1: the law's density, less: that share of its difference to a constant one.
+the density stays.
 """
 
 from numba import njit
@@ -23,31 +23,31 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True)
-def density_at(P, scale, floor, law, share, known, rho_out):
+def density_at(P, scale, floor, law, known, rho_out):
     """Density ratio (n, m); what is not known near by is looked up. Beyond the law's range it is that at its end."""
     x, rho = P.reshape(-1), rho_out.reshape(-1)
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
-    far, tense = _ratio_near(x, scale, lowest, highest, share, law.a, law.b, known, rho)
+    far, tense = _ratio_near(x, scale, lowest, highest, law.a, law.b, known, rho)
     if far > 0.0:
         look_up(x, scale, lowest, highest, law, NEAR, known)
-        far, tense = _ratio_near(x, scale, lowest, highest, share, law.a, law.b, known, rho)
+        far, tense = _ratio_near(x, scale, lowest, highest, law.a, law.b, known, rho)
     if tense > 0.0:
         for c in range(rho.size):
             p, _ = _taylor(x[c], scale, lowest, highest, known, c)
-            rho[c] = 1.0 + share * (density_ratio(p, law.a, law.b)[0] - 1.0)
+            rho[c] = density_ratio(p, law.a, law.b)[0]
 
 
 @njit(cache=True)
-def density_slope_at(P, scale, floor, law, share, known, rho_P_out):
+def density_slope_at(P, scale, floor, law, known, rho_P_out):
     """Derivative (n, m) of the density ratio to P at the pressures of the last `density_at`; 0 where it stays."""
     x, slope = P.reshape(-1), rho_P_out.reshape(-1)
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
-    tense = _slope_near(x, scale, lowest, highest, share, law.a, law.b, known, slope)
+    tense = _slope_near(x, scale, lowest, highest, law.a, law.b, known, slope)
     if tense > 0.0:
         for c in range(slope.size):
             p, s = _taylor(x[c], scale, lowest, highest, known, c)
             inside = lowest <= x[c] < highest
-            slope[c] = share * scale * s * density_ratio(p, law.a, law.b)[1] if inside else 0.0
+            slope[c] = scale * s * density_ratio(p, law.a, law.b)[1] if inside else 0.0
 
 
 @njit(cache=True)
@@ -93,7 +93,7 @@ def _taylor(x, scale, lowest, highest, known, c):
 
 # Checks for a division by zero would keep the compiler from vectorising the next ones.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _ratio_near(x, scale, lowest, highest, share, a, b, known, rho_out):
+def _ratio_near(x, scale, lowest, highest, a, b, known, rho_out):
     """Density ratio, strong tension excepted; counts what is far from known pressures, and what is in such tension."""
     at, p, s, s_q, s_qq, s_3 = known[0], known[1], known[2], known[3], known[4], known[5]
     far = 0.0
@@ -109,12 +109,12 @@ def _ratio_near(x, scale, lowest, highest, share, a, b, known, rho_out):
         # 1 / (1 + b p), or what follows from exp(a p) for p < 0
         less = 1.0 / (1.0 + (b * value if e >= 0.0 else 0.0))
         more = 1.0 + e * (0.5 + e * (1.0 / 6.0 + e * (1.0 / 24.0 + e * (1.0 / 120.0))))
-        rho_out[c] = 1.0 + share * e * (less if e >= 0.0 else more)
+        rho_out[c] = 1.0 + e * (less if e >= 0.0 else more)
     return far, tense
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _slope_near(x, scale, lowest, highest, share, a, b, known, rho_P_out):
+def _slope_near(x, scale, lowest, highest, a, b, known, rho_P_out):
     """Derivative of the density ratio, strong tension excepted; returns how many are in it."""
     at, p, s, s_q, s_qq, s_3 = known[0], known[1], known[2], known[3], known[4], known[5]
     tense = 0.0
@@ -127,7 +127,7 @@ def _slope_near(x, scale, lowest, highest, share, a, b, known, rho_P_out):
         tense += 0.0 if e >= -WEAK else 1.0
         less = 1.0 / (1.0 + (b * value if e >= 0.0 else 0.0))
         more = 1.0 + e * (1.0 + e * (0.5 + e * (1.0 / 6.0 + e * (1.0 / 24.0))))
-        by_pressure = share * a * scale * slope * (less * less if e >= 0.0 else more)
+        by_pressure = a * scale * slope * (less * less if e >= 0.0 else more)
         rho_P_out[c] = by_pressure if (x[c] >= lowest) & (x[c] < highest) else 0.0
     return tense
 

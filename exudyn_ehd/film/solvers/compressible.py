@@ -19,8 +19,7 @@ out likewise. A flooded start holds oil of ambient density, so that its film bui
 Swift-Stieber's rupture line lies inside the cells as `exudyn_ehd.film.solvers.liner.line` has it.
 
 Newton's method with the exact non-symmetric matrix starts from the last film, else
-from the incompressible one. Should it fail, the density's departure from a constant
-is switched on in steps. Oil that no pressure of the law's range carries has no film.
+from the incompressible one. Oil that no pressure of the law's range carries has no film.
 """
 
 from __future__ import annotations
@@ -42,7 +41,6 @@ from exudyn_ehd.film.solvers.liner.line_kernels import NO_LINE
 from exudyn_ehd.film.solvers.steps import admit
 from exudyn_ehd.status import Status
 
-SMALLEST_SHARE = 1.0 / 64.0
 # Share of the law's range at which a film that was not found presses against its end.
 AT_THE_END = 1.0 - 1e-9
 
@@ -121,7 +119,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             self._prepare(vx, vz, cavity_pressure, mass_old, step)
             # a film at rest starts from nothing, not from what is left of the last one
             at_rest = vx == vz == 0.0 and not self.H_t.any()
-            ok, steps = (False, 0) if self.system.closes or at_rest else self._newton(1.0)
+            ok, steps = (False, 0) if self.system.closes or at_rest else self._newton()
             if ok:
                 return self._finish(steps)
         self.forget()
@@ -134,11 +132,11 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         if self.closure.conserves_mass:
             self._set_store()
         self._take_line()
-        # Beyond the law's range the density stays what it is at its end: nothing to go along from there.
         out = self._reaches(self.law.kernel_table.highest)
-        ok, count = self._newton(1.0) if out else self._switch_on()
+        ok, count = self._newton()
         steps += count
         if not ok:
+            # beyond the law's range the density stays what it is at its end
             out = out or self._reaches(AT_THE_END * self.law.kernel_table.highest)
             return (Status.NO_PRESSURE if out else Status.NOT_CONVERGED), steps
         return self._finish(steps)
@@ -194,9 +192,9 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         self.reusable = False
         super().refresh_fixed()
 
-    def _oil(self, share: float) -> tuple[float, float, DensityTable, float, np.ndarray, np.ndarray, np.ndarray]:
-        """The law with ``share`` of the density's departure from a constant, as kernels take it."""
-        return self.pressure_scale, self._floor, self.law.kernel_table, share, self.known, self.rho, self.rho_P
+    def _oil(self) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray]:
+        """The law as kernels take it."""
+        return self.pressure_scale, self._floor, self.law.kernel_table, self.known, self.rho, self.rho_P
 
     def _speeds(self) -> tuple[float, float, float, float]:
         """Cavity pressure, speeds and compliance, as kernels take them."""
@@ -208,7 +206,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             return self.work.active
         return np.logical_not(self.grid.fixed, out=self.free)
 
-    def _newton(self, share: float) -> tuple[bool, int]:
+    def _newton(self) -> tuple[bool, int]:
         w, fixed, fills = self.work, self.grid.fixed, self.closure.conserves_mass
         if fills:
             np.logical_or(w.active, fixed, out=self.full)
@@ -223,7 +221,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             self.fields,
             self.H_t,
             None,
-            self._oil(share),
+            self._oil(),
             w.matrix,
             self.residual,
             self._unknown(),
@@ -234,27 +232,6 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             np.logical_and(self.full, self.free, out=w.active)
         self.reusable = ok
         return ok, steps
-
-    def _switch_on(self) -> tuple[bool, int]:
-        """The law at once, or in steps from the constant density of the present film."""
-        s, w = self.system, self.work
-        done, share, total = 0.0, 1.0, 0
-        start = s.linear_pressure.copy(), s.fill.copy(), w.active.copy()
-        while done < 1.0:
-            ok, steps = self._newton(min(1.0, done + share))
-            total += steps
-            if ok:
-                done = min(1.0, done + share)
-                start = s.linear_pressure.copy(), s.fill.copy(), w.active.copy()
-                share *= 2.0
-                continue
-            if self._reaches(AT_THE_END * self.law.kernel_table.highest):
-                return False, total
-            s.linear_pressure[:], s.fill[:], w.active[:] = start
-            share *= 0.25
-            if share < SMALLEST_SHARE:
-                return False, total
-        return True, total
 
     def _finish(self, steps: int) -> tuple[Status, int]:
         """Clip what the closure clips; factors of the Couette flows on the links."""
@@ -299,7 +276,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
                 self._speeds(),
                 self.fields,
                 None,
-                self._oil(1.0),
+                self._oil(),
                 w.matrix,
                 self._unknown(),
                 self._line,

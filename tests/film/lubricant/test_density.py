@@ -91,11 +91,11 @@ def test_no_pressure_beyond_the_range():
         assert not law.inverse(np.full((1, 1), q), *out)
 
 
-def asked(P, scale, floor, law, share, known):
+def asked(P, scale, floor, law, known):
     """Density ratio and its derivative from the kernels."""
     rho, rho_P = np.empty_like(P), np.empty_like(P)
-    density_at(P, scale, floor, law.kernel_table, share, known, rho)
-    density_slope_at(P, scale, floor, law.kernel_table, share, known, rho_P)
+    density_at(P, scale, floor, law.kernel_table, known, rho)
+    density_slope_at(P, scale, floor, law.kernel_table, known, rho_P)
     return rho, rho_P
 
 
@@ -105,7 +105,7 @@ def test_weak_and_strong_tension():
     law = density.bound(None)
     p = np.array([[-1e-3, -1e5, -0.99 * WEAK / 0.6e-9, 0.0, 1e6]])
     for strong in (p, np.append(p, [[-1.01 * WEAK / 0.6e-9, -1e8]], axis=1)):
-        rho, rho_P = asked(law.transform(strong), 1.0, -np.inf, law, 1.0, np.full((6, strong.size), np.nan))
+        rho, rho_P = asked(law.transform(strong), 1.0, -np.inf, law, np.full((6, strong.size), np.nan))
         np.testing.assert_allclose(rho, density.ratio(strong), rtol=2e-15)
         np.testing.assert_allclose(rho_P, density.ratio_slope(strong) / density.ratio(strong), rtol=1e-10)
 
@@ -114,16 +114,16 @@ def test_density_kernel_equals_its_twin():
     density = ehd.DowsonHigginson()
     law = density.bound(VISCOSITIES["barus"])
     p = np.array([[-2e7, -1e5, 0.0, 3e6, 2e8, 5e8]])
-    scale, floor, share = 1e5, -1.0, 0.7
+    scale, floor = 1e5, -1.0
     P = law.transform(p) / scale
-    rho, rho_P = asked(P, scale, floor, law, share, np.full((6, P.size), np.nan))
+    rho, rho_P = asked(P, scale, floor, law, np.full((6, P.size), np.nan))
     kept = np.maximum(p, float(-np.log1p(1e5 * law.alpha) / law.alpha))
-    np.testing.assert_allclose(rho, 1.0 + share * (density.ratio(kept) - 1.0), rtol=1e-12)  # the spline's
+    np.testing.assert_allclose(rho, density.ratio(kept), rtol=1e-12)  # the spline's
     assert rho_P[0, 0] == 0.0
-    slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * share * scale
+    slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * scale
     np.testing.assert_allclose(rho_P[0, 2:], slope[0, 2:], rtol=1e-10)
     beyond = np.full((1, 1), 2.0 * law.q[-1] / scale)
-    rho, rho_P = asked(beyond, scale, floor, law, 1.0, np.full((6, 1), np.nan))
+    rho, rho_P = asked(beyond, scale, floor, law, np.full((6, 1), np.nan))
     assert rho[0, 0] == pytest.approx(float(density.ratio(law.largest_pressure)), rel=1e-6)  # at the range's end
     assert rho_P[0, 0] == 0.0
 
@@ -133,12 +133,12 @@ def test_what_is_known_near_by_serves_to_rounding(viscosity):
     law = ehd.DowsonHigginson().bound(None if viscosity is None else VISCOSITIES[viscosity])
     q = law.transform(np.array([[-2e7, -5e6, 3e6, 5e7, 2e8, 5e8]]))
     known = np.full((6, q.size), np.nan)
-    asked(q, 1.0, -np.inf, law, 1.0, known)
+    asked(q, 1.0, -np.inf, law, known)
     at = known[0].copy()
     moved = q + 0.9 * NEAR * np.abs(known[2] / known[3])
-    rho, rho_P = asked(moved, 1.0, -np.inf, law, 1.0, known)
+    rho, rho_P = asked(moved, 1.0, -np.inf, law, known)
     np.testing.assert_array_equal(known[0], at)
-    fresh, fresh_P = asked(moved, 1.0, -np.inf, law, 1.0, np.full((6, q.size), np.nan))
+    fresh, fresh_P = asked(moved, 1.0, -np.inf, law, np.full((6, q.size), np.nan))
     np.testing.assert_allclose(rho, fresh, rtol=1e-14)
     np.testing.assert_allclose(rho_P, fresh_P, rtol=1e-10)
     exact, found = np.empty((3, *q.shape)), np.empty((4, *q.shape))
@@ -149,7 +149,7 @@ def test_what_is_known_near_by_serves_to_rounding(viscosity):
     # A derivative further; where density and viscosity cancel, what the spline's second derivative rounds to.
     np.testing.assert_allclose(found[2], exact[2], rtol=1e-9, atol=1e-7 * law.density.coefficient)
     np.testing.assert_allclose(found[3], exact[1] / rho, rtol=1e-10)
-    asked(moved + 2.0 * (moved - q), 1.0, -np.inf, law, 1.0, known)
+    asked(moved + 2.0 * (moved - q), 1.0, -np.inf, law, known)
     assert np.all(known[0] != at)
     assert not pressure_at(moved, 1.0, -np.inf, law.kernel_table, known, *found[:2])
 
@@ -159,7 +159,7 @@ def test_what_is_known_near_by_serves_to_rounding(viscosity):
 )
 def test_cut_pressures_have_a_density_but_no_pressure(floor, beyond):
     law, P, known = ehd.DowsonHigginson().bound(None), np.array([[2e6, beyond]]), np.full((6, 2), np.nan)
-    rho, rho_P = asked(P, 1.0, floor, law, 1.0, known)
+    rho, rho_P = asked(P, 1.0, floor, law, known)
     assert np.all(rho > 1.0) and rho_P[0, 0] > 0.0 and rho_P[0, 1] == 0.0
     found = np.empty((2, 1, 2))
     assert not pressure_at(P, 1.0, floor, law.kernel_table, known, *found)

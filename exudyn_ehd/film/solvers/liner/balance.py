@@ -19,7 +19,6 @@ from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step
 from exudyn_ehd.film.solvers.steps import (
     BALANCED,
-    ENDLESS,
     LEAST_DEFLECTION,
     LEAST_PRESSURE,
     ROUNDED,
@@ -171,7 +170,6 @@ class LinerBalance(LinerFilm):
             self.residual,
             self.sides(self.u),
             (self.load_fields, self.gap_fields, self.slope_fields),
-            ENDLESS,
             self.matrix[2],
             w.count,
             w.width,
@@ -191,7 +189,6 @@ class LinerBalance(LinerFilm):
             take_step(
                 self.sides(self.u),
                 (self.load_fields, self.gap_fields, self.slope_fields),
-                ENDLESS,
                 self.matrix[2],
                 self.film.work.count,
                 share,
