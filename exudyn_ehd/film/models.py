@@ -26,6 +26,7 @@ from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.status import InputError, Status, require_count, require_number
 
 # Columns of a film that leaves them to the bearing.
@@ -292,7 +293,7 @@ def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> 
         kinds += (ShortBearing if clips else ImpedanceMap,)
     others = {
         f"film={type(film).__name__}(...)": not isinstance(film, kinds),
-        "a bush or an elastic journal": rigid and bush is not None,
+        "bush=ElasticLiner(...)": rigid and isinstance(bush, ElasticLiner),
         "Lubricant.density_law": rigid and oil.density_law is not None,
         "Lubricant.shear_law": rigid and oil.shear_law is not None,
     }

@@ -65,6 +65,7 @@ FACTORS = {
         "swift on vertices": {"cavitation": ehd.SwiftStieber(line_in_cells=False, cavity_shear=0.4)},
         "full": {"cavitation": ehd.FullSommerfeld()},
         "gumbel": {"cavitation": ehd.Gumbel(cavity_pressure=-5e4)},
+        "gumbel in cells": {"cavitation": ehd.Gumbel(cavity_pressure=-5e4, line_in_cells=True)},
         "elrod": {"cavitation": ehd.ElrodAdams(cavity_pressure=-5e4)},
         "elrod in cells": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
     },
@@ -201,8 +202,11 @@ def all_pairs():
     }
 
 
-def covering_array(rng, candidates=40):
-    """Rows that cover every pair of levels that the package takes, and the refusals of those that it does not."""
+def covering_array(rng, known=(), candidates=40):
+    """Rows that cover every pair of levels that the package takes, and the refusals of those that it does not.
+
+    ``known``: rows whose pairs need no other row.
+    """
     plain = {name: next(iter(FACTORS[name])) for name in NAMES}
     levels = {name: list(FACTORS[name]) for name in NAMES}
     refused = {}
@@ -210,7 +214,7 @@ def covering_array(rng, candidates=40):
     for pair in sorted(todo):
         if message := refusal(plain | dict(pair)):
             refused[pair] = message
-    todo -= refused.keys()
+    todo -= refused.keys() | set().union(*map(pairs_of, known))
     rows = []
     while todo:
         best, covered = None, set()
@@ -270,17 +274,19 @@ def refused():
         return {((a, la), (b, lb)): message for a, la, b, lb, message in list(csv.reader(file))[1:]}
 
 
-def main(count):
-    """Write ``bearings.csv`` with ``count`` rows, and ``refused.csv``."""
+def main(count=0):
+    """Write ``bearings.csv`` with ``count`` rows, and ``refused.csv``; 0: add rows for pairs that no row has yet."""
     # whether a bearing is taken does not hang on its kernels
     build.compile_kernels = lambda model: None
     rng = np.random.default_rng(41)
-    array, refused = covering_array(rng)
-    drawn = [random_row(rng) for _ in range(count - len(array))]
+    known = [] if count else rows()
+    array, refused = covering_array(rng, [row for covers, row in known if covers])
+    drawn = [random_row(rng) for _ in range(max(count - len(array), 0))]
     with open(HERE / "bearings.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["covers", *NAMES])
-        table.writerows([["1", *row.values()] for row in array] + [["0", *row.values()] for row in drawn])
+        all_rows = [*known, *((True, row) for row in array), *((False, row) for row in drawn)]
+        table.writerows([f"{covers:d}", *row.values()] for covers, row in all_rows)
     with open(HERE / "refused.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["factor", "level", "other factor", "level", "message"])

@@ -119,7 +119,7 @@ class Gumbel(SymmetricClosure):
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
     line_in_cells : bool
         True: pressures act up to where the linear one is the cavity's, inside the cells of the grid (order two in
-        stiffness and damping); not with bushes, density and shear laws. False: up to the vertex in front of it.
+        stiffness and damping); not with elastic liners, density and shear laws. False: up to the vertex in front of it.
 
     Examples
     --------

@@ -5,12 +5,14 @@ Symbols: P pressure, pc cavity pressure, scaled.
 
 import numpy as np
 from numba import njit
+from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
 from exudyn_ehd.film.cavitation.line_steps import lacks
+from exudyn_ehd.film.cavitation.system import FilmSystem
 
 
 @njit(cache=True, nogil=True)
@@ -91,23 +93,54 @@ def clip_in_cells(linear, fixed, linked, pc, P_out, active_out):
 
 
 @njit(cache=True)
-def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
-    """From weights (k, count) of P as `clip_in_cells` leaves it, none at clipped ones, to those of the linear pressure.
+def _slopes_of_clip(linear, fixed, linked, pc, active, slopes_out):
+    """Derivatives (3, n, m) of P to the linear pressure at the vertex itself, before it and behind it.
 
-    ``d(p s) = s (2 - s) dp + s^2 dp_other``.
+    Of P as `clip_in_cells` leaves it, ``d(p s) = s (2 - s) dp + s^2 dp_other``; 0 at clipped vertices.
     """
     n, m = linear.shape
+    slopes_out[:] = 0.0
     for i in range(n):
         prv, nxt = _beside(i, linked)
         for j in range(m):
             if not active[i, j]:
                 continue
-            r, own = number[i, j], 0.0
-            for other in (prv, nxt):
+            for side, other in ((1, prv), (2, nxt)):
                 s = _reach(linear, fixed, pc, i, j, other)
-                own += 0.5 * s * (2.0 - s)
-                if s < 1.0:
+                slopes_out[0, i, j] += 0.5 * s * (2.0 - s)
+                slopes_out[side, i, j] = 0.5 * s * s if s < 1.0 else 0.0
+
+
+@njit(cache=True)
+def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
+    """From weights (k, count) of P as `clip_in_cells` leaves it, none at clipped ones, to those of the linear pressure.
+
+    The transpose of `pressures_by_linear`.
+    """
+    n, m = linear.shape
+    slopes = np.empty((3, n, m))
+    _slopes_of_clip(linear, fixed, linked, pc, active, slopes)
+    for i in range(n):
+        prv, nxt = _beside(i, linked)
+        for j in range(m):
+            if not active[i, j]:
+                continue
+            r = number[i, j]
+            for side, other in ((1, prv), (2, nxt)):
+                by = slopes[side, i, j]
+                if by != 0.0:
                     for k in range(rows.shape[0]):
-                        rows[k, number[other, j]] += 0.5 * s * s * rows[k, r]
+                        rows[k, number[other, j]] += by * rows[k, r]
             for k in range(rows.shape[0]):
-                rows[k, r] *= own
+                rows[k, r] *= slopes[0, i, j]
+
+
+def pressures_by_linear(system: FilmSystem, active: np.ndarray) -> csr_matrix:
+    """Derivatives (n m, n m) of P as `clip_in_cells` leaves it to the linear pressure."""
+    slopes, at = np.empty((3, *active.shape)), np.arange(active.size).reshape(active.shape)
+    _slopes_of_clip(system.linear_pressure, system.fixed, system.linked, system.cavity_pressure, active, slopes)
+    columns = np.stack((at, np.roll(at, 1, axis=0), np.roll(at, -1, axis=0)))
+    known = slopes != 0.0
+    return csr_matrix(
+        (slopes[known], (np.broadcast_to(at, slopes.shape)[known], columns[known])), shape=(at.size, at.size)
+    )

@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.grid import Directions, Mesh
@@ -266,6 +267,19 @@ def add_line_stencil(line: LineGradients, by_gap: float, by_rate: float, weight:
     half_on, half_back = 0.5 * by[0], 0.5 * by[1]
     own = by_gap * (half_on + half_back + by[2]) + by_rate * by[5]
     weight[line.rows] += np.column_stack((own, *(by_gap * part for part in (half_on, half_back, by[3], by[4]))))
+
+
+def line_matrices(line: LineGradients, shape: tuple[int, int], count: int) -> tuple[csr_matrix, csr_matrix]:
+    """Derivatives (count, n m) to gap and rate at all vertices, of gaps whose links are the mean of their columns."""
+    n, m = shape
+    i, j = np.divmod(line.places, m)
+    half_on, half_back, own, above, below, rate = line.by[:6]
+    size = n * m
+    # there is nothing behind the ends
+    at = line.places, (i + 1) % n * m + j, (i - 1) % n * m + j, (line.places + 1) % size, (line.places - 1) % size
+    values = np.concatenate((0.5 * (half_on + half_back) + own, 0.5 * half_on, 0.5 * half_back, above, below))
+    by_gap = csr_matrix((values, (np.tile(line.rows, 5), np.concatenate(at))), shape=(count, size))
+    return by_gap, csr_matrix((rate, (line.rows, line.places)), shape=(count, size))
 
 
 def to_true_gap(line: LineGradients, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> LineGradients:

@@ -188,7 +188,7 @@ def shear_fields(P, weight, width, z, couette, ends, factors, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale, motion_out, bore_out):
+def spread_gradient(tiles, by_bore, weights, direct, scale, motion_scale, motion_out, bore_out):
     """Rows of the tangent of an elastic film from the gradients of its r integrals and k loads of the bore.
 
     Parameters
@@ -198,7 +198,7 @@ def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale
     by_bore : (r + k, k) array
         Gradients of integrals and loads to the bore.
     weights, direct : (6, r), (6, k) arrays
-        Integrals in the wrench; gradient of the wrench to the gap at fixed pressure, which counts ``by_gap`` times.
+        Integrals in the wrench; gradient of the wrench to the bore at fixed pressure.
     scale, motion_scale : float, (10,) array
         Units of the loads and of the motion.
     motion_out, bore_out : (k, 10), (6 + k, k) arrays
@@ -214,7 +214,7 @@ def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale
             target[b] = scale * own[b]
     for i in range(6):
         for b in range(k):
-            bore_out[i, b] = by_gap * direct[i, b]
+            bore_out[i, b] = direct[i, b]
         for c in range(r):
             w = weights[i, c]
             if w != 0.0:

@@ -45,10 +45,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 from scipy.optimize import brentq
-from scipy.sparse import coo_matrix, csc_matrix, diags_array, issparse
+from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags_array, issparse
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.cavitation.oil_line import add_curve
+from exudyn_ehd.film.cavitation.rupture_line import line_matrices
 from exudyn_ehd.film.reynolds.balance import film_slopes, film_terms
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
@@ -57,7 +58,7 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, load_weights
-from exudyn_ehd.joint.tangent.line import add_by_motion, by_fills, true_fills
+from exudyn_ehd.joint.tangent.line import add_by_motion, line_by_motion, true_fills, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients, liner_weights
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
@@ -111,9 +112,10 @@ class FilmResponse:
         self.rows = rows[:2].T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count))
-        fills = true_fills(film)
+        fills, self.contents = true_fills(film), None
         if fills is not None:
-            by_fill = by_fills(film, fills, s.area * s.H, number, w.count) * scale
+            self.contents = weigh_fills(fills, s.area * s.H, number)
+            by_fill = line_by_motion(film, self.contents, w.count) * scale
         # the content at a mass-conserving film's line follows position and velocity, its rate their rates
         self.by_pose, self.by_rate, self.by_sway = by_motion[:2].copy(), by_motion[4:6] + by_fill[:2], by_fill[4:6]
         self._rest_of(tangent[:2, :2], tangent[:2, 4:6])
@@ -157,15 +159,23 @@ class FilmOnBoreResponse(FilmResponse):
         def on_shapes(weight: np.ndarray, places: np.ndarray) -> np.ndarray:
             """Rows (count, k) of S, weighted."""
             rows = np.repeat(unknowns, weight.size // unknowns.size)
-            picked = coo_matrix((weight.ravel(), (rows, places.ravel())), shape=(unknowns.size, vertices)).tocsr()
-            found = picked @ bore.shapes
+            return sums(coo_matrix((weight.ravel(), (rows, places.ravel())), shape=(unknowns.size, vertices)).tocsr())
+
+        def sums(matrix: csr_matrix) -> np.ndarray:
+            """A matrix (count, n m) times S."""
+            found = matrix @ bore.shapes
             return np.asarray(found.toarray() if issparse(found) else found)
 
         loads = on_shapes(load_weights(film), balances.places)
         self.rows = np.concatenate((self.rows, -loads), axis=1)
         place, rate = (-force * on_shapes(*balances.stencil(*ends)).T for ends in ((1.0, 0.0), (0.0, 1.0)))
+        sway = np.zeros_like(rate)
+        if balances.beyond is not None and self.contents is not None:
+            content = line_matrices(self.contents, film.grid.shape, unknowns.size)
+            of_line = [-force / balances.clearance * sums(part).T for part in (*balances.beyond, *content)]
+            place, rate, sway = place + of_line[0], rate + of_line[1] + of_line[2], of_line[3]
         self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
-        self.by_sway = np.concatenate((self.by_sway, np.zeros_like(rate)))
+        self.by_sway = np.concatenate((self.by_sway, sway))
         forces = np.r_[0:2, 6 : 6 + k]
         self._rest_of(T[np.ix_(forces, np.r_[0:2, m : m + k])], T[np.ix_(forces, np.r_[4:6, m + k : m + 2 * k])])
         self.stiffness = elasticity.stiffness.copy()

@@ -4,7 +4,9 @@ The journal's wrench and the bore's loads to motion, q and q_t; as a matrix and 
 
 The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each (all in
 one sweep over the factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point
-stencil on S, since the gap on a link is the mean of its two columns; those to the motion are ten columns. What an
+stencil on S, since the gap on a link is the mean of its two columns; those to the motion are ten columns. What flows
+carry from the line of a mass-conserving film inside its cells follows the gaps around it, also in the balances of its
+neighbours: a sparse matrix on S besides. What an
 integrator asks for is one combination of the derivatives to q and q_t, which costs as much as one of them.
 
 What an iterative solver needs are products with vectors, one film solve each: with the balances r(u, m, delta,
@@ -20,9 +22,11 @@ from __future__ import annotations
 import functools
 
 import numpy as np
+from scipy.sparse import csc_matrix, csr_matrix
 
-from exudyn_ehd.film.banded.many_sides import make_tiles
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, add_line_stencil
+from exudyn_ehd.film.banded.many_sides import TILE, make_tiles
+from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, add_line_stencil, line_matrices
 from exudyn_ehd.film.loads import couette_gradient
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     gap_stencil,
@@ -33,11 +37,12 @@ from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap, pulls_unevenly
-from exudyn_ehd.joint.tangent.line import true_line
+from exudyn_ehd.joint.tangent.line import true_fills, true_line, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
     gap_derivatives,
     shear_needs_adjoint,
+    shear_of_fills,
     wrench_tangent,
 )
 
@@ -69,13 +74,12 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
     weights, direct = wrench_weights(film, bore)
     for i, (by_gap, by_rate) in enumerate(combinations):
         block = out[:, size + i * k : size + (i + 1) * k]
-        by_bore = bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + k)
+        by_bore = balances.project(bore, lam, count + k, -by_gap, -by_rate)
         spread_gradient(
             gradient,
             by_bore,
             weights,
-            direct,
-            by_gap,
+            by_gap * direct[0] + by_rate * direct[1],
             film.scales.force,
             film.parts.motion_scale,
             out[6:, :size],
@@ -100,6 +104,8 @@ class Balances:
         Flat vertices of the unknowns.
     motion : (10, count) array
         To (scaled pose, scaled rates, vx, vz).
+    beyond : two csr matrices (count, n m) or None
+        To the scaled gap and its rate at all vertices, what `stencil` has no place for.
     """
 
     def __init__(self, film: SolvedFilm) -> None:
@@ -111,9 +117,11 @@ class Balances:
         motion_columns(
             self.places, work.count, self.links, self.slope, self.by_rate, self.by_gap, p.grid.directions, self.motion
         )
-        self.line = true_line(film)
+        self.line, self.beyond = true_line(film), None
         if self.line is not None:
             add_line_columns(tuple(self.line), p.grid.directions, self.motion)
+            if film.solver.oil_line is not None:
+                self.beyond, self.line = line_matrices(self.line, p.grid.shape, work.count), None
 
     def gradient(self, lam: np.ndarray) -> np.ndarray:
         """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""
@@ -139,23 +147,66 @@ class Balances:
             add_line_stencil(self.line, by_place / c, by_rate / c, weight)
         return weight, vertices
 
+    def matrix(self, by_place: float, by_rate: float) -> csr_matrix | None:
+        """`stencil` of ``beyond``, (count, n m); None without."""
+        return None if self.beyond is None else (by_place * self.beyond[0] + by_rate * self.beyond[1]) / self.clearance
+
+    def project(self, bore: Bore, lam: np.ndarray, size: int, by_place: float, by_rate: float) -> np.ndarray:
+        """Products (size, k) of the first adjoints in tiles with `stencil` and `matrix` on the bore's shapes."""
+        found = bore.project(*self.stencil(by_place, by_rate), lam, size)
+        return found + self.project_beyond(bore, lam, size, by_place, by_rate)
+
+    def project_beyond(
+        self, bore: Bore, lam: np.ndarray, size: int, by_place: float, by_rate: float
+    ) -> np.ndarray | float:
+        """The part of `matrix` in `project`."""
+        matrix = self.matrix(by_place, by_rate)
+        if matrix is None:
+            return 0.0
+        # few balances and few vertices
+        rows, vertices = np.flatnonzero(np.diff(matrix.indptr)), np.unique(matrix.indices)
+        fields = np.concatenate(lam[:, rows], axis=1)[:, :size]
+        weights = matrix[rows][:, vertices].T @ fields
+        return np.asarray((bore.shapes[vertices].T @ weights).T)
+
 
 def wrench_rows(film: SolvedFilm, bore: Bore, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """d wrench / d motion (6, 10), / dq and / dq_t (6, k): the upper rows of `elastic_tangent` alone."""
     lam, count = _adjoints(film, bore, whole=False)
     weights, direct = wrench_weights(film, bore)
-    by_place, by_rate = (weights @ bore.project(*balances.stencil(*f), lam, count) for f in ((-1.0, 0.0), (0.0, -1.0)))
+    by_place, by_rate = (weights @ balances.project(bore, lam, count, *f) for f in ((-1.0, 0.0), (0.0, -1.0)))
     wrench = wrench_tangent(film, gradient=np.negative(balances.gradient(lam)[0, :, :count].T, order="C"))
-    return wrench, by_place + direct, by_rate
+    return wrench, by_place + direct[0], by_rate + direct[1]
 
 
 def load_weights(film: SolvedFilm) -> np.ndarray:
-    """Weight of every unknown (count,) in the scaled pressure integral over the bore."""
+    """Weight (count,) of the pressure at every unknown in the scaled pressure integral over the bore."""
     w = film.solver.work
     weight = np.where(w.active, film.grid.weight, 0.0)
     if film.oil.P_q is not None:
         weight *= film.oil.P_q
     return weight.ravel()[w.order[: w.count]]
+
+
+def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
+    """Derivatives (n m, count) of the pressures, in front of the oil's law, to the unknowns."""
+    w = film.solver.work
+    if _follows_neighbours(film):
+        return pressures_by_linear(film.solver.system, w.active)[:, w.order[: w.count]]
+    return at_unknowns(film, w.active.astype(float))
+
+
+def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:
+    """Values of a field (n, m) at the unknowns, each in its row and column (n m, count)."""
+    w = film.solver.work
+    places = w.order[: w.count]
+    return csc_matrix((field.reshape(-1)[places], places, np.arange(w.count + 1)), shape=(field.size, w.count))
+
+
+def _follows_neighbours(film: SolvedFilm) -> bool:
+    """Whether the pressure of a vertex follows the linear ones of its neighbours too."""
+    closure = film.solver.closure
+    return closure.clips and bool(closure.line_in_cells)
 
 
 def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, int]:
@@ -164,13 +215,19 @@ def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, in
     count, unknowns = integrals.shape
     lam = make_tiles(integrals, count + (bore.size if whole else 0))
     if whole:
-        bore.fill_rows(film.solver.work.order[:unknowns], load_weights(film), count, lam)
+        places = film.solver.work.order[:unknowns]
+        bore.fill_rows(places, load_weights(film), count, lam)
+        if _follows_neighbours(film):
+            rows = np.concatenate(lam[:, :unknowns], axis=1)
+            rows[:, count:] = pressures_by_unknowns(film)[places].T @ rows[:, count:]
+            lam[:, :unknowns] = rows.reshape(unknowns, -1, TILE).transpose(1, 0, 2)
     film.solver.adjoint_columns(lam)
     return lam, count
 
 
 def wrench_weights(film: SolvedFilm, bore: Bore) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the integrals of `adjoint_rows` in the wrench; its derivative (6, k) to q at fixed pressure."""
+    """Weights of the integrals of `adjoint_rows` in the wrench; its derivatives (2, 6, k) to q and q_t at fixed
+    pressure."""
     w, scales, weights = film.journal, film.scales, np.empty((6, 8))
     integral_weights(w.pose, film.grid.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, weights)
     direct = _direct(film, bore, weights)
@@ -178,7 +235,7 @@ def wrench_weights(film: SolvedFilm, bore: Bore) -> tuple[np.ndarray, np.ndarray
 
 
 def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
-    """Derivative of the wrench to q at fixed film pressure (6, k): gap, slopes and contacts."""
+    """Derivatives of the wrench to q and q_t at fixed film pressure (2, 6, k): gap, slopes, fills and contacts."""
     g = film.grid
     # force and moment across the axis do not depend on the gap
     factors, rows = weights[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
@@ -188,9 +245,16 @@ def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
         # the gap on a link is the mean of its two columns
         rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))
         rows += factors[:, 2, None, None] * cell[1]
-    out = np.zeros((6, bore.size))
-    out[2::3] = bore.contract(rows)
-    return out if film.pressing is None else out + _contact_wrench(film, bore, film.pressing)
+    out = np.zeros((2, 6, bore.size))
+    fills = true_fills(film)
+    if fills is not None:
+        by_gap, by_rate = line_matrices(weigh_fills(fills, shear_of_fills(film)), g.shape, 1)
+        rows += factors[:, 0, None, None] * by_gap.toarray().reshape(g.shape)
+        out[1, 2::3] = np.outer(factors[:, 0], bore.load(by_rate.toarray().reshape(g.shape)))
+    out[0, 2::3] = bore.contract(rows)
+    if film.pressing is not None:
+        out[0] += _contact_wrench(film, bore, film.pressing)
+    return out
 
 
 def couette_field(film: SolvedFilm) -> np.ndarray:

@@ -25,17 +25,20 @@ def true_fills(film: SolvedFilm) -> LineGradients | None:
     return None if fills is None else _to_true_gap(film, fills[1])
 
 
-def by_fills(
-    film: SolvedFilm, fills: LineGradients, weights: np.ndarray, rows: np.ndarray | None = None, count: int = 1
-) -> np.ndarray:
-    """Derivatives (10, count) of what the fills are weighed to, by ``weights`` (n, m), to the motion.
+def weigh_fills(fills: LineGradients, weights: np.ndarray, rows: np.ndarray | None = None) -> LineGradients:
+    """What the fills are weighed to, by ``weights`` (n, m), at fixed pressure.
 
-    At fixed pressure; ``rows`` (n m,): where each vertex counts, None: all in one sum.
+    ``rows`` (n m,): where each vertex counts, None: all in one sum.
     """
-    out, places = np.zeros((MOTION_SIZE, count)), fills.places
+    places = fills.places
     at = np.zeros_like(places) if rows is None else rows[places]
-    weighed = fills._replace(rows=at, by=fills.by * weights.reshape(-1)[places])
-    add_line_columns(tuple(weighed), film.grid.directions, out)
+    return fills._replace(rows=at, by=fills.by * weights.reshape(-1)[places])
+
+
+def line_by_motion(film: SolvedFilm, line: LineGradients, count: int) -> np.ndarray:
+    """Derivatives (10, count) of the rows of a line to the motion."""
+    out = np.zeros((MOTION_SIZE, count))
+    add_line_columns(tuple(line), film.grid.directions, out)
     return out
 
 

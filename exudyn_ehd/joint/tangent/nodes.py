@@ -21,6 +21,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, vstack
 
 from exudyn_ehd.film.banded.many_sides import make_tiles
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import balance_change
 from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
@@ -29,13 +30,15 @@ from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import (
     Balances,
+    at_unknowns,
     contact_slope,
     couette_field,
-    load_weights,
+    pressures_by_unknowns,
     wrench_rows,
     wrench_weights,
 )
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, wrench_tangent
+from exudyn_ehd.joint.tangent.line import line_by_motion, true_fills
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, ratio_of, wrench_tangent
 
 
 class BoreForces:
@@ -110,12 +113,17 @@ class TractionChange:
 
     Attributes
     ----------
+    pressure, shear : sparse matrices (n m, count)
+        Of the pressures, and of the density of Couette shear, to the unknowns; None: the shear follows none.
     gap : (3, n m) array
         To the true gap at the same vertex, scaled.
+    load : (n m,) array
+        Of the radial force to the pressure.
     slope : (n m,) array
         Of the force along theta to the bore's scaled slope in theta, and along z to that in z.
     speed : (3, n m, 2) array
         To omega and w.
+    line : ShearOfLine or None
     """
 
     def __init__(self, film: SolvedFilm, forces: BoreForces) -> None:
@@ -124,14 +132,14 @@ class TractionChange:
         P, H, W = oil.P.ravel(), s.H.ravel(), g.weight.ravel()
         scale = film.scales.shear * R
         speeds = np.array([film.journal.omega, film.journal.axial_speed / R])
-        self.places = w.order[: w.count]
-        active = w.active.ravel()[self.places]
-        # of pressure and of the density of Couette shear to the unknown at their vertex
-        self.pressure = np.where(active, 1.0 if oil.P_q is None else oil.P_q.ravel()[self.places], 0.0)
+        self.places, self.speeds = w.order[: w.count], speeds
         sheared = scale * g.shear_weight.ravel() / H
-        couette = self._share_slope(film, active) * sheared[self.places]
-        self.couette = speeds[:, None] * couette
-        self.load = load_weights(film) * film.scales.force
+        self.pressure = pressures_by_unknowns(film)
+        share = _share_by_unknowns(film, self.pressure)
+        self.shear = None if share is None else diags(sheared) @ share
+        if oil.P_q is not None:
+            self.pressure = diags(oil.P_q.ravel()) @ self.pressure
+        self.load = W * film.scales.force
         self.by_slope = -6.0 * scale * W * H
         self.by_pressure = -12.0 * scale * W * np.stack(_extra_slopes(film))
         self.gap, self.speed = np.zeros((3, P.size)), np.zeros((3, P.size, 2))
@@ -148,27 +156,9 @@ class TractionChange:
             self.speed[1:, :, 0] += speeds[:, None] * thinning
         if film.loads.recess is not None:
             self.speed[1:, :, 0] += speeds[:, None] * (scale * film.loads.recess.by_spin.ravel())
-        # of the density of Couette shear to the unknowns at all vertices, (n m, count)
-        self.thins: list[csr_matrix] | None = None
-        by_others = film.shear_by_unknowns()
-        if by_others is not None:
-            density = diags(sheared * film.share().ravel()) @ by_others[:, self.places]
-            self.thins = [csr_matrix(speed * density) for speed in speeds]
-        if film.solver.closure.conserves_mass:
-            ends = diags(sheared) @ _ends_by_fills(film)
-            self.thins = [s * ends + (0.0 if self.thins is None else self.thins[c]) for c, s in enumerate(speeds)]
+        self.line = None if film.solver.oil_line is None else ShearOfLine(film, scale)
         if film.pressing is not None:
             self._add_contacts(film, film.pressing)
-
-    @staticmethod
-    def _share_slope(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
-        """Derivative of share times viscosity ratio to the unknown at its vertex (count,)."""
-        at = film.solver.work.order[: active.size]
-        by_pressure = np.zeros(at.size) if film.oil.ratio_q is None else film.oil.ratio_q.ravel()[at]
-        by_fill = np.zeros(at.size)
-        if film.solver.closure.conserves_mass:
-            by_fill = np.ones(at.size) if film.oil.ratio is None else film.oil.ratio.ravel()[at]
-        return np.where(active, by_pressure, by_fill)
 
     def _add_contacts(self, film: SolvedFilm, fields: ContactFields) -> None:
         area = film.grid.reference_length**2 * film.grid.weight.ravel()
@@ -182,17 +172,10 @@ class TractionChange:
 
     def by_unknown(self) -> list[csr_matrix]:
         """Derivatives of the three vertex forces to the unknowns, each (n m, count)."""
-        size, count = self.slope.size, self.places.size
-
-        def at_own(values: np.ndarray) -> csr_matrix:
-            return csr_matrix((values, (self.places, np.arange(count))), shape=(size, count))
-
-        pressure = at_own(self.pressure)
-        out = [at_own(self.load)]
+        out = [diags(self.load) @ self.pressure]
         for c, along in enumerate((self.forces.slope_x, self.forces.slope_z)):
-            own = at_own(self.couette[c] + self.by_pressure[c][self.places] * self.pressure)
-            force = diags(self.by_slope) @ (along @ pressure) + own
-            out.append(force if self.thins is None else force + self.thins[c])
+            force = (diags(self.by_slope) @ along + diags(self.by_pressure[c])) @ self.pressure
+            out.append(force if self.shear is None else force + self.speeds[c] * self.shear)
         return out
 
     def vertex_forces(self, unknowns: np.ndarray, gap: np.ndarray, moved: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -202,32 +185,63 @@ class TractionChange:
         m,), and of the speeds (2,).
         """
         out = self.gap * gap + self.speed @ speed
-        pressure = np.zeros(gap.size)
-        pressure[self.places] = self.pressure * unknowns
+        pressure, shear = self.pressure @ unknowns, None if self.shear is None else self.shear @ unknowns
         for c, along in enumerate((self.forces.slope_x, self.forces.slope_z)):
             out[1 + c] += (
                 self.by_slope * (along @ pressure) + self.by_pressure[c] * pressure + self.slope * (along @ moved)
             )
-            out[1 + c, self.places] += self.couette[c] * unknowns
-            if self.thins is not None:
-                out[1 + c] += self.thins[c] @ unknowns
-        out[0, self.places] += self.load * unknowns
+            if shear is not None:
+                out[1 + c] += self.speeds[c] * shear
+        out[0] += self.load * pressure
         return out
 
 
-def _ends_by_fills(film: SolvedFilm) -> csr_matrix:
-    """Derivatives (n m, count) of share times viscosity ratio at the ends to the fills of the vertices beside them."""
-    g, w = film.grid, film.solver.work
-    at, ratio = np.arange(g.fixed.size).reshape(g.shape), film.solver.ones if film.oil.ratio is None else film.oil.ratio
-    rows, columns, values, number = [], [], [], np.full(g.shape, -1)
-    number.reshape(-1)[w.order[: w.count]] = np.arange(w.count)
+class ShearOfLine:
+    """Derivatives of the density of Couette shear that comes with the fills at a line inside its cells, at fixed
+    unknowns.
+
+    Attributes
+    ----------
+    motion : (10, n m) array
+        To (scaled pose, scaled rates, vx, vz).
+    gap, rate : csr matrices (n m, n m)
+        To the scaled displacement of the bore and its rate.
+    """
+
+    def __init__(self, film: SolvedFilm, scale: float) -> None:
+        g, fills = film.grid, true_fills(film)
+        assert fills is not None
+        spread = _share_by_fills(film)[:, fills.places].tocoo()
+        density = scale * (g.shear_weight / film.solver.H).ravel()[spread.row] * spread.data
+        line = LineGradients(spread.row, fills.places[spread.col], fills.by[:, spread.col] * density)
+        self.motion = line_by_motion(film, line, g.fixed.size)
+        self.gap, self.rate = line_matrices(line, g.shape, g.fixed.size)
+
+
+def _share_by_unknowns(film: SolvedFilm, pressure: csr_matrix) -> csr_matrix | None:
+    """Derivatives (n m, count) of share times viscosity ratio to the unknowns; None where there are none.
+
+    ``pressure``: those of the pressures in front of the oil's law.
+    """
+    s, oil, w = film.solver, film.oil, film.solver.work
+    places, parts = w.order[: w.count], []
+    if oil.ratio_q is not None:
+        parts.append(diags((oil.ratio_q * (s.fill if s.closure.conserves_mass else 1.0)).ravel()) @ pressure)
+    by_others = film.shear_by_unknowns()
+    if by_others is not None:
+        parts.append(diags(film.share().ravel()) @ by_others[:, places])
+    if s.closure.conserves_mass:
+        rise = 0.0 if s.oil_line is None else s.oil_line.rise
+        parts.append(_share_by_fills(film) @ at_unknowns(film, np.where(w.active, rise, 1.0)))
+    return sum(parts[1:], parts[0]) if parts else None
+
+
+def _share_by_fills(film: SolvedFilm) -> csr_matrix:
+    """Derivatives (n m, n m) of share times viscosity ratio to the fills, at the ends to those beside them."""
+    fills = np.arange(film.grid.fixed.size).reshape(film.grid.shape)
     for end, beside, at_cavity in ends_of_cavities(film.solver.system, True):
-        free = at_cavity & (number[:, beside] >= 0) & ~w.active[:, beside]
-        rows.append(at[free, end])
-        columns.append(number[free, beside])
-        values.append(ratio[free, end])
-    place = np.concatenate(rows), np.concatenate(columns)
-    return csr_matrix((np.concatenate(values), place), shape=(at.size, w.count))
+        fills[at_cavity, end] = fills[at_cavity, beside]
+    return csr_matrix((ratio_of(film).ravel(), fills.ravel(), np.arange(fills.size + 1)), shape=(fills.size,) * 2)
 
 
 def _density(film: SolvedFilm) -> np.ndarray:
@@ -271,7 +285,12 @@ def nodal_tangent(film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> tupl
     gaps[1:] = [gap + slope @ along for gap, along in zip(gaps[1:], (forces.slope_x, forces.slope_z), strict=True)]
     nothing = csr_matrix((count, len(change.slope)))
     at_once = vstack((nothing, forces.columns(gaps).T), format="csr")
-    for i, (by_gap, by_rate, at_fixed) in enumerate(((1.0, 0.0, at_once), (0.0, 1.0, csr_matrix(at_once.shape)))):
+    following = csr_matrix(at_once.shape)
+    if change.line is not None:
+        a, b = change.speeds / film.parts.bearing.radial_clearance
+        parts = [forces.columns([0.0 * f, a * f, b * f]).T for f in (change.line.gap, change.line.rate)]
+        at_once, following = (old + vstack((nothing, f)) for old, f in zip((at_once, following), parts, strict=True))
+    for i, (by_gap, by_rate, at_fixed) in enumerate(((1.0, 0.0, at_once), (0.0, 1.0, following))):
         part = slice(size + i * k, size + (i + 1) * k)
         bore.project_on(
             *balances.stencil(-by_gap, -by_rate),
@@ -279,7 +298,8 @@ def nodal_tangent(film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> tupl
             (at_fixed.indptr, at_fixed.indices, at_fixed.data),
             whole[:, part],
         )
-        wrench[:, part] = weights @ whole[:count, part] + by_gap * direct
+        whole[:, part] += balances.project_beyond(bore, lam, count + rows, -by_gap, -by_rate)
+        wrench[:, part] = weights @ whole[:count, part] + direct[i]
     return wrench, nodal.reshape(forces.count, 3, -1)
 
 
@@ -302,6 +322,7 @@ class NodalProduct:
         self.by_place, self.vertices = balances.stencil(1.0, 0.0)
         # the rate acts on a vertex's own storage alone
         self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]
+        self.beyond = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
         self.forces, self.change = forces, TractionChange(film, forces)
         self.columns = _pose_columns(film) * film.parts.pose_scale
 
@@ -313,16 +334,24 @@ class NodalProduct:
         RuntimeError
             If the model has evaluated another state since.
         """
-        moved, residual = self._residual(motion, place, rate)
-        scaled = moved.ravel() / self.film.parts.bearing.radial_clearance
-        gap = scaled - self.columns @ motion[:4]
+        moved, speed, residual = self._residual(motion, place, rate)
+        p = self.film.parts
+        scaled = moved / p.bearing.radial_clearance
+        gap, line = scaled - self.columns @ motion[:4], self.change.line
         forces = self.change.vertex_forces(-residual, gap, scaled, motion[8:])
+        if line is not None:
+            shear = line.gap @ scaled + line.rate @ (speed / p.bearing.radial_clearance)
+            shear += (motion * p.motion_scale) @ line.motion
+            forces[1:] += np.multiply.outer(self.change.speeds, shear)
         return self.forces.nodal(forces)
 
-    def _residual(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement (n, m) of the bore, m, and minus the change (count,) of the film's unknowns."""
+    def _residual(
+        self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement (n m,) of the bore and its rate, m, m/s, and minus the change (count,) of the film's
+        unknowns."""
         self.film.require_current()
-        moved, speed = self.bore.displacements(place, rate)
+        moved, speed = (field.reshape(-1) for field in self.bore.displacements(place, rate))
         residual = np.empty(len(self.vertices))
         balance_change(
             self.motion,
@@ -330,12 +359,15 @@ class NodalProduct:
             self.vertices,
             self.by_rate,
             motion,
-            moved.reshape(-1),
-            speed.reshape(-1),
+            moved,
+            speed,
             residual,
         )
+        for matrix, field in zip(self.beyond, (moved, speed), strict=True):
+            if matrix is not None:
+                residual += matrix @ field
         self.film.solver.direct(residual)
-        return moved, residual
+        return moved, speed, residual
 
 
 def _pose_columns(film: SolvedFilm) -> np.ndarray:
@@ -353,7 +385,7 @@ def _by_motion(film: SolvedFilm, forces: BoreForces, change: TractionChange) -> 
     for j in range(4):
         vertex[j] = -change.gap * columns[:, j]
     vertex[8], vertex[9] = change.speed[:, :, 0], change.speed[:, :, 1]
-    out = np.zeros((3 * forces.count, MOTION_SIZE))
-    for j in (0, 1, 2, 3, 8, 9):
-        out[:, j] = forces.nodal(vertex[j]).ravel()
-    return out
+    if change.line is not None:
+        of_line = change.line.motion * film.parts.motion_scale[:, None]
+        vertex[:, 1:] += change.speeds[:, None] * of_line[:, None]
+    return np.column_stack([forces.nodal(forces_of).ravel() for forces_of in vertex])

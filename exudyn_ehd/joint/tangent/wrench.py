@@ -26,7 +26,7 @@ from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import chain_links, contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection, pulls_unevenly
-from exudyn_ehd.joint.tangent.line import add_by_motion, by_fills, true_fills, true_line
+from exudyn_ehd.joint.tangent.line import add_by_motion, line_by_motion, true_fills, true_line, weigh_fills
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
 _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
@@ -94,7 +94,7 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     couette = _couette_direct(film, dc)
     fills = true_fills(film)
     if fills is not None:
-        dc += by_fills(film, fills, _ratio(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film))[:, 0]
+        dc += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
     _contract_couette(film, couette, dc)
     if pulls_unevenly(film.parts, film.limited):
@@ -232,7 +232,7 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     Through pressure where they are pressures, through fill elsewhere.
     """
     p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
-    ratio = _ratio(film)
+    ratio = ratio_of(film)
     by_pressure, by_gap = s.nothing if oil.ratio_q is None else oil.ratio_q, None
     if p.liner is not None:
         by_gap = ratio, s.nothing if oil.ratio_h is None else oil.ratio_h, p.liner.gap_slopes.H_P
@@ -249,15 +249,21 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
         row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
 
 
+def shear_of_fills(film: SolvedFilm) -> np.ndarray:
+    """Couette shear (n, m) that comes with the fill of every vertex."""
+    return ratio_of(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film)
+
+
 def shear_of_ends(film: SolvedFilm) -> np.ndarray:
     """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
-    density, out = _ratio(film) * film.grid.shear_weight / film.solver.H, np.zeros(film.grid.shape)
+    density, out = ratio_of(film) * film.grid.shear_weight / film.solver.H, np.zeros(film.grid.shape)
     for end, beside, at in ends_of_cavities(film.solver.system, True):
         out[at, beside] += density[at, end]
     return out
 
 
-def _ratio(film: SolvedFilm) -> np.ndarray:
+def ratio_of(film: SolvedFilm) -> np.ndarray:
+    """Viscosity ratio (n, m) that shear sees."""
     return film.solver.ones if film.oil.ratio is None else film.oil.ratio
 
 

@@ -79,6 +79,8 @@ CLOSURES = {
     "swift": ehd.SwiftStieber(),
     "gumbel": ehd.Gumbel(),
     "elrod": ehd.ElrodAdams(cavity_pressure=-1e5),
+    "gumbel in cells": ehd.Gumbel(line_in_cells=True),
+    "elrod in cells": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True),
 }
 
 

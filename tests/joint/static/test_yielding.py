@@ -151,6 +151,7 @@ def _orbits(made, rest, load, mass):
 
 
 ELROD = {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)}
+IN_CELLS = {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)}
 
 
 def forced_with_bore(made, rest, nu, steps, periods):
@@ -184,14 +185,16 @@ def forced_with_bore(made, rest, nu, steps, periods):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("surface", "periods"), [("pin", 10), ("bush", 4)])
-def test_response_of_a_bore_and_of_its_cavity_is_that_in_time(surface, periods):
+@pytest.mark.parametrize(
+    ("surface", "periods", "closure"), [("pin", 10, ELROD), ("bush", 4, ELROD), ("bush", 4, IN_CELLS)]
+)
+def test_response_of_a_bore_and_of_its_cavity_is_that_in_time(surface, periods, closure):
     """Backward Euler's error is of first order in the step: extrapolated, it leaves some thousandths.
 
     The pin yields by so much that it takes ten periods to swing in.
     """
     film = {"film": ehd.FiniteLength(n_theta=48, n_z=6)}
-    made, rigid = (dataclasses.replace(bearing(name, **ELROD), **film) for name in (surface, "rigid"))
+    made, rigid = (dataclasses.replace(bearing(name, **closure), **film) for name in (surface, "rigid"))
     rest, other = (ehd.equilibrium(b, speed=SPEED, load=(2000.0, 0.0)) for b in (made, rigid))
     coarse, fine = (forced_with_bore(made, rest, 500.0, steps, periods) for steps in (80, 160))
     (found,), (hard,) = (r.dynamic_stiffness([500.0]) for r in (rest, other))
@@ -199,13 +202,14 @@ def test_response_of_a_bore_and_of_its_cavity_is_that_in_time(surface, periods):
     assert np.abs(found - hard).max() > 0.04 * np.abs(found).max()
 
 
+@pytest.mark.parametrize("closure", [ELROD, pytest.param(IN_CELLS, marks=pytest.mark.slow)], ids=["vertices", "cells"])
 @pytest.mark.parametrize("surface", ["pin", pytest.param("bush", marks=pytest.mark.slow)])
-def test_hard_bores_respond_as_rigid_ones_with_a_cavity(surface):
+def test_hard_bores_respond_as_rigid_ones_with_a_cavity(surface, closure):
     """A thousand times as hard as steel: what yields is a thousandth of what changes Z by a fifth."""
     hard = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e14, poisson_ratio=0.3, density=7800.0)
     options = {name: dataclasses.replace(part, material=hard) for name, part in SURFACES[surface].items()}
-    made = dataclasses.replace(bearing("rigid", **ELROD), **options)
-    found, rigid = (ehd.equilibrium(b, speed=SPEED, load=(2000.0, 0.0)) for b in (made, bearing("rigid", **ELROD)))
+    made = dataclasses.replace(bearing("rigid", **closure), **options)
+    found, rigid = (ehd.equilibrium(b, speed=SPEED, load=(2000.0, 0.0)) for b in (made, bearing("rigid", **closure)))
     for name in ("stiffness", "damping", "frequency", "whirl_ratio", "critical_mass"):
         expected = getattr(rigid, name)
         assert np.abs(getattr(found, name) - expected).max() < 1e-3 * np.abs(expected).max(), name

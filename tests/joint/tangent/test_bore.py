@@ -33,7 +33,7 @@ def test_a_film_that_is_all_cavity_has_no_tangent_but_shear(bush):
         assert np.isfinite(product.nodal_forces(np.ones(10), np.ones(k), np.ones(k))).all()
 
 
-@pytest.mark.parametrize("option", but_slow(OPTIONS, "line in its cells"))
+@pytest.mark.parametrize("option", but_slow(OPTIONS, "line in its cells", "elrod in cells"))
 @pytest.mark.parametrize("bush", BUSHES)
 def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
     check_tangent(BUSHES[bush], option, 1 if bush == "modal" else 7)
@@ -65,7 +65,8 @@ def check_tangent(bush, option, every):
     rows[rows < 1e-12 * rows.max()] = np.inf
     for j in range(0, motion.size, every):
         # central differences: the step leaves the active set alone
-        for size in (1e-5, 1e-6, 1e-7):
+        # fills at a line inside its cells bend more: truncation 1.5e-6 at 1e-5, 1.5e-8 at 1e-6
+        for size in (1e-5, 1e-6, 1e-7)[option == "elrod in cells" :]:
             loads, same = [], True
             for sign in (1.0, -1.0):
                 moved = motion.copy()

@@ -71,7 +71,7 @@ def plain(film):
     return out
 
 
-@pytest.mark.parametrize("option", but_slow(MORE, "line in its cells"))
+@pytest.mark.parametrize("option", but_slow(MORE, "line in its cells", "elrod in cells"))
 def test_shear_is_that_of_its_definition_and_adds_up_to_the_torque_of_the_bearing(option):
     model, _, _, _, evaluation, forces = evaluated(option)
     film = evaluation.film
@@ -103,7 +103,7 @@ def test_shear_of_a_concentric_journal_is_that_of_petroff():
     assert np.abs(radial).max() < 1e-10 * np.abs(nodal).max()
 
 
-@pytest.mark.parametrize("option", but_slow(MORE, "line in its cells"))
+@pytest.mark.parametrize("option", but_slow(MORE, "line in its cells", "elrod in cells"))
 def test_tangent_is_the_derivative_of_wrench_and_nodal_forces(option):
     model, motion, history, step, evaluation, _ = evaluated(option)
     probe = build_model(make_bearing(BUSHES["nodal"], **MORE[option]))

@@ -194,7 +194,5 @@ def test_films_and_bushes_that_do_not_know_it():
             bearing(pin(), bush=bush)
     with pytest.raises(ehd.InputError, match=r"journal needs film=FiniteLength.*got LongBearing"):
         bearing(pin(), film=ehd.LongBearing(), inlet=ehd.MaximumGap())
-    with pytest.raises(ehd.InputError, match="elastic journal"):
-        bearing(pin(), cavitation=ehd.ElrodAdams(line_in_cells=True))
     with pytest.raises(ehd.InputError, match="ElasticJournal"):
         bearing("steel")
