@@ -86,7 +86,7 @@ class OilLine:
     Attributes
     ----------
     fields : Curve
-    rise : (n, m) array
+    s, rise : (n, m) arrays
         Of ``fields``.
     late : (n, m) array
         ``late`` of `exudyn_ehd.film.reynolds.links.Coefficients` with what flows carry less than the fill.
@@ -94,7 +94,8 @@ class OilLine:
 
     def __init__(self, shape: tuple[int, int]) -> None:
         self.fields = straight(shape)
-        self.rise, self.late = self.fields.rise.reshape(shape), np.zeros(shape)
+        self.s, self.rise = self.fields.s.reshape(shape), self.fields.rise.reshape(shape)
+        self.late = np.zeros(shape)
 
     def gradients(
         self,

@@ -242,7 +242,9 @@ class FilmSolver:
     def outflow(self) -> np.ndarray:
         """What `exudyn_ehd.film.reynolds.lagging_void` keeps of the last solution (3, n, m)."""
         s = self.system
-        return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, s.fill)
+        # flows from the line inside its cells follow the pressure, whatever the vertex holds
+        fill = s.fill if self.oil_line is None else np.where(self.oil_line.s < 1.0, 1.0, s.fill)
+        return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, fill)
 
     def _gap_before(self, step: float) -> tuple[np.ndarray, np.ndarray]:
         """Gap (n, m) at the start of a step as the rates at its end have it, and its derivative to the gap now."""

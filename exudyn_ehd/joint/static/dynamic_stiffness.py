@@ -116,8 +116,9 @@ class FilmResponse:
         if fills is not None:
             self.contents = weigh_fills(fills, s.area * s.H, number)
             by_fill = line_by_motion(film, self.contents, w.count) * scale
-        # the content at a mass-conserving film's line follows position and velocity, its rate their rates
-        self.by_pose, self.by_rate, self.by_sway = by_motion[:2].copy(), by_motion[4:6] + by_fill[:2], by_fill[4:6]
+        # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
+        self.by_pose, self.by_rate = by_motion[:2].copy(), by_motion[4:6]
+        self.by_content, self.by_sway = by_fill[:2], by_fill[4:6]
         self._rest_of(tangent[:2, :2], tangent[:2, 4:6])
         # the tangent knows no rate of a liner's deflection
         self.by_rate = self.by_rate * followed
@@ -135,7 +136,8 @@ class FilmResponse:
     def _gradients(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
         """What the film's pressure gives to stiffness and damping at a frequency (2, 2), complex."""
         lam = splu(csc_matrix(self.matrix + 1j * frequency * self.store)).solve(self.rows, trans="T")
-        return (self.by_pose @ lam).T, ((self.by_rate + 1j * frequency * self.by_sway) @ lam).T
+        pose, rate = self.by_pose + 1j * frequency * self.by_content, self.by_rate + 1j * frequency * self.by_sway
+        return (pose @ lam).T, (rate @ lam).T
 
 
 class FilmOnBoreResponse(FilmResponse):
@@ -169,13 +171,13 @@ class FilmOnBoreResponse(FilmResponse):
         loads = on_shapes(load_weights(film), balances.places)
         self.rows = np.concatenate((self.rows, -loads), axis=1)
         place, rate = (-force * on_shapes(*balances.stencil(*ends)).T for ends in ((1.0, 0.0), (0.0, 1.0)))
-        sway = np.zeros_like(rate)
+        sway = content = np.zeros_like(rate)
         if balances.beyond is not None and self.contents is not None:
-            content = line_matrices(self.contents, film.grid.shape, unknowns.size)
-            of_line = [-force / balances.clearance * sums(part).T for part in (*balances.beyond, *content)]
-            place, rate, sway = place + of_line[0], rate + of_line[1] + of_line[2], of_line[3]
+            parts = *balances.beyond, *line_matrices(self.contents, film.grid.shape, unknowns.size)
+            flows, rates, content, sway = (-force / balances.clearance * sums(part).T for part in parts)
+            place, rate = place + flows, rate + rates
         self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
-        self.by_sway = np.concatenate((self.by_sway, sway))
+        self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
         forces = np.r_[0:2, 6 : 6 + k]
         self._rest_of(T[np.ix_(forces, np.r_[0:2, m : m + k])], T[np.ix_(forces, np.r_[4:6, m + k : m + 2 * k])])
         self.stiffness = elasticity.stiffness.copy()
@@ -196,8 +198,8 @@ class FilmOnBoreResponse(FilmResponse):
         """Leave q in the space of what it was found to be at some frequencies."""
         columns = [part for q in found for part in (q.real, q.imag)]
         V = block_diag(np.eye(2), np.linalg.qr(np.concatenate(columns, axis=1))[0])
-        self.rows, self.by_sway = self.rows @ V, V.T @ self.by_sway
-        self.by_pose, self.by_rate = V.T @ self.by_pose, V.T @ self.by_rate
+        self.rows, self.by_pose, self.by_rate = self.rows @ V, V.T @ self.by_pose, V.T @ self.by_rate
+        self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
         self.stiffness = V[2:, 2:].T @ self.stiffness @ V[2:, 2:]
 

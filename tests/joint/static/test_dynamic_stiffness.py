@@ -84,6 +84,27 @@ def test_response_is_that_of_the_film_in_time(scene):
         assert np.abs(2 * fine - coarse - expected).max() < 3e-3 * np.abs(expected).max()
 
 
+def test_a_film_at_rest_is_the_steady_one_in_time():
+    """The journal stands still: steps of any length change nothing, wherever the line lies in its cell."""
+    model, rng, below = (
+        build_study_model(bearing(**SCENES["line in its cells"], film=(48, 6)), 0.0),
+        np.random.default_rng(4),
+        0,
+    )
+    for _ in range(12):
+        motion, e, a = np.zeros(10), rng.uniform(0.3, 0.9), rng.uniform(0.0, 2.0 * math.pi)
+        motion[:2], motion[8] = e * C * np.array([math.cos(a), math.sin(a)]), SPEED
+        steady = model.evaluate(motion)
+        history, force = steady.history(), steady.wrench
+        below += int((model.solver.oil_line.s < 0.25).any())
+        for _ in range(2):
+            later = model.evaluate(motion, history, 10.0 ** rng.uniform(-5.0, -2.0))
+            history = later.history()
+            # round-off of one film solve against another
+            assert np.abs(later.wrench - force).max() < 1e-11 * np.abs(force).max()
+    assert below > 3
+
+
 LINERS = {
     "plain": {},
     "density": {"oil": {"density_law": ehd.DowsonHigginson(coefficient=5e-9)}},
