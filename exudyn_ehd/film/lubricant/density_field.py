@@ -1,4 +1,4 @@
-"""Density, pressure and viscosity at the vertices of a film from transformed pressures; the law is in `density`.
+"""Density at the vertices of a film from transformed pressures; the law is in `density`.
 
 The iterations of a film, and one film after the other, ask for the law at nearly the same pressures again and again. So
 every vertex remembers a pressure at which the law is known with its derivatives, ``known`` (6, size): transformed
@@ -15,7 +15,7 @@ from exudyn_ehd.film.lubricant.density import density_ratio
 from exudyn_ehd.film.lubricant.pressure_viscosity import hermite_fourth_at
 
 # Change of dp/dq, as a share, up to which Taylor's polynomial about a known value is the law: to 1e-14 in the density,
-# which the balance is solved with, 3e-13 in p and 1e-10 in their slopes.
+# which the balance is solved with, and 1e-10 in its slope.
 NEAR = 5e-4
 # Tension times the density's coefficient, of a p, up to which five terms of exp(a p) are the exponential to rounding.
 WEAK = 1e-3
@@ -52,7 +52,7 @@ def density_slope_at(P, scale, floor, law, known, rho_P_out):
 
 @njit(cache=True)
 def know_at(P, scale, floor, law, known):
-    """Know the law at the pressures (n, m) of a solution, of which Taylor's polynomial is no part any more."""
+    """Know the law at the pressures (n, m) of a solution, so that tangents do not depend on the film before."""
     look_up(P.reshape(-1), scale, max(floor, law.lowest / scale), law.highest / scale, law, 0.0, known)
 
 
@@ -130,62 +130,3 @@ def _slope_near(x, scale, lowest, highest, a, b, known, rho_P_out):
         by_pressure = a * scale * slope * (less * less if e >= 0.0 else more)
         rho_P_out[c] = by_pressure if (x[c] >= lowest) & (x[c] < highest) else 0.0
     return tense
-
-
-@njit(cache=True)
-def pressure_at(P, scale, floor, law, known, p_out, p_P_out):
-    """Pressure over ``scale`` and its derivative to P (n, m) from what is known near by; False if it has none."""
-    x, slope = P.reshape(-1), p_P_out.reshape(-1)
-    lowest, highest = max(floor, law.lowest / scale), law.highest / scale
-    far = _pressure_near(x, scale, lowest, highest, known, p_out.reshape(-1))
-    _pressure_slope_near(x, scale, known, slope)
-    return far == 0.0
-
-
-@njit(cache=True, fastmath=_FAST)
-def _pressure_near(x, scale, lowest, highest, known, p_out):
-    at, p, s, s_q, s_qq, s_3 = known[0], known[1], known[2], known[3], known[4], known[5]
-    far = 0.0
-    per_scale = 1.0 / scale
-    for c in range(p_out.size):
-        q = x[c] * scale
-        d = q - at[c]
-        near = (abs(d * s_q[c]) <= NEAR * s[c]) & ((q > 0.0) == (at[c] > 0.0)) & (x[c] >= lowest) & (x[c] < highest)
-        far += 0.0 if near else 1.0
-        p_out[c] = per_scale * (
-            p[c] + d * (s[c] + d * (0.5 * s_q[c] + d * (s_qq[c] * (1.0 / 6.0) + d * s_3[c] * (1.0 / 24.0))))
-        )
-    return far
-
-
-@njit(cache=True, fastmath=_FAST)
-def _pressure_slope_near(x, scale, known, p_P_out):
-    at, s, s_q, s_qq, s_3 = known[0], known[2], known[3], known[4], known[5]
-    for c in range(p_P_out.size):
-        d = x[c] * scale - at[c]
-        p_P_out[c] = s[c] + d * (s_q[c] + d * (0.5 * s_qq[c] + d * s_3[c] * (1.0 / 6.0)))
-
-
-@njit(cache=True)
-def viscosity_at(P, scale, floor, law, known, rho, p_out, ratio_out, ratio_P_out, p_P_out):
-    """Pressure over ``scale``, viscosity ratio and both derivatives to P (n, m), with the density ratio rho there.
-
-    From what is known near by; False as `pressure_at`.
-    """
-    if not pressure_at(P, scale, floor, law, known, p_out, p_P_out):
-        return False
-    p, p_P, ratio, ratio_P = p_out.reshape(-1), p_P_out.reshape(-1), ratio_out.reshape(-1), ratio_P_out.reshape(-1)
-    _viscosity_near(P.reshape(-1), scale, law.a, law.b, known, rho.reshape(-1), p, p_P, ratio, ratio_P)
-    return True
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _viscosity_near(x, scale, a, b, known, rho, p, p_P, ratio_out, ratio_P_out):
-    """Viscosity ratio ``mu = rho s`` and its derivative to P."""
-    at, s_q, s_qq, s_3 = known[0], known[3], known[4], known[5]
-    for c in range(ratio_out.size):
-        d = x[c] * scale - at[c]
-        denser = 1.0 / (1.0 + b * scale * p[c])
-        rho_p = a * denser * denser if p[c] >= 0.0 else a * rho[c]
-        ratio_out[c] = p_P[c] * rho[c]
-        ratio_P_out[c] = scale * (rho[c] * (s_q[c] + d * (s_qq[c] + 0.5 * d * s_3[c])) + rho_p * p_P[c] * p_P[c])

@@ -28,10 +28,11 @@ import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.solve import LARGEST_DEFICIT
 from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
-from exudyn_ehd.film.lubricant.density_field import know_at, pressure_at, viscosity_at
+from exudyn_ehd.film.lubricant.density_field import know_at
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.compiled import factor, solve
@@ -230,6 +231,8 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         )
         if fills:
             np.logical_and(self.full, self.free, out=w.active)
+            # less oil than none, to rounding, is that of another start's way, and no film
+            ok = ok and bool(self.system.fill.min() > -LARGEST_DEFICIT)
         self.reusable = ok
         return ok, steps
 
@@ -244,27 +247,6 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         elif self.edge is not None:
             self.edge.settle(w.active)
         return status_of(self.system, Status.CONVERGED), steps
-
-    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure and viscosity ratio of the last solution (n, m) with
-        their derivatives to the transformed pressure.
-
-        False where that has no pressure; there the law goes on in a line.
-        """
-        s, out = self.system, (p_out, ratio_out, ratio_P_out, p_P_out)
-        if viscosity_at(
-            s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, self.known, self.rho, *out
-        ):
-            return True
-        return super().viscosity(*out)
-
-    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure of the last solution (n, m) and its derivative to the
-        transformed one; False where that has no pressure."""
-        s, table = self.system, self.law.kernel_table
-        if pressure_at(s.pressure, self.pressure_scale, self._floor, table, self.known, p_out, p_P_out):
-            return True
-        return super().pressure_of_solution(p_out, p_P_out)
 
     def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
         """L and U of Newton's matrix at the solution, factored if the last one was before."""
