@@ -1,11 +1,12 @@
 """Errors of steps in which loads jump, set in and knock: estimated, and kept by chosen steps, over random scenes.
 
-A reference takes `FINE` times the steps and the load's mean over each of them, so that no jump is misplaced in it; its
-own error lies below 0.4 % of the gap.
+A reference takes `FINE` times the steps and the load's mean over each of them, so that no jump is misplaced in it. Its
+own error is below 1 % of the gap.
 
-Measured on the seeds 3000 to 3299 and 4000 to 4129, on which nothing of the estimate was tuned: 194 errors lie above
-2 %. Their estimates are 0.40 to 2.0 times as large, 190 of them 0.5 to 2.5 times. `StepControl` keeps 1.5 times the
-error that is asked for, 2 or 5 %, in 258 of 260 runs of the seeds 4000 to 4129; two jumps end at up to 2.3 times.
+Measured on the seeds 0 to 299, 3000 to 3299, 4000 to 4129 and 5000 to 5199, of which the last were drawn when the
+estimate was finished: 416 errors lie above 2 %. Their estimates are 0.66 to 1.8 times as large, half of them 0.98 to
+1.02 times. `StepControl` keeps 1.3 times the error that is asked for, 2 or 5 %, in the 660 runs of the seeds 4000 to
+4129 and 5000 to 5199.
 """
 
 import math
@@ -19,7 +20,7 @@ import exudyn_ehd as ehd
 from tests.mechanisms.planar import PlanarRotor
 
 FILM = ehd.FiniteLength(n_theta=40, n_z=5)
-FINE, STEPS = 12, 60
+FINE, STEPS = 24, 60
 KINDS = ("jump", "ramp", "pulse", "knock")
 
 
@@ -143,12 +144,25 @@ def test_a_pulse_of_a_single_state_is_two_jumps():
     assert true_error(scene.run(stepControl=ehd.StepControl(error=0.02)), scene.reference()) < 0.03
 
 
+def test_a_film_that_lifts_in_the_step_of_the_jump():
+    """An error of 7 % of a film that lifts by a third in the step of the jump and the next one.
+
+    With the stiffness and damping of the end of each step it is told at 0.4 of its size. Chosen steps keep 2 %, 1.5
+    times at most.
+    """
+    scene = Scene(4060)
+    reference = scene.reference()
+    told, true = told_and_true(scene, reference)
+    assert true > 0.06 and 0.5 < told / true < 2.5
+    assert true_error(scene.run(stepControl=ehd.StepControl(error=0.02)), reference) < 0.03
+
+
 @pytest.mark.slow
 def test_told_and_chosen_errors_of_many():
     """Seeds that were not drawn for the table above, with bounds around it.
 
-    Nineteen in twenty errors above 2 % are told at 0.5 to 2.5 times their size, all at 0.3 to 3 times. Chosen steps
-    keep 1.5 times what is asked for, pulses within one of them included.
+    Every error above 2 % is told at 0.5 to 2.5 times its size, half of them at 0.9 to 1.1 times. Chosen steps keep 1.5
+    times what is asked for, pulses within one of them included.
     """
     ratios, kept = [], []
     for seed in range(1000, 1040):
@@ -161,6 +175,6 @@ def test_told_and_chosen_errors_of_many():
             true_error(scene.run(stepControl=ehd.StepControl(error=error)), reference) / error for error in (0.02, 0.05)
         ]
     ratios = np.array(ratios)
-    assert len(ratios) > 10 and ratios.min() > 0.3 and ratios.max() < 3.0
-    assert np.mean((ratios > 0.5) & (ratios < 2.5)) > 0.95 - 1.0 / len(ratios)
-    assert len(kept) > 50 and max(kept) < 1.5
+    assert len(ratios) > 10 and ratios.min() > 0.5 and ratios.max() < 2.5
+    assert np.mean((ratios > 0.9) & (ratios < 1.1)) > 0.5
+    assert len(kept) == 80 and max(kept) < 1.5

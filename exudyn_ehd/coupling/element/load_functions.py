@@ -8,8 +8,9 @@ the chord, over d h,
 
 is 1/2 - u for a jump at the share u of the step. The load L on a film follows the loads linearly, through whatever
 bodies and joints lie between: its impulse beyond the chord is the offset times its own departure, times the step. With
-several functions the offset is that of all of them together. A jump is found by bisection, to 1/1000 of the step; a
-pulse shorter than 1/16 of a step may lie between the samples.
+several functions the offset is that of all of them together. A ramp that begins or ends within the step lasts a share
+of it: the even change whose time has the same variance as that of the loads. A jump is found by bisection, to 1/1000 of
+the step; a pulse shorter than 1/16 of a step may lie between the samples.
 """
 
 from __future__ import annotations
@@ -61,16 +62,20 @@ class LoadFunctions:
             self.departed = self._departs(times, values)
             self.times, self.values = times, values
 
-    def offset(self, mbs: exu.MainSystem, time: float) -> float:
-        """Offset in the step from the last accepted state to a time; nan where the loads go on as before."""
+    def offset(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
+        """Offset in the step from the last accepted state to a time, and the share of the step in which loads change.
+
+        Both are nan where the loads go on as before.
+        """
         if not self.calls:
-            return math.nan
+            return math.nan, math.nan
         times, values = self._states(mbs, time)
         off = departure(times, values)[-1]
         is_straight = np.abs(off).max() <= SMALLEST_DEPARTURE * np.abs(values).max()
         if is_straight or not (self.departed or self._departs(times, values)):
-            return math.nan
-        return float(self._impulse(mbs, time)[0] @ off / (off @ off))
+            return math.nan, math.nan
+        beyond, _, _, lasting = self._impulse(mbs, time)
+        return float(beyond @ off / (off @ off)), lasting
 
     def largest_change(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
         """Largest impulse beyond the chord over the load's size and the step, and time of the largest change.
@@ -79,7 +84,7 @@ class LoadFunctions:
         """
         if not (self.calls and np.any(self.times < time)):
             return 0.0, time
-        beyond, sizes, place = self._impulse(mbs, time)
+        beyond, sizes, place, _ = self._impulse(mbs, time)
         return float((np.abs(beyond) / sizes).max()), place
 
     def _at(self, mbs: exu.MainSystem, time: float) -> np.ndarray:
@@ -100,8 +105,12 @@ class LoadFunctions:
         last, now = np.diff(times)[1:] * sizes
         return bool(last < SUDDEN * now or sizes[1] > UNRESOLVED * np.abs(values).max())
 
-    def _impulse(self, mbs: exu.MainSystem, time: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """Mean values (k,) beyond those of the chord, largest values (k,), and time of the largest change."""
+    def _impulse(self, mbs: exu.MainSystem, time: float) -> tuple[np.ndarray, np.ndarray, float, float]:
+        """Mean values (k,) beyond those of the chord, largest values (k,), and time of the largest change.
+
+        Last the share of the step in which the loads change, 0 for a jump: that of the even change with the same
+        variance of its time.
+        """
         start = float(self.times[self.times < time][-1])
         step = time - start
         times = start + step * np.array([0.0, *(np.arange(SAMPLES) + 0.5) / SAMPLES, 1.0])
@@ -117,5 +126,10 @@ class LoadFunctions:
             left, right = (left, half) if is_behind else (half, right)
         place = 0.5 * (left + right)
         # samples stand for equal parts of the step: a jump moves the border between two of them
-        moved = min(int(part), SAMPLES) / SAMPLES - (place - start) / step
-        return values[1:-1].mean(axis=0) + moved * change[part] - 0.5 * (values[0] + values[-1]), sizes, place
+        borders = np.arange(SAMPLES + 1) / SAMPLES
+        borders[part] = (place - start) / step
+        whole = values[-1] - values[0]
+        beyond = 0.5 * whole - borders @ change
+        gone = change @ whole / (whole @ whole or 1.0)
+        lasting = math.sqrt(12.0 * max(0.0, float(np.square(borders) @ gone - (borders @ gone) ** 2)))
+        return beyond, sizes, place, lasting

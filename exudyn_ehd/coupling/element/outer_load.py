@@ -47,7 +47,7 @@ class OuterLoad:
 
     Attributes
     ----------
-    load : (19,) array
+    load : (20,) array
         At the state taken last, with what the step to it has missed; nan where it is not known.
     functions : LoadFunctions or None
         Loads of the system that are functions of time, from the first state of a run on.
@@ -85,7 +85,7 @@ class OuterLoad:
         return [*before, (time, np.asarray(rates)[self.places], np.asarray(demanded)[self.places])]
 
     def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> np.ndarray:
-        """Load (19,) at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
+        """Load (20,) at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
 
         Its columns are those of `exudyn_ehd.joint.step_error`, those of a ball's blocks with a zero behind them; nan
         without a film.
@@ -111,7 +111,7 @@ class OuterLoad:
             out[MOMENTUM + place :][: len(rows)] = mass @ missed[rows]
             out[DEMANDED + place :][: len(rows)] = mass @ demanded[rows]
             place += len(rows)
-        out[OFFSET] = self.functions.offset(mbs, time)
+        out[OFFSET:MASS] = self.functions.offset(mbs, time)
         out[MASS:MOMENTUM] = np.concatenate([mass[np.triu_indices(len(mass))] for mass in self.masses])
         return out
 

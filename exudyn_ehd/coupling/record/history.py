@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
-from exudyn_ehd.joint.step_error import BLOCKS
+from exudyn_ehd.joint.step_error import BLOCKS, LOADS
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History, shown
 from exudyn_ehd.status import InputError
@@ -81,7 +81,7 @@ class Quantity(enum.Enum):
 _SCALARS = tuple(member.value for member in Quantity)[6:]
 TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
-LOAD = slice(FIRST_BLOCK + BLOCKS.size, FIRST_BLOCK + BLOCKS.size + 19)
+LOAD = slice(FIRST_BLOCK + BLOCKS.size, FIRST_BLOCK + BLOCKS.size + LOADS)
 WIDTH = LOAD.stop
 _BLOCKS = BLOCKS.ravel()
 # Places in a row.
@@ -356,7 +356,7 @@ def make_row(
     tangent: np.ndarray | None = None,
     load: np.ndarray | None = None,
 ) -> np.ndarray:
-    """One row of the record; step errors need the ``tangent`` (6, 10) and the ``load`` (19,) on the film."""
+    """One row of the record; step errors need the ``tangent`` (6, 10) and the ``load`` (20,) on the film."""
     row = np.empty(WIDTH)
     scalars = [quantities.get(name, math.nan) for name in _SCALARS]
     row[:FIRST_BLOCK] = [time, *motion.tolist(), *motion[:2].tolist(), *ratios, *wrench.tolist(), *scalars]
