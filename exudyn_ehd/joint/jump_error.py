@@ -33,8 +33,8 @@ RATE_LEVER = 2.0
 # Parts before the change of the load, in it and behind it. Without iterations for s errors are told at 0.50 to 2.1 with
 # 4, 0.66 to 1.7 with 8, and 0.69 to 1.7 with 32.
 PARTS = 8
-# Iterations for s in a stage. With one, a jump that turns the film within a part of the step is missed; of the 332 errors
-# the logarithm of the estimate over the error has a standard deviation of 0.084, 0.073 and 0.072 with 1, 2 and 3.
+# Iterations for s in a stage. With one, a jump that turns the film within a part of the step is missed. With 1, 2 and 3
+# the logarithm of the estimate over the error has a standard deviation of 0.084, 0.073 and 0.072 (the same errors).
 ITERATIONS = 3
 # Least share of a step before a jump, in it and behind it, so that a film without mass divides by no zero.
 SHORTEST = 1e-6

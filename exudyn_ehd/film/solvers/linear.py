@@ -173,15 +173,14 @@ class FilmSolver:
 
     def _set_links(self) -> None:
         """Conductances and Couette fluxes of the links, and the right-hand side."""
-        s, f, mesh = self.system, self.flux, self.grid.mesh
+        s, f = self.system, self.flux
         if f is not None:
             first, *others = self.flux_effects
             first.start(f, self.H, self.vx, self.vz)
             for effect in others:
                 effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
-        H, HF, flow = self.H, self.HF, None if f is None else f.flow
-        speeds, flows = (self.vx, self.vz, self.flow_x), (s.kx, s.kz, s.fx, s.fz, s.b)
-        set_links(H, HF, self.H_t, self.squeeze, flow, *speeds, mesh, *flows)
+        speeds, out = (self.vx, self.vz, self.flow_x), (s.kx, s.kz, s.fx, s.fz, s.b)
+        set_links(self.H, self.HF, self.H_t, self.squeeze, None if f is None else f.flow, *speeds, self.grid.mesh, *out)
         self.grid.cut(s.kx, s.kz)
 
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
@@ -240,10 +239,12 @@ class FilmSolver:
             self.lagging = False
 
     def outflow(self) -> np.ndarray:
-        """What `exudyn_ehd.film.reynolds.lagging_void` keeps of the last solution (3, n, m)."""
-        s = self.system
-        # flows from the line inside its cells follow the pressure, whatever the vertex holds
-        fill = s.fill if self.oil_line is None else np.where(self.oil_line.s < 1.0, 1.0, s.fill)
+        """What `exudyn_ehd.film.reynolds.lagging_void` keeps of the last solution (3, n, m).
+
+        Flows from the line inside its cells follow the pressure, whatever a vertex holds: it counts as full.
+        """
+        s, line = self.system, self.oil_line
+        fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
         return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, fill)
 
     def _gap_before(self, step: float) -> tuple[np.ndarray, np.ndarray]:

@@ -11,9 +11,9 @@ from exudyn_ehd.film.models import film_grid
 from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore
 from exudyn_ehd.joint.bore.transfer import vertex_means
 from exudyn_ehd.solid.fe_faces import BoreFaces
-from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.modes.static import bore_modes, held_factor
 from exudyn_ehd.solid.unrolled import Unrolled
+from tests.solid_pressures import pressure_loads
 from tests.solid_tetrahedra import tetrahedra
 
 R, L = 0.03, 0.066

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.modes.static import bore_modes
+from tests.solid_pressures import pressure_loads
 
 R, L, NU = 0.03, 0.066, 0.3
 DATA = Path(__file__).parents[2] / "solid" / "data" / "annulus_plane_strain_fourier_compliance.csv"

@@ -11,9 +11,9 @@ from scipy.optimize import root
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.modes.static import bore_modes
 from tests.sampling import sample
+from tests.solid_pressures import pressure_loads
 
 SPEED = 3000 * 2 * np.pi / 60
 C = 30e-6

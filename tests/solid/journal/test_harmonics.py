@@ -106,9 +106,9 @@ def test_held_pin_bends_like_a_beam(inner):
 def test_against_hexahedra(held, tolerance):
     """A hollow pin under a pressure of all waves, on a structured mesh of 20-node elements held at the same places."""
     from exudyn_ehd.solid.linear.solvers import sparse_factor
-    from exudyn_ehd.solid.loads import pressure_loads
     from exudyn_ehd.solid.mesh import HollowCylinder
     from exudyn_ehd.solid.total_lagrange import TotalLagrange
+    from tests.solid_pressures import pressure_loads
 
     mesh = HollowCylinder(
         inner_radius=0.5 * A, thickness=0.5 * A, length=4.0 * A, axial=16, radial=2, circumferential=24

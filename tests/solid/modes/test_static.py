@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.modes import static
 from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
+from tests.solid_pressures import pressure_loads
 
 STEEL = SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 CYLINDER = HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=4, radial=1, circumferential=24)
