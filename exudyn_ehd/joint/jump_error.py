@@ -84,7 +84,7 @@ def errors_of_jumps(
     length = np.sum(way[:, : pose.shape[2]] ** 2 + way[:, pose.shape[2] :] ** 2 / lever, axis=1)
     bend = [-_times(K[i], pose[1] - pose[0]) - _times(D[i], rate[1] - rate[0]) for i in (0, 1)]
     constant = [force[i] + _times(K[i], pose[i]) + _times(D[i], rate[i]) for i in (0, 1)]
-    stiff = resists(M + h[:, :, None] * (D + h[:, :, None] * K)).all(axis=0)
+    stiff = np.asarray(resists(M + h[:, :, None] * (D + h[:, :, None] * K)).all(axis=0))
     idle = np.where(stiff, 0.0, np.eye(pose.shape[2]))
 
     def stage(p: np.ndarray, v: np.ndarray, h: np.ndarray, outer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

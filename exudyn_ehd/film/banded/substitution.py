@@ -88,17 +88,17 @@ def _solve_one(col, row, stride, scale_forth, scale_back, inverse, count, width,
             s -= col[at] * x[k]
         x[r] = s * inverse[r] if scale_forth else s
     for q in range(size):
-        r = size - _1 - q
-        own, d, t = r * step, w if w < q else q, 0.0
-        s = x[r] * row[own] if scale_forth and scale_back else x[r]
+        i = size - _1 - q
+        own, d, t = i * step, w if w < q else q, 0.0
+        s = x[i] * row[own] if scale_forth and scale_back else x[i]
         while d > _1:
-            s -= row[own + d] * x[r + d]
-            t += row[own + d - _1] * x[r + d - _1]
+            s -= row[own + d] * x[i + d]
+            t += row[own + d - _1] * x[i + d - _1]
             d -= _2
         s -= t
         if d > _0:
-            s -= row[own + _1] * x[r + _1]
-        x[r] = s * inverse[r] if scale_back else s
+            s -= row[own + _1] * x[i + _1]
+        x[i] = s * inverse[i] if scale_back else s
 
 
 @njit(cache=True, fastmath=_FUSE)
@@ -120,11 +120,11 @@ def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width
         f = inverse[r] if scale_forth else 1.0
         x0[r], x1[r], x2[r], x3[r] = f * s0, f * s1, f * s2, f * s3
     for q in range(size):
-        r = size - _1 - q
-        own, reach = r * step, w if w < q else q
+        i = size - _1 - q
+        own, reach = i * step, w if w < q else q
         f = row[own] if scale_forth and scale_back else 1.0
-        s0, s1, s2, s3 = f * x0[r], f * x1[r], f * x2[r], f * x3[r]
-        at, k = own + reach, r + reach
+        s0, s1, s2, s3 = f * x0[i], f * x1[i], f * x2[i], f * x3[i]
+        at, k = own + reach, i + reach
         for _ in range(reach):
             f = row[at]
             s0 -= f * x0[k]
@@ -133,5 +133,5 @@ def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width
             s3 -= f * x3[k]
             at -= _1
             k -= _1
-        f = inverse[r] if scale_back else 1.0
-        x0[r], x1[r], x2[r], x3[r] = f * s0, f * s1, f * s2, f * s3
+        f = inverse[i] if scale_back else 1.0
+        x0[i], x1[i], x2[i], x3[i] = f * s0, f * s1, f * s2, f * s3
