@@ -94,7 +94,7 @@ def test_options_are_frozen_and_keyword_only():
 LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 300, 60, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
-MOST_SKIPS, MOST_ANY, MOST_CODE = 14, 60, 28576
+MOST_SKIPS, MOST_ANY, MOST_CODE = 14, 60, 28582
 
 
 def _docstring_lines(tree):

@@ -334,11 +334,9 @@ class SolvedFilm(NamedTuple):
         )
         return csr_matrix((along + across) @ diags(self._pressures().ravel()))
 
-    def gather_shear(self, weights: np.ndarray) -> np.ndarray | None:
-        """The same from the left: sums (n, m) by the unknowns for weights (n, m) of the ratio."""
-        if self.oil.ratio_g is None:
-            return None
-        return self._thinning().gather(weights * self.oil.ratio_g) * self._pressures()
+    def gather_shear(self, weights: np.ndarray) -> np.ndarray:
+        """The same from the left: sums (n, m) by the unknowns for weights (n, m), each times the oil's ``ratio_g``."""
+        return self._thinning().gather(weights) * self._pressures()
 
     def _thinning(self) -> ShearThinning:
         return next(e for e in self.solver.flux_effects if isinstance(e, ShearThinning))

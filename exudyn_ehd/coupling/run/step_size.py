@@ -7,10 +7,10 @@ with the cube of its size, and what it may miss with its size: a step's demand i
 size, and the next one follows the largest demand of late.
 
 A step in which a load jumps is repeated as long as the jump would make more than what earlier errors leave of the error
-that is asked for, or more than half of it where they leave less. Where the
-load is a function of time its jump is found within the step; the integration takes jumps to be in the middle of their
-step, and the next step, or the one after it, has the jump there. So a pulse within a step is met, too. Jumps of other
-loads count as at an end of the step, which is halved.
+that is asked for, or more than half of it where they leave less. Where the load is a function of time its jump is found
+within the step; the integration takes jumps to be in the middle of their step, and the next step, or the one after it,
+has the jump there. So a pulse within a step is met, too. Jumps of other loads count as at an end of the step, which is
+halved.
 
 A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
 over to the new one within a step or two. So sizes grow by a tenth at a time, and smaller changes are left out.

@@ -13,6 +13,7 @@ from exudyn_ehd.film.solvers.liner.line_kernels import is_there, meet_line
 from exudyn_ehd.film.solvers.newton import RULE, improves, is_final, pays_again, too_slow
 from exudyn_ehd.film.solvers.steps import (
     BALANCED,
+    ENDLESS,
     LEAST_DEFLECTION,
     LEAST_PRESSURE,
     ROUNDED,
@@ -30,6 +31,8 @@ from exudyn_ehd.film.solvers.steps import (
 
 # Pa: a film at rest has no pressures but rounding, and no share of those would ever be small.
 SMALLEST_PEAK = 1e-6
+# First steps, taken whole; share of the way to the end of the oil's law that a later one covers at most.
+WHOLE_STEPS, TO_THE_END = 16, 0.9
 
 
 @njit(cache=True, inline="always")
@@ -76,6 +79,12 @@ def factor(u, fixed, numbers, terms, liner, oil, matrix, active, line):
 
 
 @njit(cache=True, inline="always")
+def _end(oil, step):
+    """As for `take_step`."""
+    return oil[2].highest / oil[0], TO_THE_END if step > WHOLE_STEPS else np.inf
+
+
+@njit(cache=True, inline="always")
 def _step(step, residual, u, numbers, kinds, gap, liner, oil, factored, count, width, trial, line):
     """As `newton_step`."""
     pc, vx, vz, beta = numbers
@@ -83,20 +92,24 @@ def _step(step, residual, u, numbers, kinds, gap, liner, oil, factored, count, w
     if liner is not None:
         opening, elements = gap / beta, (liner[0], liner[4], liner[5])
         levels = (pc, base, max(LEAST_DEFLECTION * opening, slight), opening, ROUNDED * slight)
-        return newton_step(residual, u, elements, factored, count, width, kinds, levels, trial, line, step - 1)
+        end = ENDLESS
+        return newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial, line, step - 1)
     if oil is not None:
         levels = (pc, base, max(SMALLEST_PEAK / oil[0], slight), np.inf, ROUNDED * slight)
-        return newton_step(residual, u, None, factored, count, width, kinds, levels, trial, line, step - 1)
+        end = _end(oil, step)
+        return newton_step(residual, u, None, end, factored, count, width, kinds, levels, trial, line, step - 1)
     return np.inf, np.inf, 0.0, 0.0, 0
 
 
 @njit(cache=True, inline="always")
-def _shorter(u, chooses, liner, oil, factored, count, share, pc, tolerance, trial):
+def _shorter(step, u, chooses, liner, oil, factored, count, share, pc, tolerance, trial):
     """As `take_step`."""
     if liner is not None:
-        return take_step(u, (liner[0], liner[4], liner[5]), factored, count, share, pc, chooses, tolerance, trial)
+        return take_step(
+            u, (liner[0], liner[4], liner[5]), ENDLESS, factored, count, share, pc, chooses, tolerance, trial
+        )
     if oil is not None:
-        return take_step(u, None, factored, count, share, pc, chooses, tolerance, trial)
+        return take_step(u, None, _end(oil, step), factored, count, share, pc, chooses, tolerance, trial)
     return 0
 
 
@@ -165,7 +178,7 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
         for k in range(1 if from_last else RULE.most_halvings):
             if k > 0:
                 share *= 0.5
-                changes = _shorter(u, chooses, liner, oil, matrix[2], count, share, pc, SUCTION * peak, trial)
+                changes = _shorter(step, u, chooses, liner, oil, matrix[2], count, share, pc, SUCTION * peak, trial)
             norm, gap = _balance(trial[0], trial[1], fixed, numbers, kinds, terms, liner, oil, residual, line)
             if improves(gap, norm, before, size, changes):
                 break

@@ -81,6 +81,8 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         if self.line is not None:
             self.line = self.system.line = self.edge = FilmLine(shape)
             self.edge.flux = self.flux
+        # the line inside the cells as kernels take it
+        self.met = NO_LINE if self.edge is None else self.edge.state
         s, fills = self.system, closure.conserves_mass
         self.fields = np.zeros((10, *shape))
         s.kx, s.kz, s.fx, s.fz, grow, known, kept, area, s.prompt, s.late = self.fields
@@ -172,11 +174,6 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             self.edge.density = float(self.law.density.ratio(self._cavity_in_pascal(s.cavity_pressure)))
             self.edge.take((self.H, self.HF), s.kx, s.b, self.grid.fixed)
 
-    @property
-    def _line(self) -> tuple[np.ndarray, ...]:
-        """The line inside the cells as kernels take it."""
-        return NO_LINE if self.edge is None else self.edge.state
-
     def _set_store(self) -> None:
         """Coefficients of a mass-conserving film's storage term; see `FilmTerms`."""
         s, f = self.system, self.film
@@ -227,7 +224,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             self.residual,
             self._unknown(),
             (self.reusable, True, w.count, w.width),
-            self._line,
+            self.met,
         )
         if fills:
             np.logical_and(self.full, self.free, out=w.active)
@@ -261,7 +258,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
                 self._oil(),
                 w.matrix,
                 self._unknown(),
-                self._line,
+                self.met,
             )
             self.exact = True
         return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)

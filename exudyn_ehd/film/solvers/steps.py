@@ -36,6 +36,8 @@ LARGEST_THICKENING = 4.0
 CURVED = 10.0
 # Share of a gap that a step may use up, so that it stays open.
 CLOSING = 0.8
+# `take_step` of an oil whose law has no end.
+ENDLESS = (np.inf, np.inf)
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -165,7 +167,7 @@ def _sizes(P_now, sides, elements, order, steps, count, base, least):
 
 
 @njit(cache=True)
-def newton_step(residual, u, elements, factored, count, width, kinds, levels, trial, line, taken):
+def newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial, line, taken):
     """Newton's step of the numbered unknowns with the factor at hand; returns
     the entries of `newton.Step`, and as `take_step`.
 
@@ -177,7 +179,7 @@ def newton_step(residual, u, elements, factored, count, width, kinds, levels, tr
     Parameters
     ----------
     elements : (load, gaps, gap slopes), as fields
-    kinds : (clips, whether vertices at pc are no unknowns)
+    end, kinds : as in `take_step`; (clips, whether vertices at pc are no unknowns)
     levels : (pc, pc on the elements, least peak, opening, least suction)
     line, taken : that of `line_kernels`, and steps before
     """
@@ -191,7 +193,7 @@ def newton_step(residual, u, elements, factored, count, width, kinds, levels, tr
         largest = max(largest, CURVED * along_line * np.sqrt(peak))
     unit = min(pressing, opening) if clips else peak
     share = 1.0 if clips else share
-    changes = take_step(u, elements, factored, count, share, pc, chooses, max(SUCTION * peak, suction), trial)
+    changes = take_step(u, elements, end, factored, count, share, pc, chooses, max(SUCTION * peak, suction), trial)
     return max(largest / peak, filled), max(largest / unit, filled), peak, share, changes
 
 
@@ -211,11 +213,15 @@ def _moved(P, x, drive, slope, bend):
 
 
 @njit(cache=True, inline="always")
-def take_step(u, elements, factored, count, share, pc, chooses, tolerance, trial):
+def take_step(u, elements, end, factored, count, share, pc, chooses, tolerance, trial):
     """Trial state after ``share`` of the step, projected on what a closure
-    allows; returns how many vertices rupture or fill up.
+    allows; returns how many vertices rupture, fill up or cross the end of the oil's law.
+
+    ``end``: (pressure where the law ends, share of the way there that a step may cover, beyond 1: all of it) between
+    rigid surfaces. Towards it the density climbs ever more steeply, beyond it is taken as constant, so that whole
+    steps across it lead far at first, but can bounce back for ever.
     """
-    return _take(u[0], u[1], u[2], elements, factored, count, share, pc, chooses, tolerance, *trial)
+    return _take(u[0], u[1], u[2], elements, end, factored, count, share, pc, chooses, tolerance, *trial)
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -229,7 +235,7 @@ def copy_field(field, out):
 
 @njit(cache=True)
 def _take(
-    P_now, fill_now, sides, elements, factored, count, share, pc, chooses, tolerance, P_out, fill_out, full_out
+    P_now, fill_now, sides, elements, end, factored, count, share, pc, chooses, tolerance, P_out, fill_out, full_out
 ):  # fmt: skip
     order, steps = factored[0], factored[1]
     copy_field(P_now, P_out)
@@ -241,6 +247,8 @@ def _take(
     if elements is not None:
         load = load_of(elements[0])
         drive, slope, bend = load.drive.reshape(-1), load.slope.reshape(-1), load.bend.reshape(-1)
+    if elements is None:
+        highest, reach = end
     lowest = pc if chooses or sides is not None else -np.inf
     changes = 0
     for r in range(count):
@@ -255,6 +263,11 @@ def _take(
             continue
         if elements is None:
             p = P[c] + x
+            if P[c] < highest <= p:
+                p = min(p, P[c] + reach * (highest - P[c]))
+                changes += 1
+            elif p < highest <= P[c]:
+                changes += 1
         else:
             p = _moved(P[c], x, drive[c], slope[c], bend[c])
         if sides is not None and p < pc - tolerance:

@@ -241,9 +241,8 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
         # at the line the fill follows the pressure
         by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
     shear_adjoint_rhs(w.order, w.count, g.shear_weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
-    by_others = film.gather_shear(g.shear_weight * film.share() / s.H)
-    if by_others is not None:
-        row += by_others.reshape(-1)[w.order[: w.count]]
+    if oil.ratio_g is not None:
+        row += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H).reshape(-1)[w.order[: w.count]]
     if s.closure.conserves_mass:
         rise = 0.0 if s.oil_line is None else s.oil_line.rise
         row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]

@@ -14,11 +14,12 @@ from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import GapChain
-from exudyn_ehd.film.solvers.liner.line_kernels import NO_LINE, open_gaps
+from exudyn_ehd.film.solvers.liner.line_kernels import NO_LINE, is_factored, open_gaps
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step
 from exudyn_ehd.film.solvers.steps import (
     BALANCED,
+    ENDLESS,
     LEAST_DEFLECTION,
     LEAST_PRESSURE,
     ROUNDED,
@@ -77,7 +78,7 @@ class LinerBalance(LinerFilm):
         if self.line is None:
             return
         self.line.settle(self.film.work.active)
-        self.exact = self.exact and self.line.factored
+        self.exact = self.exact and bool(is_factored(self.line.block))
 
     def deflection_weights(self, lam: np.ndarray) -> np.ndarray:
         """Gradients of the adjoint functionals lam (k, n, m) to the deflection's rate, which a rupture line, where the
@@ -170,6 +171,7 @@ class LinerBalance(LinerFilm):
             self.residual,
             self.sides(self.u),
             (self.load_fields, self.gap_fields, self.slope_fields),
+            ENDLESS,
             self.matrix[2],
             w.count,
             w.width,
@@ -189,6 +191,7 @@ class LinerBalance(LinerFilm):
             take_step(
                 self.sides(self.u),
                 (self.load_fields, self.gap_fields, self.slope_fields),
+                ENDLESS,
                 self.matrix[2],
                 self.film.work.count,
                 share,

@@ -20,7 +20,7 @@ import numpy as np
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.rupture_line import Line, LineGradients, RuptureLine, line_terms, to_true_gap
 from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.film.solvers.liner.line_kernels import add_yielding, is_factored, see_line, weigh_yielding
+from exudyn_ehd.film.solvers.liner.line_kernels import add_yielding, see_line, weigh_yielding
 
 
 class GapChain(NamedTuple):
@@ -87,11 +87,6 @@ class FilmLine(RuptureLine):
     def settle(self, active: np.ndarray) -> None:
         """The line of the film that is solved, among its ``active`` vertices (n, m)."""
         self.s[~active] = 1.0
-
-    @property
-    def factored(self) -> bool:
-        """Whether the factor holds the line of the film that is solved."""
-        return bool(is_factored(self.block))
 
     def weights(self, places: np.ndarray) -> np.ndarray:
         """As `RuptureLine.weights`, of a film with this density, on its liner."""
