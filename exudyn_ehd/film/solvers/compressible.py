@@ -228,7 +228,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         )
         if fills:
             np.logical_and(self.full, self.free, out=w.active)
-            # less oil than none, to rounding, is that of another start's way, and no film
+            # a nearly singular matrix may end at fills below zero, which no film has
             ok = ok and bool(self.system.fill.min() > -LARGEST_DEFICIT)
         self.reusable = ok
         return ok, steps

@@ -204,7 +204,7 @@ def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:
 
 
 def _follows_neighbours(film: SolvedFilm) -> bool:
-    """Whether the pressure of a vertex follows the linear ones of its neighbours too."""
+    """Return whether the pressure of a vertex follows the linear ones of its neighbours too."""
     closure = film.solver.closure
     return closure.clips and bool(closure.line_in_cells)
 

@@ -150,7 +150,7 @@ def see_line(
 
 @njit(cache=True)
 def is_factored(line):
-    """Whether the diagonals of a factor are those of the line's present places, to what tangents need."""
+    """Return whether the diagonals of a factor are those of the line's present places, to what tangents need."""
     k, s, shift = line[1], line[2], line[5]
     for c in range(s.size):
         place = max(s[c], LEAST)
@@ -162,7 +162,7 @@ def is_factored(line):
 
 @njit(cache=True)
 def _by_bare(t):
-    """Derivatives of f to itself without a liner, and minus its logarithmic ones to k and to the gap."""
+    """Derivative of f to what it is without a liner; its logarithmic derivative to k, which is that to the gap."""
     held = 1.0 / (1.0 + t * t)
     turned = 2.0 * (t * held) * (t * held)
     return held - turned, turned / held
