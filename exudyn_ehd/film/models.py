@@ -294,7 +294,6 @@ def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> 
     others = {
         f"film={type(film).__name__}(...)": not isinstance(film, kinds),
         "bush=ElasticLiner(...)": rigid and isinstance(bush, ElasticLiner),
-        "Lubricant.density_law": rigid and oil.density_law is not None,
         "Lubricant.shear_law": rigid and oil.shear_law is not None,
     }
     return [name for name, there in others.items() if there]

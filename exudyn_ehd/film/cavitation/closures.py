@@ -22,6 +22,7 @@ from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_in_cells, clip_pressure, solve_linear
+from exudyn_ehd.film.cavitation.solve import follow, solve_system
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
@@ -200,6 +201,8 @@ class SwiftStieber(SymmetricClosure):
         """Newton's method from ``work.active``, or from all free vertices if ``work.warm`` is False."""
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
+        if system.density is not None:
+            return _solve_dense(system, work)
         work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
         return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
 
@@ -207,9 +210,23 @@ class SwiftStieber(SymmetricClosure):
 def _solve_free(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """The linear film of all vertices that are not prescribed, into ``system.linear_pressure``."""
     np.logical_not(system.fixed, out=work.active)
+    if system.density is not None:
+        return _solve_dense(system, work)
     links = system.kx, system.kz, system.b
     ok, work.count, work.width = solve_linear(links, work.active, work.factor, work.unknowns, system.linear_pressure)
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
+
+
+def _solve_dense(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """The film of an oil whose density follows the pressure, from the last one or from ``work.active``."""
+    was_known = work.known
+    work.warm, steps = solve_system(system, work)
+    status = Status.CONVERGED if work.warm else Status.NOT_CONVERGED
+    if not (work.warm or was_known):
+        status, count = follow(system, work)
+        steps += count
+        work.warm = status is Status.CONVERGED
+    return status, steps
 
 
 def check_cavity_pressure(name: str, pressure: float) -> None:

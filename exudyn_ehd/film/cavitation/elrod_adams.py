@@ -27,16 +27,10 @@ from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import check_cavity_pressure
-from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
-from exudyn_ehd.film.cavitation.solve import factor_oil_film, solve_oil
+from exudyn_ehd.film.cavitation.solve import follow, solve_system
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.system import FilmSystem
-from exudyn_ehd.film.reynolds.links import Coefficients
 from exudyn_ehd.status import Status, require_bool
-
-# Storages in pseudo time over the largest flow into a vertex by the smallest vertex: of the first one, and of the last
-# one from which a film without storage is tried.
-FIRST_RATE, LAST_RATE = 0.01, 1e-7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,82 +83,22 @@ class ElrodAdams:
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Newton from the last film, or from ``work.active`` alone; cold starts are full."""
-        s, steps, was_warm = system, 0, work.warm
+        s, was_warm = system, work.warm
         if not was_warm:
             np.logical_not(s.fixed, out=work.active)
-        ok, steps = self._newton(s, work, s.coefficients, s.inverse_step, s.mass_old)
+        ok, steps = solve_system(s, work)
         if not ok and was_warm:
             # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
-            ok, count = self._newton(s, work, s.coefficients, s.inverse_step, s.mass_old, full=True)
+            work.known = False
+            np.logical_not(s.fixed, out=work.active)
+            ok, count = solve_system(s, work)
             steps += count
         status = Status.CONVERGED
         if not ok or (s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)):
-            status, count = self._follow(s, work)
+            status, count = follow(s, work)
             steps += count
         work.warm = status is Status.CONVERGED
         return status, steps
-
-    def _newton(
-        self,
-        s: FilmSystem,
-        work: Workspace,
-        film: Coefficients,
-        inverse_step: float,
-        mass_old: np.ndarray,
-        *,
-        full: bool = False,
-    ) -> tuple[bool, int]:
-        """From the last film; ``full``: from a full one."""
-        if full:
-            work.known = False
-            np.logical_not(s.fixed, out=work.active)
-        oil = work.oil
-        ok, steps, oil.exact, work.count, work.width = solve_oil(
-            film,
-            s.late,
-            s.b,
-            (inverse_step, mass_old),
-            s.cavity_pressure,
-            s.curve,
-            s.oil_line is not None,
-            (work.known, work.known and oil.factored, work.count, work.width),
-            _factor(work),
-            work.unknowns,
-            work.active,
-            oil.u,
-            s.pressure,
-            s.fill,
-        )
-        work.known = oil.factored = ok
-        return ok, steps
-
-    def _follow(self, s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        """Follow the film in pseudo time from a full one; NO_OIL if rows run dry on the way."""
-        largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
-        largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
-        rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
-        mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
-        work.known = runs_dry = False
-        np.logical_not(s.fixed, out=work.active)
-
-        def attempt(extra: float) -> tuple[bool, int]:
-            nonlocal runs_dry
-            inverse = s.inverse_step + extra
-            blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
-            film = s.coefficients
-            if s.inverse_step == 0.0 < extra:
-                # the gap's rate goes on: extra (fill H - mass) + fill dH/dt
-                film = film._replace(H=s.H + s.H_t / extra)
-            ok, steps = self._newton(s, work, film, inverse, blend)
-            if ok:
-                np.multiply(s.fill, s.H, out=mass)
-                runs_dry = has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)
-            return ok, steps
-
-        ok, steps = pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE, least=LAST_RATE)
-        if ok:
-            return Status.CONVERGED, steps
-        return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
 
     def adjoint(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
@@ -183,17 +117,3 @@ class ElrodAdams:
 def _bands(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
     return dense_band(work.lower, work.count, work.width), dense_band(work.upper, work.count, work.width)
 
-
-def _factor(work: Workspace) -> tuple[np.ndarray, ...]:
-    return work.order, work.number, work.lower, work.upper, work.inv_diag, work.oil.slopes
-
-
-def factor_solution(s: FilmSystem, work: Workspace) -> None:
-    """Make the factor that of the last solution."""
-    oil = work.oil
-    if oil.exact:
-        return
-    since = s.inverse_step, s.mass_old
-    oil.exact, work.count, work.width = factor_oil_film(
-        s.coefficients, since, s.curve, work.active, s.fill, _factor(work)
-    )

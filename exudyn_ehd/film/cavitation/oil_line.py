@@ -122,14 +122,19 @@ class OilLine:
         return out[0], out[1]
 
     def balance_gradients(
-        self, fills: tuple[LineGradients, LineGradients], film: Coefficients, inverse_step: float, unknowns: np.ndarray
+        self,
+        fills: tuple[LineGradients, LineGradients],
+        film: Coefficients,
+        rho: np.ndarray,
+        inverse_step: float,
+        unknowns: np.ndarray,
     ) -> LineGradients:
         """What the balances of the ``unknowns`` (count,), flat vertices, change by with what `gradients` returns: an
-        entry for every balance and vertex at the line."""
+        entry for every balance and vertex at the line; ``rho`` (n, m): density."""
         carried, full = fills
         rows, places = np.empty((2, 5 * full.places.size), dtype=np.int64)
         by = np.empty((8, 5 * full.places.size))
-        count = _spread_fills(full.places, carried.by, full.by, film, inverse_step, unknowns, rows, places, by)
+        count = _spread_fills(full.places, carried.by, full.by, film, rho, inverse_step, unknowns, rows, places, by)
         return LineGradients(rows[:count], places[:count], by[:, :count])
 
 
@@ -209,10 +214,11 @@ def _outflow_gradients(places, by_out, H, HF, slopes, vx, vz, mesh, by):
 
 
 @njit(cache=True)
-def add_curve(curve, terms, slopes):
+def add_curve(curve, terms, density, slopes):
     """Add to the derivatives (5, n m) of flows and storage what the fills at the line follow the pressure by.
 
-    ``slopes``: of `exudyn_ehd.film.reynolds.balance.film_slopes`, the line's vertices among the full ones.
+    ``density`` (n, m), None: 1; ``slopes``: of `exudyn_ehd.film.reynolds.balance.film_slopes`, the line's vertices among
+    the full ones.
     """
     m, size = terms.kx.shape[1], terms.kx.size
     along, across, area, grow = (
@@ -226,23 +232,30 @@ def add_curve(curve, terms, slopes):
         by = curve.slope[c]
         if by == 0.0:
             continue
-        carried, prv = by * prompt[c], c - m if c >= m else c - m + size
-        slopes[0, c] += carried * max(along[c], 0.0)
-        slopes[1, prv] += carried * min(along[prv], 0.0)
+        carried, held, prv = by * prompt[c], curve.rise[c], c - m if c >= m else c - m + size
+        back = left = on = right = 1.0
+        if density is not None:
+            rho = density.reshape(-1)
+            here, nxt, held = rho[c], c + m if c + m < size else c + m - size, held * rho[c]
+            on, back = 0.5 * (here + rho[nxt]), 0.5 * (here + rho[prv])
+            right, left = 0.5 * (here + rho[min(c + 1, size - 1)]), 0.5 * (here + rho[max(c - 1, 0)])
+        slopes[0, c] += carried * max(along[c], 0.0) * on
+        slopes[1, prv] += carried * min(along[prv], 0.0) * back
         if c + 1 < size:
-            slopes[2, c] += carried * max(across[c], 0.0)
+            slopes[2, c] += carried * max(across[c], 0.0) * right
         if c > 0:
-            slopes[3, c - 1] += carried * min(across[c - 1], 0.0)
-        slopes[4, c] += curve.rise[c] * area[c] * grow[c]
+            slopes[3, c - 1] += carried * min(across[c - 1], 0.0) * left
+        slopes[4, c] += held * area[c] * grow[c]
 
 
 @njit(cache=True)
-def _spread_fills(fills, by_carried, by_fill, film, inverse_step, unknowns, rows, places, by):
+def _spread_fills(fills, by_carried, by_fill, film, density, inverse_step, unknowns, rows, places, by):
     """`OilLine.balance_gradients` of the vertices ``fills``; returns how many entries there are."""
     n, m = film.H.shape
     number = np.full(n * m, -1)
     for r in range(unknowns.size):
         number[unknowns[r]] = r
+    rho = density.reshape(-1)
     targets, shares, count = np.empty(5, dtype=np.int64), np.empty(5), 0
     for q in range(fills.size):
         c = fills[q]
@@ -257,7 +270,9 @@ def _spread_fills(fills, by_carried, by_fill, film, inverse_step, unknowns, rows
         shares[3] = -prompt * max(film.fz[i, j], 0.0) if j + 1 < m else 0.0
         shares[4] = prompt * min(film.fz[i, j - 1], 0.0) if j > 0 else 0.0
         grow = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
-        shares[0], store = -(shares[1] + shares[2] + shares[3] + shares[4]), film.area[i, j] * grow
+        for e in range(1, 5):
+            shares[e] *= 0.5 * (rho[c] + rho[targets[e]])
+        shares[0], store = -(shares[1] + shares[2] + shares[3] + shares[4]), film.area[i, j] * grow * rho[c]
         for e in range(5):
             if shares[e] != 0.0 and number[targets[e]] >= 0:
                 rows[count], places[count] = number[targets[e]], c
@@ -267,10 +282,12 @@ def _spread_fills(fills, by_carried, by_fill, film, inverse_step, unknowns, rows
     return count
 
 
-def weigh_flows(lam: np.ndarray, film: Coefficients) -> np.ndarray:
-    """What adjoints (k, n, m) of the balances make of their derivatives to what flows carry from vertices (k, n, m)."""
+def weigh_flows(lam: np.ndarray, film: Coefficients, rho: np.ndarray) -> np.ndarray:
+    """What adjoints (k, n, m) of the balances make of their derivatives to what flows carry from vertices (k, n, m);
+    ``rho`` (n, m): density."""
     out = np.zeros_like(lam)
     for axis, f in ((1, film.fx), (2, film.fz)):
+        f = f * 0.5 * (rho + np.roll(rho, -1, axis - 1))
         on, back = np.maximum(f, 0.0), np.roll(np.maximum(-f, 0.0), 1, axis - 1)
         out += film.prompt * (on * (lam - np.roll(lam, -1, axis)) + back * (lam - np.roll(lam, 1, axis)))
     return out

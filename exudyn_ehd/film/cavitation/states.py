@@ -28,6 +28,11 @@ LEAST = 1e-8
 ROUNDING = 1e-12
 
 
+# Films without cavitation, films whose pressure is cut off afterwards, those of Swift and Stieber, and those that conserve
+# their mass.
+FULL, CLIPPED, RUPTURE, OIL = 0, 1, 2, 3
+
+
 @njit(cache=True)
 def start_states(film, pc, curve, full, u):
     """From the sets alone: fully developed curves, no gauge pressure elsewhere, cavities at the kink."""
@@ -72,19 +77,61 @@ def set_states(film, late, curve, full, u, P, fill):
 
 
 @njit(cache=True)
-def move_states(curve, order, count, dx, full, u, P):
-    """Take Newton's step dx (count,), of pressures where ``full``, else of fills; a vertex that crosses u = 0 stops
-    there and changes its side.
+def join_states(film, curve, rest, full, u):
+    """Vertices of a film of Swift and Stieber at which oil piles up join it; returns how many do.
 
-    Returns how many do, the largest change of a pressure over the peak, of a place on a curve, of a fill, and that of a
-    place on a curve alone.
+    At the line they meet their own balances between given neighbours: ``g u^2 / 2 + u = e``. ``rest`` (n, m): what leaves
+    them less what comes in, without N.
+    """
+    known, sets, x, leaves, joined = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1), rest.reshape(-1), 0
+    along, across, m = film.kx.reshape(-1), film.kz.reshape(-1), u.shape[1]
+    for c in range(x.size):
+        f = curve.f[c]
+        if known[c] | sets[c] or leaves[c] > (0.5 - LEAST) * f:
+            continue
+        joined += 1
+        sets[c], x[c] = True, 0.0
+        if f > 0.0:
+            e, g = 0.5 - leaves[c] / f, (along[c - m] + along[c] + across[c - 1] + across[c]) / curve.k[c] - 1.0
+            x[c] = min(2.0 * e / (1.0 + np.sqrt(1.0 + 2.0 * g * e)), 1.0)
+    return joined
+
+
+@njit(cache=True)
+def take_sink(curve, rest):
+    """Take N of `exudyn_ehd.film.cavitation.rupture_line` off the balances (n, m)."""
+    balance = rest.reshape(-1)
+    for c in range(balance.size):
+        balance[c] -= 0.5 * curve.f[c] * (1.0 - curve.s[c]) ** 2
+
+
+@njit(cache=True)
+def add_sink(curve, slopes):
+    """Add what N changes by with the pressures to the derivatives (5, n m) of flows and storage."""
+    for c in range(curve.s.size):
+        slopes[4, c] += curve.k[c] * (1.0 - curve.s[c]) / curve.s[c]
+
+
+@njit(cache=True)
+def move_states(kind, density, curve, order, count, dx, full, u, P):
+    """Take Newton's step dx (count,), of pressures where ``full``, else of fills; a vertex that crosses u = 0, or the end
+    of its oil's law, stops there and changes its side.
+
+    ``density``: (weight of its changes as those of a place, its slopes (n, m), pressure where its law ends).
+
+    Returns how many do, the largest change of a pressure over the peak, of a place on a curve, of a fill, that of a place
+    on a curve alone, and the same over the place.
     """
     sets, x, pressures, peak, last_peak = full.reshape(-1), u.reshape(-1), P.reshape(-1), 0.0, 0.0
+    weight, end, rho_P = density[0], density[2], density[1].reshape(-1)
     for r in range(count):
         if sets[order[r]]:
             before = pressures[order[r]]
-            peak, last_peak = max(peak, abs(before + dx[r])), max(last_peak, abs(before))
-    changes, moved, bent, per_peak = 0, 0.0, 0.0, 1.0 / max(peak, ROUNDING * last_peak, 1e-300)
+            after = before + dx[r]
+            # what is cut off may lie far below what stays
+            peak = max(peak, after if kind == CLIPPED else abs(after))
+            last_peak = max(last_peak, abs(before))
+    changes, moved, bent, worn, per_peak = 0, 0.0, 0.0, 0.0, 1.0 / max(peak, ROUNDING * last_peak, 1e-300)
     for r in range(count):
         c = order[r]
         whole, old, change = curve.whole[c], x[c], dx[r]
@@ -93,11 +140,16 @@ def move_states(curve, order, count, dx, full, u, P):
             crosses = new > ROUNDING
         elif whole == 0.0:
             new, size = old + change, abs(change) * per_peak
-            crosses = new < -ROUNDING * peak
+            crosses = kind >= RUPTURE and new < -ROUNDING * peak
+            if weight > 0.0:
+                bent = max(bent, weight * abs(rho_P[c] * change))
+                if (old < end) != (new < end):
+                    new = end if old < end else end * (1.0 - ROUNDING)
+                    changes += 1
         else:
             new = old + 0.5 * change / (whole * min(max(old, LEAST), 1.0))
             size = abs(min(new, 1.0) - min(old, 1.0))
-            bent = max(bent, size)
+            bent, worn = max(bent, size), max(worn, size / max(min(old, new), LEAST))
             if size == 0.0:
                 size = abs(change) * per_peak
             crosses = new < 0.0
@@ -107,16 +159,16 @@ def move_states(curve, order, count, dx, full, u, P):
             sets[c], x[c] = not sets[c], 0.0
         else:
             x[c] = new
-    return changes, moved, bent
+    return changes, moved, bent, worn
 
 
 @njit(cache=True)
-def settle_states(film, full, P, fill):
+def settle_states(film, kind, full, P, fill):
     """Take back what lies on the other side by rounding; returns the least fill before."""
     known, sets, pressures, fills = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1), fill.reshape(-1)
     least = 1.0
     for c in range(sets.size):
-        if not known[c]:
+        if not known[c] and kind >= RUPTURE:
             least = min(least, fills[c])
             pressures[c] = max(pressures[c], 0.0) if sets[c] else 0.0
             fills[c] = min(max(fills[c], 0.0), 1.0)

@@ -50,9 +50,9 @@ def has_unfed_row(P, H, fixed, turns, pc):
 
 
 @njit(cache=True)
-def imbalance(film, terms, P, balance):
+def imbalance(film, terms, P, balance, full, ruptures):
     """Return the largest balance (n, m) of an unknown vertex over the largest flow that drives the film, and over the
-    largest flow that it has; P (n, m) above the cavity's."""
+    largest flow that it has; P (n, m) above the cavity's. Of a film that ``ruptures`` ``full`` ones alone are unknown."""
     worst = drive = most = 0.0
     n, m = P.shape
     for i in range(n):
@@ -64,7 +64,7 @@ def imbalance(film, terms, P, balance):
             most = max(most, flows + pressed)
             if film.fixed[i, j]:
                 flows += pressed
-            else:
+            elif full[i, j] or not ruptures:
                 worst = max(worst, abs(balance[i, j]) if np.isfinite(balance[i, j]) else np.inf)
             drive = max(drive, flows)
     return worst / max(drive, 1e-300), worst / max(most, 1e-300)

@@ -9,8 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, straight
-from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
+from exudyn_ehd.film.cavitation.rupture_line import Line, RuptureLine
+from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.density import DensityField
 from exudyn_ehd.film.reynolds.links import Coefficients
 
 
@@ -52,30 +54,36 @@ class FilmSystem:
         The same of a film that conserves mass.
     straight : Curve or None
         That of a film that conserves mass without one.
+    density : DensityField or None
+        None: the density does not follow the pressure.
+    instant : bool
+        Whether the time step stands for none.
     linked : (n,) bool array
         Columns with a link to the next one.
     fields : (9, n, m) array
         Holds kx, kz, fx, fz, b, H, HF (gap on the links i -> i+1), H_t and pressure.
     """
 
-    def __init__(self, grid: FilmGrid, clips: bool, fills: bool) -> None:
-        shape = grid.shape
+    def __init__(self, grid: FilmGrid, kind: int) -> None:
+        shape, self.kind = grid.shape, kind
         self.fields = np.zeros((9, *shape))
         self.kx, self.kz, self.fx, self.fz, self.b, self.H, self.HF, self.H_t, self.pressure = self.fields
         self.H[:] = self.HF[:] = 1.0
         self.fixed = grid.fixed
         self.cavity_pressure = 0.0
-        self.linear_pressure = np.zeros(shape) if clips else self.pressure
+        self.linear_pressure = np.zeros(shape) if kind == CLIPPED else self.pressure
         self.area = grid.area
         self.inverse_step = 0.0
         self.closes, self.turns = False, 0.0
-        empty = np.ones(shape) if fills else np.ones((0, 0))
+        empty = np.ones(shape) if kind == OIL else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
         self.line: RuptureLine | None = None
         self.rupture = RuptureLine(shape)
         self.oil_line: OilLine | None = None
-        self.straight = straight(shape) if fills else None
+        self.density: DensityField | None = None
+        self.instant = False
+        self.straight = straight(shape) if kind == OIL else None
         self.linked = grid.link_x != 0.0
 
     def see_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
@@ -85,8 +93,28 @@ class FilmSystem:
 
     @property
     def curve(self) -> Curve | None:
-        """Of a film that conserves mass: where its edge lies."""
+        """Where the edge lies of a film that `exudyn_ehd.film.cavitation.solve` solves."""
         return self.straight if self.oil_line is None else self.oil_line.fields
+
+    def take_density(self, density: DensityField) -> None:
+        """From now on the density follows the pressure."""
+        self.density, shape = density, self.H.shape
+        if self.kind != OIL:
+            self.fill, self.mass_old = np.ones(shape), np.ones(shape)
+            self.straight = straight(shape)
+        if self.kind == RUPTURE and self.line is not None:
+            line = Line(*self.line.block)
+            self.straight = self.straight._replace(f=line.f, k=line.k, whole=line.whole, s=line.s)
+
+    @property
+    def in_cells(self) -> bool:
+        """Whether the film may end inside its cells."""
+        return self.oil_line is not None or self.line is not None
+
+    @property
+    def floor(self) -> float:
+        """Scaled pressure below which the density stays."""
+        return self.cavity_pressure if self.kind >= CLIPPED else -np.inf
 
     @property
     def coefficients(self) -> Coefficients:

@@ -108,6 +108,33 @@ class DowsonHigginson:
         return CompressibleLaw(self, viscosity)
 
 
+class DensityField:
+    """Density at the vertices of a film; kernels are in `exudyn_ehd.film.lubricant.density_field`.
+
+    Attributes
+    ----------
+    scale : float
+        Pa per unit of the scaled pressure.
+    rho, rho_P : (n, m) arrays
+        Density over that at ambient pressure, of the last solution, and its derivative when last factored.
+    """
+
+    def __init__(self, law: CompressibleLaw, shape: tuple[int, int]) -> None:
+        self.law, self.scale = law, 1.0
+        self.rho, self.rho_P = np.ones((2, *shape))
+        self.known = np.full((6, self.rho.size), np.nan)
+
+    def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray]:
+        """All of it as kernels take it; ``floor``: scaled pressure below which the density stays."""
+        return self.scale, floor, self.law.kernel_table, self.known, self.rho, self.rho_P
+
+    def at(self, pressure: float) -> float:
+        """Density over that at ambient pressure at a scaled transformed pressure."""
+        p, ratio, slope = np.zeros((3, 1, 1))
+        self.law.inverse(np.array([[pressure * self.scale]]), p, ratio, slope)
+        return float(self.law.density.ratio(p[0, 0]))
+
+
 class CompressibleLaw(HermiteTable):
     """q(p) of a density law together with a viscosity's, and their inverse; a pressure law for a bearing model.
 

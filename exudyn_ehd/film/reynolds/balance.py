@@ -46,17 +46,20 @@ def terms_of(f, fixed):
 
 
 @njit(cache=True)
-def film_terms(film, inverse_step, mass_old):
-    """`FilmTerms` of the mass-conserving film of `Coefficients`; ``inverse_step``: 1 / time step since the
-    content ``mass_old`` (n, m), 0 of a steady film."""
-    grow, kept, nothing = np.empty(film.H.shape), np.empty(film.H.shape), np.zeros(film.H.shape)
+def film_terms(film, since):
+    """`FilmTerms` of a film of `Coefficients`; ``since``: (1 / time step since the content, 0 of a steady film; that
+    content (n, m); whether the step stands for an instant, whose storage keeps the volume)."""
+    grow, kept, known, nothing = film.H.copy(), film.H.copy(), np.zeros(film.H.shape), np.zeros(film.H.shape)
+    inverse_step, mass_old, instant = since
     n, m = film.H.shape
     for i in range(n):
         for j in range(m):
             grow[i, j] = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
             kept[i, j] = -inverse_step * mass_old[i, j] if inverse_step > 0.0 else 0.0
+    if instant:
+        known, kept = kept, nothing
     return FilmTerms(
-        film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.prompt, film.late, film.fixed
+        film.kx, film.kz, film.fx, film.fz, grow, known, kept, film.area, film.prompt, film.late, film.fixed
     )
 
 
@@ -99,7 +102,8 @@ def _link_flows(k, f, P_a, P_b, fill_a, fill_b, rho_a, rho_b, out):
     for c in range(out.size):
         couette = f[c]
         if fill_a is not None:
-            couette *= fill_a[c] if f[c] >= 0.0 else fill_b[c]
+            a, b = fill_a[c], fill_b[c]
+            couette *= a if couette >= 0.0 else b
         if rho_a is not None:
             couette *= 0.5 * (rho_a[c] + rho_b[c])
         out[c] = k[c] * (P_a[c] - P_b[c]) + couette
@@ -199,17 +203,24 @@ def violation(r, P, fixed, pc, complementary):
 def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, prompt, out):
     """Derivatives of the flows over links a -> b at fixed gaps to the unknown
     at one end, b (side 1) or a (-1); by: of its density."""
+    # two loops, as one over so many arrays would not be vectorised
     for c in range(out.size):
-        half, mean = 0.5 * f[c], f[c]
-        if fill_a is not None:
-            half *= fill_a[c] if f[c] >= 0.0 else fill_b[c]
         slope = -side * k[c]
         if rho_a is not None:
-            mean *= 0.5 * (rho_a[c] + rho_b[c])
+            half = 0.5 * f[c]
+            if fill_a is not None:
+                a, b = fill_a[c], fill_b[c]
+                half *= a if half >= 0.0 else b
             slope += half * by[c]
-        if full is not None:
-            slope = slope if full[c] else (mean * prompt[c] if side * f[c] < 0.0 else 0.0)
         out[c] = slope
+    if full is not None:
+        for c in range(out.size):
+            leaves = f[c] * prompt[c]
+            if rho_a is not None:
+                leaves *= 0.5 * (rho_a[c] + rho_b[c])
+            leaves = leaves if side * leaves < 0.0 else 0.0
+            slope = out[c]
+            out[c] = slope if full[c] else leaves
 
 
 @njit(cache=True, fastmath=_FAST)

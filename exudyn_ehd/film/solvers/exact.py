@@ -104,9 +104,10 @@ class NewtonFilmSolver(FilmSolver, abc.ABC):
         """
         assert self.law is not None
         inside = self.law.inverse(self.system.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out)
-        p_out /= self.pressure_scale
         ratio_P_out *= self.pressure_scale
-        np.divide(ratio_out, self.rho, out=p_P_out)
+        # pressures that were cut off inside the cells are others than those that the film was solved for
+        np.divide(ratio_out, self.law.density.ratio(p_out) if self.closure.clips else self.rho, out=p_P_out)
+        p_out /= self.pressure_scale
         return inside
 
     def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:

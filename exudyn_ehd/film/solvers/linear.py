@@ -9,10 +9,11 @@ import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.elrod_adams import factor_solution
 from exudyn_ehd.film.cavitation.line_steps import prolong_set
 from exudyn_ehd.film.cavitation.oil_line import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
+from exudyn_ehd.film.cavitation.solve import factor_solution
+from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.cavitation.system import FilmSystem
@@ -68,7 +69,8 @@ class FilmSolver:
         shape = grid.shape
         self.grid, self.closure, self.squeeze = grid, closure, squeeze
         self.flow_x, self.area = float(circumferential_pressure_flow), grid.area
-        self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
+        ruptures = RUPTURE if np.isfinite(closure.cavity_pressure) else FULL
+        self.system = FilmSystem(grid, OIL if closure.conserves_mass else CLIPPED if closure.clips else ruptures)
         self.H, self.HF, self.H_t = self.system.H, self.system.HF, self.system.H_t
         self.line: RuptureLine | None = None
         self.oil_line: OilLine | None = None
@@ -84,6 +86,8 @@ class FilmSolver:
         # whether there is a cavity, and whether no unknown pressure is below the cavity's
         self.ruptures = bool(np.isfinite(closure.cavity_pressure))
         self.complementary = self.ruptures and not closure.clips
+        # density over that at ambient pressure (n, m), of the last solution
+        self.rho = self.ones
         # derivative of what `keep` returned to the gap
         self.follows = self.nothing
         self.coarse: FilmSolver | None = None
@@ -186,7 +190,7 @@ class FilmSolver:
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
         s = self.system
         s.see_motion(mass_old is None, self.H_t, self.vx, self.vz)
-        self.instant = mass_old is not None and step <= 0.0
+        self.instant = s.instant = mass_old is not None and step <= 0.0
         if mass_old is None:
             s.inverse_step = 0.0
         elif self.instant:
@@ -306,8 +310,8 @@ class FilmSolver:
         if fills is None:
             contract_line(lam, self.line_gradients(), cell, face, rate, speed)
         else:
-            store = s.area * (s.inverse_step * s.H if s.inverse_step > 0.0 else s.H_t)
-            for weighed, line in zip((weigh_flows(lam, s.coefficients), lam * store), fills, strict=True):
+            store = s.area * self.rho * (s.inverse_step * s.H if s.inverse_step > 0.0 else s.H_t)
+            for weighed, line in zip((weigh_flows(lam, s.coefficients, self.rho), lam * store), fills, strict=True):
                 contract_line(weighed, line, cell, face, rate, speed)
         return Sensitivities(cell, face, rate, speed)
 
@@ -319,7 +323,9 @@ class FilmSolver:
         fills = self.fill_gradients()
         if fills is not None and self.oil_line is not None:
             w, y = self.work, self.system
-            return self.oil_line.balance_gradients(fills, y.coefficients, y.inverse_step, w.order[: w.count])
+            return self.oil_line.balance_gradients(
+                fills, y.coefficients, self.rho, y.inverse_step, w.order[: w.count]
+            )
         if self.line is None:
             return None
         return self.line.gradients(
@@ -383,6 +389,12 @@ class FilmSolver:
         by_rate = self.area * self.follows
         return by_rate, (content - by_rate) * s.inverse_step
 
+    @property
+    def since(self) -> tuple[float, np.ndarray, bool]:
+        """1 / time step since the content that the storage is taken from, that content, and whether it is an instant."""
+        s = self.system
+        return s.inverse_step, s.mass_old, s.instant
+
     def flow_pressures(self) -> tuple[np.ndarray, np.ndarray]:
         """Pressures (n, m) that drive flows at prescribed vertices, and where the film is full, see `edge_flows`."""
         return flow_pressures(self.system, self.work.active, self.closure.clips)
@@ -395,7 +407,7 @@ class FilmSolver:
         s, conserves_mass = self.system, self.closure.conserves_mass
         balance = np.empty(self.grid.shape)
         if conserves_mass:
-            film_balance(s.pressure, s.fill, None, film_terms(s.coefficients, s.inverse_step, s.mass_old), balance)
+            film_balance(s.pressure, s.fill, None, film_terms(s.coefficients, self.since), balance)
         else:
             vertex_balance(self.flow_pressures()[0], s.kx, s.kz, s.b, balance)
         if ended and self.complementary and not conserves_mass:

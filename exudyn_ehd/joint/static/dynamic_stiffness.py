@@ -92,17 +92,17 @@ class FilmResponse:
             of = s.elements if isinstance(s, NonlinearFilmSolver) else s
             rho, rho_P = of.rho, of.rho_P
         else:
-            slopes, terms = np.zeros((5, w.order.size)), film_terms(s.system.coefficients, 0.0, s.system.mass_old)
+            slopes, terms = np.zeros((5, w.order.size)), film_terms(s.system.coefficients, s.since)
             film_slopes(s.fill, w.active | film.grid.fixed, None, None, terms, slopes)
             if s.oil_line is not None:
-                add_curve(s.oil_line.fields, terms, slopes)
+                add_curve(s.oil_line.fields, terms, None, slopes)
             self.matrix = _matrix(slopes, number, film.grid.shape[1])
         if rho is None or rho_P is None:
             store = np.where(w.active.reshape(-1), 0.0, store)
         else:
             store = store * np.where(w.active, rho_P, rho).reshape(-1)
         if s.oil_line is not None:
-            store += (s.area * s.H * s.oil_line.rise).reshape(-1)
+            store += (s.area * s.H * s.rho * s.oil_line.rise).reshape(-1)
         if liner is not None:
             rise = s.area * s.fill * liner.gap_slopes.H_P * (1.0 if rho is None else rho)
             store += np.where(w.active, rise, 0.0).reshape(-1)
@@ -114,7 +114,7 @@ class FilmResponse:
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count))
         fills, self.contents = true_fills(film), None
         if fills is not None:
-            self.contents = weigh_fills(fills, s.area * s.H, number)
+            self.contents = weigh_fills(fills, s.area * s.H * s.rho, number)
             by_fill = line_by_motion(film, self.contents, w.count) * scale
         # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
         self.by_pose, self.by_rate = by_motion[:2].copy(), by_motion[4:6]
