@@ -1,8 +1,7 @@
-"""Newton's matrix, steps and sets of a film, on the elements of a liner or between rigid surfaces; see `newton`.
+"""Newton's matrix, steps and sets of a film, on the elements of a liner; see `newton`.
 
 What is handed over together travels in plain tuples: a tuple with names takes numba longer to look at than these
-kernels take to run. ``u`` and ``trial`` are (P, fill, full), fill and full None where no oil is counted; ``elements``
-is None between rigid surfaces; ``matrix`` is (slopes, number, factored), ``factored`` (order, x, lower, upper, 1 /
+kernels take to run. ``u`` and ``trial`` are (P, fill, full), fill and full None where no oil is counted; ``matrix`` is (slopes, number, factored), ``factored`` (order, x, lower, upper, 1 /
 diagonal).
 """
 
@@ -36,8 +35,6 @@ LARGEST_THICKENING = 4.0
 CURVED = 10.0
 # Share of a gap that a step may use up, so that it stays open.
 CLOSING = 0.8
-# `take_step` of an oil whose law has no end.
-ENDLESS = (np.inf, np.inf)
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -45,8 +42,8 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 def factor_film(u, density, terms, fixed, liner, matrix, active, thin, line):
     """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width).
 
-    ``density``: (rho, drho/dP), None of a constant one; ``liner``: (gap slopes, load, rates, beta, by)
-    of one, ``by`` of `link_gradients`; ``thin``: `ShearThinning.response` of conductances that follow the pressure,
+    ``density``: (rho, drho/dP), None of a constant one; ``liner``: (gap slopes, load, rates, beta, by),
+    ``by`` of `link_gradients`; ``thin``: `ShearThinning.response` of conductances that follow the pressure,
     or None; ``line`` of `line_kernels`.
     """
     P, fill, full = u
@@ -64,9 +61,8 @@ def factor_film(u, density, terms, fixed, liner, matrix, active, thin, line):
     film_slopes(fill, full, rho, rho_P, film, slopes)
     if thin is not None:
         add_tangents(thin[0], film.kx, film.kz, full, slopes)
-    if liner is not None:
-        gap_slopes, load, rates, beta, by = liner
-        add_gap_slopes(P, fill, full, rho, film, slopes_of(gap_slopes), load_of(load), Rates(*rates), beta, by, slopes)
+    gap_slopes, load, rates, beta, by = liner
+    add_gap_slopes(P, fill, full, rho, film, slopes_of(gap_slopes), load_of(load), Rates(*rates), beta, by, slopes)
     if is_there(line):
         add_line(line, active, slopes[4])
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
@@ -139,9 +135,8 @@ def _sizes(P_now, sides, elements, order, steps, count, base, least):
     P = P_now.reshape(-1)
     if sides is not None:
         full = sides.reshape(-1)
-    if elements is not None:
-        load, gap, yields = load_of(elements[0]), elements[1][0].reshape(-1), elements[2][0].reshape(-1)
-        p, drive, slope = load.p.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)
+    load, gap, yields = load_of(elements[0]), elements[1][0].reshape(-1), elements[2][0].reshape(-1)
+    p, drive, slope = load.p.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)
     largest = filled = 0.0
     peak = pressing = least
     share = 1.0
@@ -152,22 +147,18 @@ def _sizes(P_now, sides, elements, order, steps, count, base, least):
         if sides is not None and not full[c]:
             filled = max(filled, abs(x))
             continue
-        if elements is None:
-            over = P[c] - base
-            largest = max(largest, abs(x))
-        else:
-            over = p[c] + (P[c] - drive[c]) - base
-            pressing = max(pressing, over)
-            largest = max(largest, abs(x * slope[c]))
-            closing = -x * yields[c]
-            if closing > CLOSING * gap[c]:
-                share = min(share, CLOSING * gap[c] / closing)
+        over = p[c] + (P[c] - drive[c]) - base
+        pressing = max(pressing, over)
+        largest = max(largest, abs(x * slope[c]))
+        closing = -x * yields[c]
+        if closing > CLOSING * gap[c]:
+            share = min(share, CLOSING * gap[c] / closing)
         peak = max(peak, abs(over))
     return largest, filled, peak, pressing, share
 
 
 @njit(cache=True)
-def newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial, line, taken):
+def newton_step(residual, u, elements, factored, count, width, kinds, levels, trial, line, taken):
     """Newton's step of the numbered unknowns with the factor at hand; returns
     the entries of `newton.Step`, and as `take_step`.
 
@@ -179,7 +170,7 @@ def newton_step(residual, u, elements, end, factored, count, width, kinds, level
     Parameters
     ----------
     elements : (load, gaps, gap slopes), as fields
-    end, kinds : as in `take_step`; (clips, whether vertices at pc are no unknowns)
+    kinds : (clips, whether vertices at pc are no unknowns)
     levels : (pc, pc on the elements, least peak, opening, least suction)
     line, taken : that of `line_kernels`, and steps before
     """
@@ -193,7 +184,7 @@ def newton_step(residual, u, elements, end, factored, count, width, kinds, level
         largest = max(largest, CURVED * along_line * np.sqrt(peak))
     unit = min(pressing, opening) if clips else peak
     share = 1.0 if clips else share
-    changes = take_step(u, elements, end, factored, count, share, pc, chooses, max(SUCTION * peak, suction), trial)
+    changes = take_step(u, elements, factored, count, share, pc, chooses, max(SUCTION * peak, suction), trial)
     return max(largest / peak, filled), max(largest / unit, filled), peak, share, changes
 
 
@@ -213,15 +204,10 @@ def _moved(P, x, drive, slope, bend):
 
 
 @njit(cache=True, inline="always")
-def take_step(u, elements, end, factored, count, share, pc, chooses, tolerance, trial):
+def take_step(u, elements, factored, count, share, pc, chooses, tolerance, trial):
     """Trial state after ``share`` of the step, projected on what a closure
-    allows; returns how many vertices rupture, fill up or cross the end of the oil's law.
-
-    ``end``: (pressure where the law ends, share of the way there that a step may cover, beyond 1: all of it) between
-    rigid surfaces. Towards it the density climbs ever more steeply, beyond it is taken as constant, so that whole
-    steps across it lead far at first, but can bounce back for ever.
-    """
-    return _take(u[0], u[1], u[2], elements, end, factored, count, share, pc, chooses, tolerance, *trial)
+    allows; returns how many vertices rupture or fill up."""
+    return _take(u[0], u[1], u[2], elements, factored, count, share, pc, chooses, tolerance, *trial)
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -235,7 +221,7 @@ def copy_field(field, out):
 
 @njit(cache=True)
 def _take(
-    P_now, fill_now, sides, elements, end, factored, count, share, pc, chooses, tolerance, P_out, fill_out, full_out
+    P_now, fill_now, sides, elements, factored, count, share, pc, chooses, tolerance, P_out, fill_out, full_out
 ):  # fmt: skip
     order, steps = factored[0], factored[1]
     copy_field(P_now, P_out)
@@ -244,11 +230,8 @@ def _take(
     P = P_out.reshape(-1)
     if sides is not None:
         fill, full, was = fill_out.reshape(-1), full_out.reshape(-1), sides.reshape(-1)
-    if elements is not None:
-        load = load_of(elements[0])
-        drive, slope, bend = load.drive.reshape(-1), load.slope.reshape(-1), load.bend.reshape(-1)
-    if elements is None:
-        highest, reach = end
+    load = load_of(elements[0])
+    drive, slope, bend = load.drive.reshape(-1), load.slope.reshape(-1), load.bend.reshape(-1)
     lowest = pc if chooses or sides is not None else -np.inf
     changes = 0
     for r in range(count):
@@ -261,15 +244,7 @@ def _take(
                 changes += 1
             fill[c] = f
             continue
-        if elements is None:
-            p = P[c] + x
-            if P[c] < highest <= p:
-                p = min(p, P[c] + reach * (highest - P[c]))
-                changes += 1
-            elif p < highest <= P[c]:
-                changes += 1
-        else:
-            p = _moved(P[c], x, drive[c], slope[c], bend[c])
+        p = _moved(P[c], x, drive[c], slope[c], bend[c])
         if sides is not None and p < pc - tolerance:
             full[c] = False
             changes += 1

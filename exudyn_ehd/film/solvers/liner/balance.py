@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.solve import LARGEST_DEFICIT
 from exudyn_ehd.film.reynolds.links import FilmState
-from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
+from exudyn_ehd.film.solvers.compiled import solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
@@ -19,7 +19,6 @@ from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step
 from exudyn_ehd.film.solvers.steps import (
     BALANCED,
-    ENDLESS,
     LEAST_DEFLECTION,
     LEAST_PRESSURE,
     ROUNDED,
@@ -32,6 +31,9 @@ from exudyn_ehd.film.solvers.steps import (
     take_over,
     take_step,
 )
+
+# Pa: a film at rest has no pressures but rounding, and no share of those would ever be small.
+SMALLEST_PEAK = 1e-6
 
 
 class LinerBalance(LinerFilm):
@@ -90,8 +92,8 @@ class LinerBalance(LinerFilm):
         f, w, start = self.film, self.film.work, self.reusable and self.film.work.warm
         self.reusable = self.exact = self.known_slopes = False
         ok, steps, self.exact, w.count, w.width = solve(
-            self.sides(self.u),
-            self.sides(self.trial),
+            self.u.P,
+            self.trial.P,
             f.grid.fixed,
             (f.system.cavity_pressure, f.vx, f.vz, self.beta),
             (self.clips, self._chooses()),
@@ -101,7 +103,6 @@ class LinerBalance(LinerFilm):
                 self.load_fields, self.rigid, self.true_gap, self.deflection_old, self.gap_fields, self.slope_fields,
                 self.metric, self.known, tuple(self.rates), self.by,
             ),
-            None,
             self.matrix,
             self.residual,
             w.active,
@@ -171,7 +172,6 @@ class LinerBalance(LinerFilm):
             self.residual,
             self.sides(self.u),
             (self.load_fields, self.gap_fields, self.slope_fields),
-            ENDLESS,
             self.matrix[2],
             w.count,
             w.width,
@@ -191,7 +191,6 @@ class LinerBalance(LinerFilm):
             take_step(
                 self.sides(self.u),
                 (self.load_fields, self.gap_fields, self.slope_fields),
-                ENDLESS,
                 self.matrix[2],
                 self.film.work.count,
                 share,
