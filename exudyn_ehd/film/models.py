@@ -222,9 +222,9 @@ class LongSolver(FilmSolver):
         """As `FilmSolver.solve`; vz is not used."""
         return super().solve(vx, 0.0, cavity_pressure, mass_old, step)
 
-    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
+    def link_derivatives(self) -> np.ndarray:
         """As `FilmSolver.link_derivatives`, with no flow by vz."""
-        out = super().link_derivatives(rho)
+        out = super().link_derivatives()
         out[3] = 0.0
         return out
 

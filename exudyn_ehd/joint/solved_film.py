@@ -28,7 +28,6 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
@@ -167,8 +166,7 @@ class FilmParts:
     grid: FilmGrid
     solver: FilmSolver
     liner: NonlinearFilmSolver | None
-    compressible: CompressibleFilmSolver | NonlinearFilmSolver | None
-    nonlinear: CompressibleFilmSolver | NonlinearFilmSolver | None
+    compressible: FilmSolver | None
     supply: SupplyMap | None
     contacts: ContactFields | None
     limiter: LimiterFields | None

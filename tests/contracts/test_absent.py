@@ -59,8 +59,6 @@ EFFECTS = {
         (
             "film.lubricant.density",
             "film.lubricant.density_field",
-            "film.solvers.compiled",
-            "film.solvers.steps",
             "film.solvers.compressible",
         ),
         oil(density_law=ehd.DowsonHigginson()),
@@ -161,7 +159,7 @@ SHARED = {
     "loads",
     "lubricant.lubricant",
     "reynolds.links",
-    "solvers.exact",
+    "solvers.answers",
     "solvers.edge_flows",
     "solvers.linear",
     "reynolds.stepped_gap",

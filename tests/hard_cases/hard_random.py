@@ -33,7 +33,7 @@ import numpy as np
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
-from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
+from exudyn_ehd.film.reynolds.balance import film_balance
 from exudyn_ehd.film.reynolds.links import vertex_balance
 from exudyn_ehd.joint.model.build import build_model
 
@@ -221,7 +221,7 @@ def balance_error(model):
     y = s.system
     out = np.empty(g.shape)
     if closure.conserves_mass:
-        film_balance(y.pressure, y.fill, None, film_terms(y.coefficients, y.inverse_step, y.mass_old), out)
+        film_balance(y.pressure, y.fill, None, model.solver.terms, out)
     else:
         vertex_balance(y.linear_pressure, y.kx, y.kz, y.b, out)
     P, joins = y.linear_pressure, 0.0

@@ -18,8 +18,6 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from exudyn_ehd.film.banded.many_sides import solve_in_tiles
-from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_in_cells, clip_pressure, solve_linear
 from exudyn_ehd.film.cavitation.solve import follow, solve_system
@@ -53,33 +51,9 @@ class Closure(Protocol):
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
 
-    def adjoint(self, work: Workspace, rhs: np.ndarray) -> None: ...
-
-    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None: ...
-
-    def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
-
-
-class SymmetricClosure:
-    """Closures whose last solution has a symmetric factor."""
-
-    line_in_cells: bool | None = False
-
-    def adjoint(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the transposed system for every row of rhs (k, count), in place."""
-        solve_ldl(work.band, work.inv_diag, work.count, work.width, rhs)
-
-    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the transposed system for every column of tiles rhs, in place."""
-        solve_in_tiles(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
-
-    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the system of the last solution for rhs (count,), in place."""
-        solve_ldl(work.band, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
-
 
 @dataclass(frozen=True, kw_only=True)
-class FullSommerfeld(SymmetricClosure):
+class FullSommerfeld:
     """No cavitation: the film carries tension.
 
     For comparison with closed forms and for fully flooded, pressurised films.
@@ -97,6 +71,7 @@ class FullSommerfeld(SymmetricClosure):
     cavity_shear = 1.0
     conserves_mass = False
     clips = False
+    line_in_cells = False
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Solve on all free vertices."""
@@ -104,7 +79,7 @@ class FullSommerfeld(SymmetricClosure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gumbel(SymmetricClosure):
+class Gumbel:
     """Half-Sommerfeld (Gümbel) condition: solve the linear film, then cut off what lies below the cavity pressure.
 
     Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It
@@ -120,7 +95,7 @@ class Gumbel(SymmetricClosure):
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
     line_in_cells : bool
         True: pressures act up to where the linear one is the cavity's, inside the cells of the grid (order two in
-        stiffness and damping); not with elastic liners, density and shear laws. False: up to the vertex in front of it.
+        stiffness and damping); not with elastic liners and shear laws. False: up to the vertex in front of it.
 
     Examples
     --------
@@ -153,7 +128,7 @@ class Gumbel(SymmetricClosure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SwiftStieber(SymmetricClosure):
+class SwiftStieber:
     """Swift-Stieber (Reynolds) condition: pressure and its gradient vanish at the rupture line.
 
     The standard closure for steadily loaded bearings, and cheaper than `Gumbel` here because only the unbroken film is

@@ -22,9 +22,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.film.banded.assemble import dense_band
-from exudyn_ehd.film.banded.many_sides import solve_in_tiles
-from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import check_cavity_pressure
 from exudyn_ehd.film.cavitation.solve import follow, solve_system
@@ -53,8 +50,8 @@ class ElrodAdams:
     cavity_pressure : float
         Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
     line_in_cells : bool
-        True: the film ruptures where it does, inside the cells of the grid; not with elastic liners, density and shear
-        laws; see `exudyn_ehd.film.cavitation.oil_line`. False: on their vertices.
+        True: the film ruptures where it does, inside the cells of the grid; not with elastic liners and shear laws; see
+        `exudyn_ehd.film.cavitation.oil_line`. False: on their vertices.
 
     Source
     ------
@@ -99,21 +96,3 @@ class ElrodAdams:
             steps += count
         work.warm = status is Status.CONVERGED
         return status, steps
-
-    def adjoint(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the transposed system for every row of rhs (k, count), in place."""
-        solve_lu_transposed(*_bands(work), work.inv_diag, work.count, work.width, rhs)
-
-    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the transposed system for every column of tiles rhs, in place."""
-        lower, upper = _bands(work)
-        solve_in_tiles(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
-
-    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the system of the last solution for rhs (count,), in place."""
-        solve_lu(*_bands(work), work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
-
-
-def _bands(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
-    return dense_band(work.lower, work.count, work.width), dense_band(work.upper, work.count, work.width)
-

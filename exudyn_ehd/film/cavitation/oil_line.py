@@ -217,8 +217,8 @@ def _outflow_gradients(places, by_out, H, HF, slopes, vx, vz, mesh, by):
 def add_curve(curve, terms, density, slopes):
     """Add to the derivatives (5, n m) of flows and storage what the fills at the line follow the pressure by.
 
-    ``density`` (n, m), None: 1; ``slopes``: of `exudyn_ehd.film.reynolds.balance.film_slopes`, the line's vertices among
-    the full ones.
+    ``density`` (n, m), None: 1; ``slopes``: of `exudyn_ehd.film.reynolds.balance.film_slopes`, the line's vertices
+    among the full ones.
     """
     m, size = terms.kx.shape[1], terms.kx.size
     along, across, area, grow = (

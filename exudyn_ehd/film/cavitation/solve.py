@@ -24,6 +24,7 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_one
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_terms
+from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.cavitation.states import (
     FULL,
     OIL,
@@ -36,7 +37,6 @@ from exudyn_ehd.film.cavitation.states import (
     start_states,
     take_sink,
 )
-from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row, imbalance
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, know_at
@@ -50,8 +50,6 @@ MOST_STEPS = 60
 LEFT, SETTLED = 1e-13, 1e-8
 # Share that steps with an older factor have to shrink to, for another one: more takes longer than a factor of its own.
 REUSABLE = 0.01
-# Steps after which even balances are enough: pressures of a film at rest are rounding, and never settle.
-PATIENT = 8
 # Balance of a vertex over the largest flow: more is no rounding. Over the largest flow that drives the film: more is
 # that of a singular matrix.
 EVEN, BALANCED = 1e-13, 1e-8
@@ -139,7 +137,8 @@ def _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor,
                 set_states(film, carried, curve, full, u, P, fill)
             if in_cells:
                 take_sink(curve, rest)
-        if done or step > PATIENT:
+        # pressures of a film at rest are rounding, and never settle
+        if done or step + 1 == MOST_STEPS:
             of_drive, of_flows = imbalance(film, terms, P, rest, full, kind == RUPTURE)
             if of_flows <= EVEN:
                 sound = settle_states(film, kind, full, P, fill) > -LARGEST_DEFICIT and of_drive <= BALANCED

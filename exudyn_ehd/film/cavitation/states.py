@@ -1,4 +1,4 @@
-"""One unknown u per vertex: pressure and film fraction of a mass-conserving film, with their derivatives.
+"""One unknown u per vertex: pressure and film fraction of a film, with their derivatives.
 
 Where ``u >= 0`` the vertex is full, where ``u <= 0`` it is in the cavity; both sides meet at u = 0. With the pressure P
 above the cavity's and the curve of `exudyn_ehd.film.cavitation.oil_line` that a vertex may have (``whole``, ``drop``;
@@ -13,6 +13,10 @@ The vertex holds as much, but on its curve ``1 - drop (1 - u / FILLED)^2`` up to
 rise with u and have continuous derivatives but at u = 0. Newton's matrix is that of
 `exudyn_ehd.film.reynolds.balance` in P at full vertices and in the fill at others, and its steps become those of u by
 dP/du: a scaling of columns.
+
+A film of Swift and Stieber has drop = 0, and leaves ``N = f (1 - u)^2 / 2`` of
+`exudyn_ehd.film.cavitation.rupture_line` in the balance of a vertex on its curve; in its cavity nothing is unknown. A
+film that does not rupture has P = u everywhere.
 """
 
 from __future__ import annotations
@@ -28,8 +32,7 @@ LEAST = 1e-8
 ROUNDING = 1e-12
 
 
-# Films without cavitation, films whose pressure is cut off afterwards, those of Swift and Stieber, and those that conserve
-# their mass.
+# Kinds of films: without cavitation, with pressures cut off afterwards, of Swift and Stieber, with mass conserved.
 FULL, CLIPPED, RUPTURE, OIL = 0, 1, 2, 3
 
 
@@ -80,8 +83,8 @@ def set_states(film, late, curve, full, u, P, fill):
 def join_states(film, curve, rest, full, u):
     """Vertices of a film of Swift and Stieber at which oil piles up join it; returns how many do.
 
-    At the line they meet their own balances between given neighbours: ``g u^2 / 2 + u = e``. ``rest`` (n, m): what leaves
-    them less what comes in, without N.
+    At the line they meet their own balances between given neighbours: ``g u^2 / 2 + u = e``. ``rest`` (n, m): what
+    leaves them less what comes in, without N.
     """
     known, sets, x, leaves, joined = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1), rest.reshape(-1), 0
     along, across, m = film.kx.reshape(-1), film.kz.reshape(-1), u.shape[1]
@@ -114,13 +117,13 @@ def add_sink(curve, slopes):
 
 @njit(cache=True)
 def move_states(kind, density, curve, order, count, dx, full, u, P):
-    """Take Newton's step dx (count,), of pressures where ``full``, else of fills; a vertex that crosses u = 0, or the end
-    of its oil's law, stops there and changes its side.
+    """Take Newton's step dx (count,), of pressures where ``full``, else of fills.
 
-    ``density``: (weight of its changes as those of a place, its slopes (n, m), pressure where its law ends).
+    A vertex that crosses u = 0, or the end of its oil's law, stops there and changes its side. ``density``: (weight of
+    its changes as those of a place, its slopes (n, m), pressure where its law ends).
 
-    Returns how many do, the largest change of a pressure over the peak, of a place on a curve, of a fill, that of a place
-    on a curve alone, and the same over the place.
+    Returns how many vertices stop, the largest change of a pressure over the peak, of a place on a curve, of a fill,
+    that of a place on a curve alone, and the same over the place.
     """
     sets, x, pressures, peak, last_peak = full.reshape(-1), u.reshape(-1), P.reshape(-1), 0.0, 0.0
     weight, end, rho_P = density[0], density[2], density[1].reshape(-1)

@@ -52,7 +52,10 @@ def has_unfed_row(P, H, fixed, turns, pc):
 @njit(cache=True)
 def imbalance(film, terms, P, balance, full, ruptures):
     """Return the largest balance (n, m) of an unknown vertex over the largest flow that drives the film, and over the
-    largest flow that it has; P (n, m) above the cavity's. Of a film that ``ruptures`` ``full`` ones alone are unknown."""
+    largest flow that it has; P (n, m) above the cavity's.
+
+    Of a film that ``ruptures`` without a memory the ``full`` vertices alone are unknown.
+    """
     worst = drive = most = 0.0
     n, m = P.shape
     for i in range(n):

@@ -1,5 +1,5 @@
-"""`newton.newton` compiled as a whole for a film on a liner without further effects, so fast that calls from Python would
-cost half as much again."""
+"""`newton.newton` compiled as a whole for a film on a liner without further effects, so fast that calls from Python
+would cost half as much again."""
 
 import numpy as np
 from numba import njit

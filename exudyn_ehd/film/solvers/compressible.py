@@ -16,23 +16,21 @@ the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to t
 1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
 out likewise. A flooded start holds oil of ambient density, so that its film builds up the pressure over some steps.
 
-Swift-Stieber's rupture line lies inside the cells as `exudyn_ehd.film.solvers.liner.line` has it.
-
-Oil that no pressure of the law's range carries has no film.
+Rupture lines lie inside the cells where the closure says so, with f and the pressure at s = 1 (symbols of
+`exudyn_ehd.film.cavitation.rupture_line` and `exudyn_ehd.film.cavitation.oil_line`) times the density of oil at the
+cavity's pressure. All films are found by `exudyn_ehd.film.cavitation.solve`. Oil that no pressure of the law's range
+carries has no film.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_terms
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.status import Status
 
@@ -40,7 +38,7 @@ from exudyn_ehd.status import Status
 AT_THE_END = 1.0 - 1e-9
 
 
-class CompressibleFilmSolver(NewtonFilmSolver):
+class CompressibleFilmSolver(FilmSolver):
     """`FilmSolver` with a density that follows the pressure; flows are mass flows over the density at ambient pressure.
 
     Parameters
@@ -69,28 +67,21 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         flux_effects: tuple[FluxEffect, ...] = (),
     ) -> None:
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
-        self.law = law
+        self.law, self.symmetric = law, False
         self.edge: FilmLine | None = None
         if self.line is not None:
             self.line = self.system.line = self.edge = FilmLine(grid.shape)
             self.edge.flux = self.flux
         self.density = DensityField(law, grid.shape)
-        self.rho = self.density.rho
+        self.rho, self.rho_P = self.density.rho, self.density.rho_P
         self.system.take_density(self.density)
-
-    @property
-    def pressure_scale(self) -> float:
-        return self.density.scale
-
-    @pressure_scale.setter
-    def pressure_scale(self, value: float) -> None:
-        self.density.scale = value
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
         """Solve for the gaps now stored; parameters as for `FilmSolver.solve`,
         ``mass_old`` the old value of rho fill H."""
+        self.density.scale = self.pressure_scale
         if mass_old is not None and step <= 0.0:
             # What an instant keeps is the volume: a full film follows the gap
             # with the density that its pressure gives it.
@@ -101,19 +92,14 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         end, steps, P = AT_THE_END * self.law.kernel_table.highest / self.pressure_scale, 0, self.system.linear_pressure
         was_warm = self.work.warm
         status, steps = super().solve(vx, vz, cavity_pressure, mass_old, step)
-        if was_warm and (P >= end).any():
+        if was_warm and (end <= P).any():
             # beyond the law's range the density stays what it is at its end, which makes other films
             self.forget()
             status, count = super().solve(vx, vz, cavity_pressure, mass_old, step)
             steps += count
-        if status is Status.NOT_CONVERGED and (P >= end).any():
+        if status is Status.NOT_CONVERGED and (end <= P).any():
             status = Status.NO_PRESSURE
         return status, steps
-
-    @property
-    def film(self) -> FilmTerms:  # type: ignore[override]
-        """Of the balances."""
-        return film_terms(self.system.coefficients, self.since)
 
     def _set_links(self) -> None:
         super()._set_links()
@@ -121,17 +107,3 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         if self.edge is not None:
             self.edge.density = self.density.at(s.cavity_pressure)
             self.edge.take((self.H, self.HF), s.kx, s.b, self.grid.fixed)
-
-    def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
-        """L and U of Newton's matrix at the solution, factored if the last one was before."""
-        w = self.work
-        factor_solution(self.system, w)
-        return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
-
-    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
-        """Derivatives (5, n, m) of the links' mass flows with respect to their gaps and the speeds."""
-        return super().link_derivatives(self.rho)
-
-    def storage_weights(self, rho: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
-        return super().storage_weights(self.rho)

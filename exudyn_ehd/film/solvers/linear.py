@@ -18,11 +18,12 @@ from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_terms
 from exudyn_ehd.film.reynolds.lagging_void import lag_void, outflow_of
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import FluxEffect, link_flux, set_links, vertex_balance
+from exudyn_ehd.film.solvers.answers import FilmAnswers
 from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas, flow_pressures
 from exudyn_ehd.status import Status
 
@@ -31,7 +32,7 @@ from exudyn_ehd.status import Status
 INSTANT = 1e-7
 
 
-class FilmSolver:
+class FilmSolver(FilmAnswers):
     """Solves the film for gaps that the caller writes into ``H``, ``HF`` and ``H_t``.
 
     Parameters
@@ -86,8 +87,14 @@ class FilmSolver:
         # whether there is a cavity, and whether no unknown pressure is below the cavity's
         self.ruptures = bool(np.isfinite(closure.cavity_pressure))
         self.complementary = self.ruptures and not closure.clips
-        # density over that at ambient pressure (n, m), of the last solution
+        # density over that at ambient pressure (n, m), of the last solution; None: it does not follow the pressure
+        self.law: CompressibleLaw | None = None
         self.rho = self.ones
+        # derivative of the density to the unknown pressures (n, m), at the last factor
+        self.rho_P: np.ndarray | None = None
+        # Pa per unit of the scaled pressure
+        self.pressure_scale = 1.0
+        self.symmetric = not closure.conserves_mass
         # derivative of what `keep` returned to the gap
         self.follows = self.nothing
         self.coarse: FilmSolver | None = None
@@ -118,8 +125,9 @@ class FilmSolver:
 
     @property
     def content(self) -> np.ndarray:
-        """Scaled oil content fill H of the last solution (n, m), for closures that conserve mass."""
-        return self.system.fill * self.H
+        """Scaled oil content fill H, or mass rho fill H, of the last solution (n, m); of closures that conserve mass."""
+        content = self.system.fill * self.H
+        return content if self.law is None else self.rho * content
 
     def forget(self) -> None:
         """Drop the warm start; the next solution starts from a coarser grid where there is one."""
@@ -271,34 +279,12 @@ class FilmSolver:
             self.work.warm = True
         return steps
 
-    @property
-    def _factored(self) -> Workspace:
-        """The workspace, with the factor of the last solution itself."""
-        if self.line is not None:
-            refine_factor(self.system, self.line, self.work)
-        if self.closure.conserves_mass:
+    def factor_solution(self) -> None:
+        """Make the factor in the workspace that of the last solution."""
+        if not self.symmetric:
             factor_solution(self.system, self.work)
-        return self.work
-
-    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""
-        w = self.work
-        self.solve_transposed(rhs)
-        fields = np.empty((rhs.shape[0], *self.grid.shape))
-        scatter(rhs, w.order, w.count, fields)
-        return fields
-
-    def solve_transposed(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` with the stored factor for rhs (k, count), in place."""
-        self.closure.adjoint(self._factored, rhs)
-
-    def direct(self, rhs: np.ndarray) -> None:
-        """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""
-        self.closure.direct(self._factored, rhs)
-
-    def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
-        self.closure.adjoint_columns(self._factored, rhs)
+        elif self.line is not None:
+            refine_factor(self.system, self.line, self.work)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
@@ -323,9 +309,7 @@ class FilmSolver:
         fills = self.fill_gradients()
         if fills is not None and self.oil_line is not None:
             w, y = self.work, self.system
-            return self.oil_line.balance_gradients(
-                fills, y.coefficients, self.rho, y.inverse_step, w.order[: w.count]
-            )
+            return self.oil_line.balance_gradients(fills, y.coefficients, self.rho, y.inverse_step, w.order[: w.count])
         if self.line is None:
             return None
         return self.line.gradients(
@@ -344,14 +328,20 @@ class FilmSolver:
         return self.oil_line.gradients((self.H, self.HF), self.flux, v, self.flow_x, self.squeeze, self.grid.mesh)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""
-        return self.system.fx, self.system.fz, self.H_t
+        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of
+        masses if compressible."""
+        if self.law is None:
+            return self.system.fx, self.system.fz, self.H_t
+        fill, rho = self.carried, self.rho
+        flow_x, flow_z = (
+            f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis)) * 0.5 * (rho + np.roll(rho, -1, axis))
+            for axis, f in enumerate((self.system.fx, self.system.fz))
+        )
+        return flow_x, flow_z, rho * self.H_t
 
-    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
-        """Derivatives (5, n, m) of the links' flows with respect to their gaps and the speeds, for the last solution.
-
-        With a density ratio (n, m) those of the mass flows, at fixed pressure.
-        """
+    def link_derivatives(self) -> np.ndarray:
+        """Derivatives (5, n, m) of the links' flows, or mass flows, with respect to their gaps and the speeds, for the
+        last solution at fixed pressure."""
         s, f, fill, couette = self.system, self.flux, None, None
         if self.closure.conserves_mass:
             fill, couette = self.carried, (s.fx, s.fz)
@@ -363,7 +353,7 @@ class FilmSolver:
             slopes,
             by_speed,
             fill,
-            rho,
+            None if self.law is None else self.rho,
             couette,
             self.vx,
             self.vz,
@@ -376,12 +366,9 @@ class FilmSolver:
             add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)
         return self.link_fields
 
-    def storage_weights(self, rho: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H.
-
-        ``rho`` (n, m) is the density ratio of a compressible film.
-        """
-        s, content = self.system, self.area if rho is None else self.area * rho
+    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
+        s, content = self.system, self.area if self.law is None else self.area * self.rho
         if self.closure.conserves_mass:
             content = content * s.fill
         if s.inverse_step == 0.0 or self.instant:
@@ -391,25 +378,59 @@ class FilmSolver:
 
     @property
     def since(self) -> tuple[float, np.ndarray, bool]:
-        """1 / time step since the content that the storage is taken from, that content, and whether it is an instant."""
+        """1 / time step since the content that the storage starts from, that content, and whether it is an instant."""
         s = self.system
         return s.inverse_step, s.mass_old, s.instant
+
+    @property
+    def terms(self) -> FilmTerms:
+        """Coefficients of the balances."""
+        return film_terms(self.system.coefficients, self.since)
 
     def flow_pressures(self) -> tuple[np.ndarray, np.ndarray]:
         """Pressures (n, m) that drive flows at prescribed vertices, and where the film is full, see `edge_flows`."""
         return flow_pressures(self.system, self.work.active, self.closure.clips)
 
     def inflow(self, ended: bool = False) -> np.ndarray:
-        """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
+        """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
 
         ``ended``: films next to a cavity end within a link.
         """
         s, conserves_mass = self.system, self.closure.conserves_mass
         balance = np.empty(self.grid.shape)
-        if conserves_mass:
-            film_balance(s.pressure, s.fill, None, film_terms(s.coefficients, self.since), balance)
+        if self.law is not None:
+            fill = s.fill if conserves_mass else None
+            film_balance(self.flow_pressures()[0], fill, self.rho, self.terms, balance)
+        elif conserves_mass:
+            film_balance(s.pressure, s.fill, None, self.terms, balance)
         else:
             vertex_balance(self.flow_pressures()[0], s.kx, s.kz, s.b, balance)
-        if ended and self.complementary and not conserves_mass:
+        if ended and self.complementary and not conserves_mass and self.law is None:
             end_films_of_areas(s, self.work.active, self.grid, balance)
         return np.where(self.grid.fixed, balance, 0.0)
+
+    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed
+        pressure.
+
+        False where that has no pressure; there the law goes on in a line.
+        """
+        assert self.law is not None
+        scale = self.pressure_scale
+        inside = self.law.inverse(self.system.pressure * scale, p_out, ratio_out, ratio_P_out)
+        ratio_P_out *= scale
+        # pressures that were cut off inside the cells are others than those that the film was solved for
+        np.divide(ratio_out, self.law.density.ratio(p_out) if self.closure.clips else self.rho, out=p_P_out)
+        p_out /= scale
+        return inside
+
+    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure of a compressible film (n, m) and its derivative to the transformed one; False where that has
+        no pressure."""
+        rest = np.empty((2, *p_out.shape))
+        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
+
+    def flow_work(self, P: np.ndarray) -> np.ndarray:
+        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DowsonHigginson.flow_work`."""
+        assert self.law is not None
+        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale

@@ -51,16 +51,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, contract_line
 from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
+from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
-from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open
@@ -74,7 +74,7 @@ from exudyn_ehd.status import Status
 NEARLY_SOLID = 0.9
 
 
-class NonlinearFilmSolver(NewtonFilmSolver):
+class NonlinearFilmSolver(FilmSolver):
     """`FilmSolver` on an elastic liner, alone or with contact, laws of the oil, flow factors; or between rigid surfaces
     (beta 0) where the oil thins.
 
@@ -114,12 +114,12 @@ class NonlinearFilmSolver(NewtonFilmSolver):
     ) -> None:
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
         self.coarse = None
-        self.law = density
+        self.law, self.symmetric = density, False
         self.elements = e = LinerBalance(self, self._set_links, LinerParts(contact, limiter, oil, density))
         # the balance's own arrays, which its kernels take as one
         self.H, self.HF, self.H_t = e.gaps.H, e.gaps.HF, e.gaps.rate
         self.system.H, self.system.H_t = self.H, self.H_t
-        self.film, self.rho = e.terms, self.ones if e.rho is None else e.rho
+        self.rho, self.rho_P = self.ones if e.rho is None else e.rho, e.rho_P
         s = self.system
         s.kx, s.kz, s.fx, s.fz = e.terms[:4]
         self.line, s.line = e.line, None
@@ -138,14 +138,6 @@ class NonlinearFilmSolver(NewtonFilmSolver):
     @beta.setter
     def beta(self, value: float) -> None:
         self.elements.beta = value
-
-    @property
-    def pressure_scale(self) -> float:
-        return self.elements.scale
-
-    @pressure_scale.setter
-    def pressure_scale(self, value: float) -> None:
-        self.elements.scale = value
 
     @property
     def deflection(self) -> np.ndarray:
@@ -216,6 +208,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         """Solve for the undeformed gaps now stored; parameters as for
         `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
         s, g, e = self.system, self.grid, self.elements
+        e.scale = self.pressure_scale
         self.vx, self.vz, s.cavity_pressure = vx, vz, cavity_pressure
         e.take_rigid(self.squeeze)
         if vx == vz == 0.0 and not e.rigid[2].any():
@@ -316,13 +309,26 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
 
-    def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
-        """L and U of Newton's matrix at the solution, factored if the last one was before."""
-        w, e = self.work, self.elements
+    @property
+    def terms(self) -> FilmTerms:
+        """Coefficients of the balances."""
+        return super().terms if self.law is None else self.elements.terms
+
+    def factor_solution(self) -> None:
+        """Make the factor in the workspace that of the last solution."""
+        e = self.elements
         if not e.exact:
             e.factor()
             e.exact = True
-        return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
+
+    def _clip(self) -> None:
+        """Pressures and vertices in the film, of a closure that clips them or that never ruptures."""
+        s, fixed, P = self.system, self.grid.fixed, self.system.linear_pressure
+        if self.closure.clips:
+            np.copyto(s.pressure, np.where(fixed, P, np.maximum(P, s.cavity_pressure)))
+            np.logical_and(~fixed, s.cavity_pressure <= P, out=self.work.active)
+        elif not self.ruptures:
+            np.logical_not(fixed, out=self.work.active)
 
     def motion_columns(self, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
         """Derivatives (10, count) of the balances at the unknowns to the motion of a rigid journal, as for

@@ -1,8 +1,8 @@
 """Newton's matrix, steps and sets of a film, on the elements of a liner; see `newton`.
 
 What is handed over together travels in plain tuples: a tuple with names takes numba longer to look at than these
-kernels take to run. ``u`` and ``trial`` are (P, fill, full), fill and full None where no oil is counted; ``matrix`` is (slopes, number, factored), ``factored`` (order, x, lower, upper, 1 /
-diagonal).
+kernels take to run. ``u`` and ``trial`` are (P, fill, full), fill and full None where no oil is counted; ``matrix`` is
+(slopes, number, factored), ``factored`` (order, x, lower, upper, 1 / diagonal).
 """
 
 import numpy as np

@@ -82,14 +82,6 @@ class ThinningFilmSolver(NonlinearFilmSolver):
         """`ShearThinning.response` of the last solution."""
         return self.thins.response()
 
-    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
-        """As `FilmSolver.link_derivatives`, of mass flows if compressible."""
-        return FilmSolver.link_derivatives(self, self.elements.rho)
-
-    def storage_weights(self, rho: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """As `FilmSolver.storage_weights`, of masses if compressible."""
-        return FilmSolver.storage_weights(self, self.elements.rho)
-
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """As `FilmSolver.sensitivities`."""
         return FilmSolver.sensitivities(self, lam)

@@ -7,7 +7,6 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.models import film_grid, film_solver
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.surfaces.contact import Contact, LandContact
@@ -63,7 +62,6 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         flux_effects=effects.flux,
         density=effects.density,
     )
-    nonlinear = solver if isinstance(solver, (CompressibleFilmSolver, NonlinearFilmSolver)) else None
     contacts = None
     if touching:
         contacts = ContactFields(grid.shape, touching)
@@ -76,8 +74,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         grid=grid,
         solver=solver,
         liner=liner,
-        compressible=None if effects.density is None else nonlinear,
-        nonlinear=nonlinear,
+        compressible=None if effects.density is None else solver,
         supply=supply,
         contacts=contacts,
         limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,

@@ -157,8 +157,7 @@ class BearingModel:
         self._prescribed = known if law is None else law.transform(self._known) / pressure
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
-        if p.nonlinear is not None:
-            p.nonlinear.pressure_scale = pressure
+        p.solver.pressure_scale = pressure
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""

@@ -48,11 +48,8 @@ from scipy.optimize import brentq
 from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags_array, issparse
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.cavitation.oil_line import add_curve
 from exudyn_ehd.film.cavitation.rupture_line import line_matrices
-from exudyn_ehd.film.reynolds.balance import film_slopes, film_terms
 from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
@@ -87,16 +84,9 @@ class FilmResponse:
         number[order] = np.arange(order.size)
         store, rows, followed = (s.area * s.H).reshape(-1), adjoint_rows(film), np.ones(order.size)
         rho = rho_P = None
-        if isinstance(s, CompressibleFilmSolver | NonlinearFilmSolver):
-            self.matrix = s.newton_matrix()
-            of = s.elements if isinstance(s, NonlinearFilmSolver) else s
-            rho, rho_P = of.rho, of.rho_P
-        else:
-            slopes, terms = np.zeros((5, w.order.size)), film_terms(s.system.coefficients, s.since)
-            film_slopes(s.fill, w.active | film.grid.fixed, None, None, terms, slopes)
-            if s.oil_line is not None:
-                add_curve(s.oil_line.fields, terms, None, slopes)
-            self.matrix = _matrix(slopes, number, film.grid.shape[1])
+        self.matrix = s.matrix()
+        if s.law is not None:
+            rho, rho_P = s.rho, s.rho_P
         if rho is None or rho_P is None:
             store = np.where(w.active.reshape(-1), 0.0, store)
         else:
@@ -202,22 +192,6 @@ class FilmOnBoreResponse(FilmResponse):
         self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
         self.stiffness = V[2:, 2:].T @ self.stiffness @ V[2:, 2:]
-
-
-def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:
-    """Newton's matrix from the derivatives of links and storage (5, n m), as `exudyn_ehd.film.banded.assemble` fills
-    its bands; ``number`` (n m,): places of the unknowns, -1 elsewhere."""
-    ax, bx, az, bz, store = slopes
-    here, along, across = number, np.roll(number, -m), np.roll(number, -1)
-    entries = (
-        (here, here, ax + az + store),
-        (here, along, bx), (along, here, -ax), (along, along, -bx),
-        (here, across, bz), (across, here, -az), (across, across, -bz),
-    )  # fmt: skip
-    rows, columns, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
-    known = (rows >= 0) & (columns >= 0)
-    count = int(number.max()) + 1
-    return coo_matrix((values[known], (rows[known], columns[known])), shape=(count, count)).tocsc()
 
 
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:

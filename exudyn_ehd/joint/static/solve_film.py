@@ -193,9 +193,6 @@ def _any_gap_solver(
     effects = () if steps is None else (steps,)
     if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
-    if closure.line_in_cells and (closure.clips or closure.conserves_mass):
-        name = type(closure).__name__
-        raise InputError(f"solve_film: {name}.line_in_cells=True does not go with Lubricant.density_law; use {name}().")
     solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
     solver.pressure_scale = scale
     return solver

@@ -23,6 +23,13 @@ OPTIONS = {
     "piezoviscous": {
         "lubricant": ehd.Lubricant(viscosity=0.02, pressure_law=ehd.BarusPressure(coefficient=1e-8)),
     },
+    "compressible": {
+        "lubricant": ehd.Lubricant(
+            viscosity=0.02,
+            pressure_law=ehd.BarusPressure(coefficient=1e-8),
+            density_law=ehd.DowsonHigginson(coefficient=5e-9),
+        )
+    },
     "rough": {"roughness": ehd.PatirCheng(composite_roughness=2e-6, journal_share=0.9)},
     "groove": {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.3, length=0.03, pressure=2e5),)},
 }
@@ -75,7 +82,6 @@ def test_short_bearing_against_its_closed_form(eccentricity, measured):
     (
         {"film": ehd.ClassicSOR()},
         {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)},
-        {"lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())},
         {"lubricant": ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7))},
     ),
 )

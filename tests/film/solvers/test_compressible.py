@@ -17,6 +17,11 @@ MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6
 DENSITY = ehd.DowsonHigginson()
 BARUS = ehd.BarusPressure(coefficient=1e-9)
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams()]
+IN_CELLS = [
+    ehd.Gumbel(line_in_cells=True),
+    ehd.SwiftStieber(line_in_cells=True),
+    ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True),
+]
 
 
 def slider(n, pressure_law=None, closure=CLOSURES[0], density=DENSITY):
@@ -91,7 +96,7 @@ def test_mass_flow_is_uniform_along_a_cavitated_slider():
 def test_balance_vanishes_where_pressure_is_unknown_and_oil_leaves_nowhere_else(closure):
     s = bare_solver(closure, 3.0)
     r = np.empty(s.grid.shape)
-    film_balance(s.system.linear_pressure, s.fill if closure.conserves_mass else s.ones, s.rho, s.film, r)
+    film_balance(s.system.linear_pressure, s.fill if closure.conserves_mass else s.ones, s.rho, s.terms, r)
     free = ~s.grid.fixed if closure.clips or closure.conserves_mass else s.work.active
     size = np.abs(s.system.fx).max()
     assert np.abs(r[free]).max() < 1e-12 * size  # rounding of the fluxes
@@ -255,3 +260,42 @@ def test_journal_in_the_centre_to_rounding(closure):
         assert found.status is ehd.Status.CONVERGED
         # 500 N at an eccentricity ratio of one half
         assert np.abs(found.wrench[:2]).max() < 1e-6
+
+
+@pytest.mark.parametrize("closure", IN_CELLS, ids=lambda c: type(c).__name__)
+def test_line_inside_the_cells_goes_to_that_of_an_incompressible_film(make_bearing, closure):
+    """Films differ in proportion to the oil's compressibility."""
+    rng, film = np.random.default_rng(8), ehd.FiniteLength(n_theta=48, n_z=6)
+    incompressible = build_model(make_bearing(1.0, cavitation=closure, film=film))
+    differences = np.empty((6, 2))
+    for state in differences:
+        motion = np.zeros(10)
+        motion[:2] = 25e-6 * rng.uniform(0.2, 0.9) * np.array([np.cos(a := rng.uniform(0.0, 2.0 * np.pi)), np.sin(a)])
+        motion[8] = 300.0
+        expected = incompressible.evaluate(motion).wrench[:2]
+        for k, coefficient in enumerate((1e-9, 1e-11)):
+            oil = ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson(coefficient=coefficient))
+            dense = build_model(make_bearing(1.0, cavitation=closure, film=film, lubricant=oil))
+            state[k] = np.hypot(*(dense.evaluate(motion).wrench[:2] - expected)) / np.hypot(*expected)
+    assert np.all(differences[:, 0] < 0.03)  # a peak of 10 MPa compresses it by 1 %
+    np.testing.assert_allclose(differences[:, 1], 0.01 * differences[:, 0], rtol=0.05)  # its next power
+
+
+@pytest.mark.parametrize("closure", IN_CELLS, ids=lambda c: type(c).__name__)
+def test_line_inside_the_cells_does_not_depend_on_the_start(make_bearing, closure):
+    rng, oil = np.random.default_rng(9), ehd.Lubricant(viscosity=0.05, density_law=DENSITY, pressure_law=BARUS)
+    bearing = make_bearing(1.0, cavitation=closure, film=ehd.FiniteLength(n_theta=48, n_z=6), lubricant=oil)
+    warm, cold = build_model(bearing), build_model(bearing)
+    for _ in range(25):
+        e, a, b = 1.0 - 10.0 ** rng.uniform(-1.7, 0.0), *rng.uniform(0.0, 2.0 * np.pi, 2)
+        motion = np.zeros(10)
+        motion[:2] = 25e-6 * e * np.array([np.cos(a), np.sin(a)])
+        motion[2:4] = 0.6 * (1.0 - e) * 25e-6 / 0.025 * np.array([np.cos(b), np.sin(b)])
+        motion[8] = rng.choice([300.0, -300.0])
+        found = warm.evaluate(motion)
+        cold.forget()
+        expected = cold.evaluate(motion)
+        assert found.status is expected.status is ehd.Status.CONVERGED
+        np.testing.assert_allclose(found.wrench, expected.wrench, atol=1e-12 * np.abs(expected.wrench).max())
+        of = np.abs(expected.tangent()).max()
+        np.testing.assert_allclose(found.tangent(), expected.tangent(), atol=1e-11 * of)
