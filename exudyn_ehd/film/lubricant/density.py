@@ -11,6 +11,7 @@ p. Below ambient pressure ``q = (1 - exp(-k p)) / k``, k = alpha - a with the vi
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -123,16 +124,20 @@ class DensityField:
         self.law, self.scale = law, 1.0
         self.rho, self.rho_P = np.ones((2, *shape))
         self.known = np.full((6, self.rho.size), np.nan)
+        # transformed pressure of the cavity when last asked for, Pa, and the density there
+        self._cavity = math.nan, 1.0
 
     def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray]:
         """All of it as kernels take it; ``floor``: scaled pressure below which the density stays."""
         return self.scale, floor, self.law.kernel_table, self.known, self.rho, self.rho_P
 
     def at(self, pressure: float) -> float:
-        """Density over that at ambient pressure at a scaled transformed pressure."""
-        p, ratio, slope = np.zeros((3, 1, 1))
-        self.law.inverse(np.array([[pressure * self.scale]]), p, ratio, slope)
-        return float(self.law.density.ratio(p[0, 0]))
+        """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""
+        if pressure * self.scale != self._cavity[0]:
+            p, ratio, slope = np.zeros((3, 1, 1))
+            self.law.inverse(np.array([[pressure * self.scale]]), p, ratio, slope)
+            self._cavity = pressure * self.scale, float(self.law.density.ratio(p[0, 0]))
+        return self._cavity[1]
 
 
 class CompressibleLaw(HermiteTable):

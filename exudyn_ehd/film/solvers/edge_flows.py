@@ -44,11 +44,37 @@ def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int
 
 def shear_share(s: FilmSystem, active: np.ndarray, closure: Closure) -> np.ndarray:
     """Share of a full film's shear that acts at each vertex (n, m)."""
-    conserves = closure.conserves_mass
-    share = s.fill.copy() if conserves else np.where(active | s.fixed, 1.0, closure.cavity_shear)
-    for end, beside, at in ends_of_cavities(s, conserves):
-        np.copyto(share[:, end], share[:, beside], where=at)
-    return share
+    out = np.empty(s.fixed.shape)
+    _share(s.fill, active, s.fixed, s.pressure, s.cavity_pressure, closure.conserves_mass, closure.cavity_shear, out)
+    return out
+
+
+@njit(cache=True)
+def _share(fill, active, fixed, P, pc, conserves, cavity_shear, out):
+    n, m = out.shape
+    for i in range(n):
+        for j in range(m):
+            out[i, j] = fill[i, j] if conserves else (1.0 if active[i, j] | fixed[i, j] else cavity_shear)
+        for end, beside in ((0, 1), (m - 1, m - 2)):
+            if m > 2 and fixed[i, end] and not fixed[i, beside] and not (conserves and P[i, end] > pc):
+                out[i, end] = out[i, beside]
+
+
+def at_beside_ends(s: FilmSystem, field: np.ndarray) -> np.ndarray:
+    """A field (n, m) of the ends at the vertices beside them, where a film that conserves mass shares its fill with
+    them; 0 elsewhere."""
+    out = np.zeros(field.shape)
+    _move_beside(field, s.fixed, s.pressure, s.cavity_pressure, out)
+    return out
+
+
+@njit(cache=True)
+def _move_beside(field, fixed, P, pc, out):
+    n, m = out.shape
+    for i in range(n):
+        for end, beside in ((0, 1), (m - 1, m - 2)):
+            if m > 2 and fixed[i, end] and not fixed[i, beside] and P[i, end] <= pc:
+                out[i, beside] += field[i, end]
 
 
 def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:

@@ -75,6 +75,8 @@ class FilmSolver(FilmAnswers):
         self.H, self.HF, self.H_t = self.system.H, self.system.HF, self.system.H_t
         self.line: RuptureLine | None = None
         self.oil_line: OilLine | None = None
+        # of `fill_gradients`, once they are asked for
+        self._fills: tuple[LineGradients, LineGradients] | None = None
         if closure.line_in_cells and closure.conserves_mass:
             self.oil_line = self.system.oil_line = OilLine(shape)
         elif closure.line_in_cells and not closure.clips:
@@ -163,7 +165,7 @@ class FilmSolver(FilmAnswers):
             Outcome and number of linear solves.
         """
         s = self.system
-        self.vx, self.vz = vx, vz
+        self.vx, self.vz, self._fills = vx, vz, None
         self._set_links()
         s.cavity_pressure = cavity_pressure
         if self.closure.clips:
@@ -324,8 +326,10 @@ class FilmSolver(FilmAnswers):
         """
         if self.oil_line is None:
             return None
-        v = self.vx, self.vz
-        return self.oil_line.gradients((self.H, self.HF), self.flux, v, self.flow_x, self.squeeze, self.grid.mesh)
+        if self._fills is None:
+            g, v = (self.H, self.HF), (self.vx, self.vz)
+            self._fills = self.oil_line.gradients(g, self.flux, v, self.flow_x, self.squeeze, self.grid.mesh)
+        return self._fills
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of

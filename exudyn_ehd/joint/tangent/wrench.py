@@ -21,7 +21,7 @@ from exudyn_ehd.film.loads import (
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
-from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
+from exudyn_ehd.film.solvers.edge_flows import at_beside_ends
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import chain_links, contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
@@ -255,10 +255,7 @@ def shear_of_fills(film: SolvedFilm) -> np.ndarray:
 
 def shear_of_ends(film: SolvedFilm) -> np.ndarray:
     """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
-    density, out = ratio_of(film) * film.grid.shear_weight / film.solver.H, np.zeros(film.grid.shape)
-    for end, beside, at in ends_of_cavities(film.solver.system, True):
-        out[at, beside] += density[at, end]
-    return out
+    return at_beside_ends(film.solver.system, ratio_of(film) * film.grid.shear_weight / film.solver.H)
 
 
 def ratio_of(film: SolvedFilm) -> np.ndarray:
