@@ -99,12 +99,13 @@ class FilmSystem:
     def take_density(self, density: DensityField) -> None:
         """From now on the density follows the pressure."""
         self.density, shape = density, self.H.shape
-        if self.kind != OIL:
-            self.fill, self.mass_old = np.ones(shape), np.ones(shape)
-            self.straight = straight(shape)
-        if self.kind == RUPTURE and self.line is not None:
+        if self.kind == OIL:
+            return
+        self.fill, self.mass_old, curve = np.ones(shape), np.ones(shape), straight(shape)
+        if self.line is not None:
             line = Line(*self.line.block)
-            self.straight = self.straight._replace(f=line.f, k=line.k, whole=line.whole, s=line.s)
+            curve = curve._replace(f=line.f, k=line.k, whole=line.whole, s=line.s)
+        self.straight = curve
 
     @property
     def in_cells(self) -> bool:

@@ -127,7 +127,7 @@ class FilmSolver(FilmAnswers):
 
     @property
     def content(self) -> np.ndarray:
-        """Scaled oil content fill H, or mass rho fill H, of the last solution (n, m); of closures that conserve mass."""
+        """Scaled oil content fill H, or mass rho fill H, of the last solution (n, m)."""
         content = self.system.fill * self.H
         return content if self.law is None else self.rho * content
 
