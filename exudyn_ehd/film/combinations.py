@@ -6,6 +6,7 @@ import numpy as np
 
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.options import Options
@@ -44,7 +45,7 @@ def _check_film(bearing: Options) -> None:
             f"JournalBearing.bush=ElasticLiner(...) can't be combined with film={name}(): its film is solved in two "
             "dimensions; leave one of the two out."
         )
-    if oil.density_law is not None and not isinstance(film, FiniteLength):
+    if oil.density_law is not None and isinstance(film, ClassicSOR | ImpedanceMap):
         raise InputError(
             f"Lubricant.density_law must be None with film={name}(...), which takes oil as incompressible; use "
             "film=FiniteLength(...)."

@@ -247,6 +247,10 @@ class LongThinningSolver(LongSolver, ThinningFilmSolver):
     """`LongSolver` of an oil that thins."""
 
 
+class LongCompressibleSolver(LongSolver, CompressibleFilmSolver):
+    """`LongSolver` of an oil whose density follows the pressure."""
+
+
 def check_film(
     film: Film, closure: Closure, supply: tuple[SupplyArea, ...], open_ring: bool, end_pressures: tuple[float, float]
 ) -> None:
@@ -354,18 +358,19 @@ def film_solver(
     density: CompressibleLaw | None = None,
 ) -> FilmSolver:
     """Solver of a film model on its grid; ``density``: of a compressible film."""
-    thins = any(isinstance(effect, ShearThinning) for effect in flux_effects)
-    if density is not None:
-        if thins:
-            return ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=flux_effects, density=density)
-        return CompressibleFilmSolver(grid, closure, density, squeeze=squeeze, flux_effects=flux_effects)
     if isinstance(film, ClassicSOR):
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
-    kinds = (FilmSolver, LongSolver, ThinningFilmSolver, LongThinningSolver)
-    return kinds[isinstance(film, LongBearing) + 2 * thins](
+    thins = any(isinstance(effect, ShearThinning) for effect in flux_effects)
+    kinds = (FilmSolver, LongSolver)
+    if thins:
+        kinds = (ThinningFilmSolver, LongThinningSolver)
+    elif density is not None:
+        kinds = (CompressibleFilmSolver, LongCompressibleSolver)
+    return kinds[isinstance(film, LongBearing)](
         grid,
         closure,
         squeeze=squeeze,
         flux_effects=flux_effects,
         circumferential_pressure_flow=film.circumferential_pressure_flow,
+        **({} if density is None else {"density": density}),
     )

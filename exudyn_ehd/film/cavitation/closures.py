@@ -20,7 +20,7 @@ import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_in_cells, clip_pressure, solve_linear
-from exudyn_ehd.film.cavitation.solve import follow, solve_system
+from exudyn_ehd.film.cavitation.solve import recover, solve_system
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
@@ -198,7 +198,7 @@ def _solve_dense(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     work.warm, steps = solve_system(system, work)
     status = Status.CONVERGED if work.warm else Status.NOT_CONVERGED
     if not (work.warm or was_known):
-        status, count = follow(system, work)
+        status, count = recover(system, work)
         steps += count
         work.warm = status is Status.CONVERGED
     return status, steps

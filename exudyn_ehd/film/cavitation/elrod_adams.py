@@ -24,7 +24,7 @@ import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import check_cavity_pressure
-from exudyn_ehd.film.cavitation.solve import follow, solve_system
+from exudyn_ehd.film.cavitation.solve import recover, solve_system
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import Status, require_bool
@@ -92,7 +92,7 @@ class ElrodAdams:
             steps += count
         status = Status.CONVERGED
         if not ok or (s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)):
-            status, count = follow(s, work)
+            status, count = recover(s, work)
             steps += count
         work.warm = status is Status.CONVERGED
         return status, steps

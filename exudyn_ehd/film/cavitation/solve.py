@@ -63,6 +63,8 @@ BENDS = 6.0
 # Change of a pressure over the peak, or of a fill, that takes digits of small pressures and fills with it: another step
 # with the same factor brings them back.
 FAR = 10.0
+# Compressibility of an oil, over its own, that films do not feel.
+SOFTEST = 1e-9
 # Storages in pseudo time over the largest flow into a vertex by the smallest vertex: of the first one, and of the last
 # one from which a film without storage is tried.
 FIRST_RATE, LAST_RATE = 0.01, 1e-7
@@ -104,14 +106,14 @@ def _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor,
         flat[c] = given[c]
     if inverse_step > 0.0:
         hold_back(film, inverse_step, mass_old)
-    carried, rest, terms, dense, end = film.late.copy(), film.kx.copy(), film_terms(film, since), 0.0, np.inf
+    carried, rest, terms = film.late.copy(), film.kx.copy(), film_terms(film, since)
     curve.s[:] = 1.0
     curve.slope[:] = 0.0
     curve.rise[:] = 0.0
-    absolute, density_P = rest, rest
+    absolute, density = rest, (0.0, rest, np.inf, rest, 1.0)
     if oil is not None:
         scale, floor, law, at, rho, rho_P = oil
-        absolute, density_P, dense, end = rest.copy(), rho_P, BENDS, law.highest / scale - pc
+        absolute, density = rest.copy(), (BENDS, rho_P, law.highest / scale - pc, at, scale)
     if in_cells and kind == OIL:
         curve_terms(film, b, curve)
         if oil is not None:
@@ -155,7 +157,7 @@ def _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor,
         for r in range(count):
             x[r] = -flat[order[r]]
         solve_lu_one(dense_band(lower, count, width), dense_band(upper, count, width), inv_diag, count, width, x)
-        changes, moved, bent, worn = move_states(kind, (dense, density_P, end), curve, order, count, x, full, u, P)
+        changes, moved, bent, worn = move_states(kind, density, curve, order, count, x, full, u, P)
         if not moved < 1e300:
             return False, step + 1, False, count, width
         if fresh:
@@ -255,6 +257,29 @@ def factor_solution(s: FilmSystem, work: Workspace) -> None:
 
 def _buffers(work: Workspace) -> tuple[np.ndarray, ...]:
     return work.order, work.number, work.lower, work.upper, work.inv_diag, work.oil.slopes
+
+
+def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """The film that Newton's method does not find from a full one, in pseudo time.
+
+    Where the density follows the pressure it starts from the film of an oil that is next to incompressible; if no
+    pressure of the law's range carries that one, the film has NO_PRESSURE.
+    """
+    density, steps = s.density, 0
+    if density is not None:
+        work.known = False
+        if s.kind != RUPTURE or not work.warm:
+            np.logical_not(s.fixed, out=work.active)
+        scale, density.scale = density.scale, SOFTEST * density.scale
+        ok, steps = solve_system(s, work)
+        density.scale = scale
+        beyond = ok and density.is_exhausted(s.linear_pressure)
+        ok, count = solve_system(s, work) if ok else (False, 0)
+        steps += count
+        if ok or beyond or density.is_exhausted(s.linear_pressure):
+            return (Status.CONVERGED if ok else Status.NO_PRESSURE), steps
+    status, count = follow(s, work)
+    return status, steps + count
 
 
 def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:

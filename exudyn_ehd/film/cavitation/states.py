@@ -32,6 +32,8 @@ LEAST = 1e-8
 ROUNDING = 1e-12
 
 
+# Largest growth of an oil's viscosity in one step, as a logarithm.
+LARGEST_THICKENING = 4.0
 # Kinds of films: without cavitation, with pressures cut off afterwards, of Swift and Stieber, with mass conserved.
 FULL, CLIPPED, RUPTURE, OIL = 0, 1, 2, 3
 
@@ -119,14 +121,16 @@ def add_sink(curve, slopes):
 def move_states(kind, density, curve, order, count, dx, full, u, P):
     """Take Newton's step dx (count,), of pressures where ``full``, else of fills.
 
-    A vertex that crosses u = 0, or the end of its oil's law, stops there and changes its side. ``density``: (weight of
-    its changes as those of a place, its slopes (n, m), pressure where its law ends).
+    A vertex that crosses u = 0, or the end of its oil's law, stops there and changes its side. As p grows exponentially
+    with P, a step x that raises P goes where the tangent of p(P) leads p, ``(1 - exp(-k x)) / k`` with k = p'' / p'.
+    ``density``: (weight of its changes as those of a place, its slopes (n, m), pressure where its law ends, what
+    `exudyn_ehd.film.lubricant.density_field` knows of the law, Pa per unit of P).
 
     Returns how many vertices stop, the largest change of a pressure over the peak, of a place on a curve, of a fill,
     that of a place on a curve alone, and the same over the place.
     """
     sets, x, pressures, peak, last_peak = full.reshape(-1), u.reshape(-1), P.reshape(-1), 0.0, 0.0
-    weight, end, rho_P = density[0], density[2], density[1].reshape(-1)
+    (weight, _, end, law, scale), rho_P = density, density[1].reshape(-1)
     for r in range(count):
         if sets[order[r]]:
             before = pressures[order[r]]
@@ -138,17 +142,20 @@ def move_states(kind, density, curve, order, count, dx, full, u, P):
     for r in range(count):
         c = order[r]
         whole, old, change = curve.whole[c], x[c], dx[r]
+        if weight > 0.0 and sets[c]:
+            bent, at = max(bent, weight * abs(rho_P[c] * change)), pressures[c]
+            thickens = scale * law[3, c] / law[2, c] * change
+            if law[3, c] > 0.0 and thickens > 0.0:
+                change *= -np.expm1(-min(thickens, LARGEST_THICKENING)) / thickens
+            if (at < end) != (at + change < end):
+                change = (end if at < end else end * (1.0 - ROUNDING)) - at
+                changes += 1
         if not sets[c]:
             new, size = old + change, abs(change)
             crosses = new > ROUNDING
         elif whole == 0.0:
             new, size = old + change, abs(change) * per_peak
             crosses = kind >= RUPTURE and new < -ROUNDING * peak
-            if weight > 0.0:
-                bent = max(bent, weight * abs(rho_P[c] * change))
-                if (old < end) != (new < end):
-                    new = end if old < end else end * (1.0 - ROUNDING)
-                    changes += 1
         else:
             new = old + 0.5 * change / (whole * min(max(old, LEAST), 1.0))
             size = abs(min(new, 1.0) - min(old, 1.0))

@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, straight
 from exudyn_ehd.film.cavitation.rupture_line import Line, RuptureLine
-from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
+from exudyn_ehd.film.cavitation.states import CLIPPED, OIL
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import DensityField
 from exudyn_ehd.film.reynolds.links import Coefficients

@@ -27,6 +27,8 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
 from exudyn_ehd.status import require_number
 
 LARGEST_COEFFICIENT = 1e-6
+# Share of the law's range in which a film presses against its end.
+AT_THE_END = 1.0 - 1e-9
 # Stands for an exponent k = 0, for which q = p: far below what rounding could show.
 SMALLEST_EXPONENT = 1e-30
 
@@ -126,6 +128,10 @@ class DensityField:
         self.known = np.full((6, self.rho.size), np.nan)
         # transformed pressure of the cavity when last asked for, Pa, and the density there
         self._cavity = math.nan, 1.0
+
+    def is_exhausted(self, P: np.ndarray) -> bool:
+        """Whether scaled transformed pressures (n, m) reach the end of the law's range."""
+        return bool(P.max() * self.scale >= AT_THE_END * self.law.kernel_table.highest)
 
     def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray]:
         """All of it as kernels take it; ``floor``: scaled pressure below which the density stays."""

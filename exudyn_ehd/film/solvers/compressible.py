@@ -34,18 +34,15 @@ from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.status import Status
 
-# Share of the law's range at which a film that was not found presses against its end.
-AT_THE_END = 1.0 - 1e-9
-
 
 class CompressibleFilmSolver(FilmSolver):
     """`FilmSolver` with a density that follows the pressure; flows are mass flows over the density at ambient pressure.
 
     Parameters
     ----------
-    grid, closure, squeeze, flux_effects
+    grid, closure, circumferential_pressure_flow, squeeze, flux_effects
         As for `FilmSolver`.
-    law : CompressibleLaw
+    density : CompressibleLaw
 
     Attributes
     ----------
@@ -61,18 +58,25 @@ class CompressibleFilmSolver(FilmSolver):
         self,
         grid: FilmGrid,
         closure: Closure,
-        law: CompressibleLaw,
         *,
+        density: CompressibleLaw,
+        circumferential_pressure_flow: bool = True,
         squeeze: bool = True,
         flux_effects: tuple[FluxEffect, ...] = (),
     ) -> None:
-        super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
-        self.law, self.symmetric = law, False
+        super().__init__(
+            grid,
+            closure,
+            circumferential_pressure_flow=circumferential_pressure_flow,
+            squeeze=squeeze,
+            flux_effects=flux_effects,
+        )
+        self.law, self.symmetric = density, False
         self.edge: FilmLine | None = None
         if self.line is not None:
             self.line = self.system.line = self.edge = FilmLine(grid.shape)
             self.edge.flux = self.flux
-        self.density = DensityField(law, grid.shape)
+        self.density = DensityField(density, grid.shape)
         self.rho, self.rho_P = self.density.rho, self.density.rho_P
         self.system.take_density(self.density)
 
@@ -89,16 +93,13 @@ class CompressibleFilmSolver(FilmSolver):
         if vx == vz == 0.0 and not self.H_t.any():
             # a film at rest starts from nothing, not from what is left of the last one
             self.forget()
-        end, steps, P = AT_THE_END * self.law.kernel_table.highest / self.pressure_scale, 0, self.system.linear_pressure
         was_warm = self.work.warm
         status, steps = super().solve(vx, vz, cavity_pressure, mass_old, step)
-        if was_warm and (end <= P).any():
+        if was_warm and self.density.is_exhausted(self.system.linear_pressure):
             # beyond the law's range the density stays what it is at its end, which makes other films
             self.forget()
             status, count = super().solve(vx, vz, cavity_pressure, mass_old, step)
             steps += count
-        if status is Status.NOT_CONVERGED and (end <= P).any():
-            status = Status.NO_PRESSURE
         return status, steps
 
     def _set_links(self) -> None:

@@ -178,7 +178,7 @@ class FilmSolver(FilmAnswers):
             self.forget()
             steps = self._guess_from_coarse()
         status, fine_steps = self.closure.solve(s, self.work)
-        if was_warm and status is Status.NOT_CONVERGED and self.complementary:
+        if was_warm and status is Status.NOT_CONVERGED and (self.complementary or self.law is not None):
             # a start from another state can mislead where the film itself is benign
             self.forget()
             steps += fine_steps + self._guess_from_coarse()

@@ -193,7 +193,7 @@ def _any_gap_solver(
     effects = () if steps is None else (steps,)
     if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
-    solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
+    solver = CompressibleFilmSolver(grid, closure, density=law, squeeze=squeeze, flux_effects=effects)
     solver.pressure_scale = scale
     return solver
 

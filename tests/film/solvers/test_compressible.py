@@ -74,7 +74,7 @@ def test_converging_slider_is_the_same_with_every_closure(closure):
 
 def bare_solver(closure, speed):
     grid = ehd.slider_grid(LENGTH, LENGTH, 80, 6, sealed_sides=True)
-    solver = CompressibleFilmSolver(grid, closure, DENSITY.bound(BARUS), squeeze=False)
+    solver = CompressibleFilmSolver(grid, closure, density=DENSITY.bound(BARUS), squeeze=False)
     gap = 1.0 + 0.7 * np.cos(2.0 * np.pi * grid.x)[:, None] + 0.05 * grid.z
     solver.H[:] = gap
     solver.HF[:] = 0.5 * (gap + np.roll(gap, -1, axis=0))

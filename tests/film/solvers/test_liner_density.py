@@ -103,7 +103,7 @@ def test_solution_meets_the_readable_balance(closure, motion):
 
 @every_closure
 def test_stiff_liner_approaches_the_compressible_film_at_first_order(closure):
-    rigid = pressures(solve(CompressibleFilmSolver(GRID, closure, DENSITY.bound(None))))
+    rigid = pressures(solve(CompressibleFilmSolver(GRID, closure, density=DENSITY.bound(None))))
     found = [pressures(solve(on_liner(closure), beta)) for beta in (2e-6, 1e-6, 1e-13)]
     first, second, rest = (np.abs(p - rigid).max() / rigid.max() for p in found)
     assert second < 1e-2 and first / second == pytest.approx(2.0, rel=0.02)  # next order
