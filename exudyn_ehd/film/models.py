@@ -8,6 +8,7 @@ prescribed pressure is therefore required: the line of maximum gap or an axial g
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -361,7 +362,7 @@ def film_solver(
     if isinstance(film, ClassicSOR):
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
     thins = any(isinstance(effect, ShearThinning) for effect in flux_effects)
-    kinds = (FilmSolver, LongSolver)
+    kinds: tuple[Callable[..., FilmSolver], ...] = (FilmSolver, LongSolver)
     if thins:
         kinds = (ThinningFilmSolver, LongThinningSolver)
     elif density is not None:
