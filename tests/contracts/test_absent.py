@@ -58,7 +58,6 @@ EFFECTS = {
     "density law": (
         (
             "film.lubricant.density",
-            "film.lubricant.density_field",
             "film.solvers.compressible",
         ),
         oil(density_law=ehd.DowsonHigginson()),
@@ -183,6 +182,7 @@ SHARED = {
     "thrust.options",
     "banded.assemble",
     "peak",
+    "lubricant.density_field",
 }
 
 

@@ -242,11 +242,6 @@ def test_absent_law_calls_nothing(cavitation, monkeypatch):
     ("options", "names"),
     [
         ({"film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}, "ClassicSOR"),
-        ({"film": ehd.ShortBearing()}, "ShortBearing"),
-        (
-            {"film": ehd.LongBearing(), "supply": (ehd.AxialGroove(angle=0.0, width_angle=0.3, pressure=0.0),)},
-            "LongBearing",
-        ),
         ({"film": ehd.ImpedanceMap()}, "ImpedanceMap"),
     ],
     ids=lambda o: o if isinstance(o, str) else "",

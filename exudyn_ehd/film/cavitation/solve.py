@@ -50,9 +50,9 @@ MOST_STEPS = 60
 LEFT, SETTLED = 1e-13, 1e-8
 # Share that steps with an older factor have to shrink to, for another one: more takes longer than a factor of its own.
 REUSABLE = 0.01
-# Balance of a vertex over the largest flow: more is no rounding. Over the largest flow that drives the film: more is
+# Balance of a vertex over the largest flow: more is no rounding, which a density near the end of its law has more of. Over the largest flow that drives the film: more is
 # that of a singular matrix.
-EVEN, BALANCED = 1e-13, 1e-8
+EVEN, EVEN_DENSE, BALANCED = 1e-13, 1e-11, 1e-8
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.
 LARGEST_DEFICIT = 1e-6
@@ -91,7 +91,7 @@ def _factor(film, terms, kind, oil, curve, in_cells, full, fill, factor):
 def factor_film(film, since, kind, oil, curve, in_cells, full, P, fill, factor):
     """Factor of a solved film's matrix; returns (ok, count, width). Parameters as for `solve_film`."""
     if oil is not None:
-        scale, floor, law, known, _, rho_P = oil
+        scale, floor, law, known, _, rho_P, _ = oil
         density_slope_at(P, scale, floor, law, known, rho_P)
     return _factor(film, film_terms(film, since), kind, oil, curve, in_cells, full, fill, factor)
 
@@ -112,8 +112,8 @@ def _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor,
     curve.rise[:] = 0.0
     absolute, density = rest, (0.0, rest, np.inf, rest, 1.0)
     if oil is not None:
-        scale, floor, law, at, rho, rho_P = oil
-        absolute, density = rest.copy(), (BENDS, rho_P, law.highest / scale - pc, at, scale)
+        scale, floor, law, at, rho, rho_P, crosses = oil
+        absolute, density = rest.copy(), (BENDS, rho_P, np.inf if crosses else law.highest / scale - pc, at, scale)
     if in_cells and kind == OIL:
         curve_terms(film, b, curve)
         if oil is not None:
@@ -142,7 +142,7 @@ def _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor,
         # pressures of a film at rest are rounding, and never settle
         if done or step + 1 == MOST_STEPS:
             of_drive, of_flows = imbalance(film, terms, P, rest, full, kind == RUPTURE)
-            if of_flows <= EVEN:
+            if of_flows <= (EVEN if oil is None else EVEN_DENSE):
                 sound = settle_states(film, kind, full, P, fill) > -LARGEST_DEFICIT and of_drive <= BALANCED
                 return sound, step, done and own and drift <= LEFT, count, width
             ready = own and ready | done
@@ -185,7 +185,7 @@ def solve_film(film, late, b, since, pc, kind, oil, curve, in_cells, start, fact
         The cavity's pressure, 0 without one.
     kind : int
         FULL, CLIPPED, RUPTURE or OIL of `states`.
-    oil : (scale, floor, law, known, rho, rho_P) or None
+    oil : (scale, floor, law, known, rho, rho_P, crosses) or None
         Density of `exudyn_ehd.film.lubricant.density_field`; None: it does not follow the pressure.
     in_cells : bool
         Whether vertices have curves.
@@ -214,13 +214,13 @@ def solve_system(
 
     ``film``, ``since``: other coefficients and history than the system's.
     """
-    oil, base = work.oil, s.cavity_pressure if s.kind != FULL else 0.0
+    oil = work.oil
     ok, steps, oil.exact, work.count, work.width = solve_film(
         s.coefficients if film is None else film,
         s.late,
         s.b,
         (*((s.inverse_step, s.mass_old) if since is None else since), s.instant),
-        base,
+        _base(s),
         s.kind,
         None if s.density is None else s.density.fields(s.floor),
         s.curve,
@@ -255,6 +255,11 @@ def factor_solution(s: FilmSystem, work: Workspace) -> None:
         )
 
 
+def _base(s: FilmSystem) -> float:
+    """The cavity's scaled pressure, 0 of a film without cavitation."""
+    return s.cavity_pressure if s.kind != FULL else 0.0
+
+
 def _buffers(work: Workspace) -> tuple[np.ndarray, ...]:
     return work.order, work.number, work.lower, work.upper, work.inv_diag, work.oil.slopes
 
@@ -274,8 +279,14 @@ def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
         ok, steps = solve_system(s, work)
         density.scale = scale
         beyond = ok and density.is_exhausted(s.linear_pressure)
-        ok, count = solve_system(s, work) if ok else (False, 0)
-        steps += count
+        for crosses in (True, False) if ok else ():
+            # a film beyond the end of the law bounces there for ever, unless its steps stop
+            work.known, density.crosses = True, crosses
+            ok, count = solve_system(s, work)
+            steps += count
+            if ok:
+                break
+        density.crosses = False
         if ok or beyond or density.is_exhausted(s.linear_pressure):
             return (Status.CONVERGED if ok else Status.NO_PRESSURE), steps
     status, count = follow(s, work)
@@ -285,7 +296,7 @@ def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
 def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Follow the film in pseudo time from a full one; NO_OIL if rows run dry on the way."""
     largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
-    largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
+    largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - _base(s)), initial=0.0))
     rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
     mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
     work.known = runs_dry = False

@@ -145,11 +145,13 @@ def move_states(kind, density, curve, order, count, dx, full, u, P):
         if weight > 0.0 and sets[c]:
             bent, at = max(bent, weight * abs(rho_P[c] * change)), pressures[c]
             thickens = scale * law[3, c] / law[2, c] * change
-            if law[3, c] > 0.0 and thickens > 0.0:
+            if law[3, c] > 0.0 and thickens > 0.0 and at < end < np.inf:
                 change *= -np.expm1(-min(thickens, LARGEST_THICKENING)) / thickens
             if (at < end) != (at + change < end):
                 change = (end if at < end else end * (1.0 - ROUNDING)) - at
                 changes += 1
+            # below the cavity's pressure, which is cut off, the density stays
+            changes += kind == CLIPPED and (at < 0.0) != (at + change < 0.0)
         if not sets[c]:
             new, size = old + change, abs(change)
             crosses = new > ROUNDING

@@ -126,6 +126,8 @@ class DensityField:
         self.law, self.scale = law, 1.0
         self.rho, self.rho_P = np.ones((2, *shape))
         self.known = np.full((6, self.rho.size), np.nan)
+        # whether Newton's steps may cross the end of the law
+        self.crosses = False
         # transformed pressure of the cavity when last asked for, Pa, and the density there
         self._cavity = math.nan, 1.0
 
@@ -133,9 +135,9 @@ class DensityField:
         """Whether scaled transformed pressures (n, m) reach the end of the law's range."""
         return bool(P.max() * self.scale >= AT_THE_END * self.law.kernel_table.highest)
 
-    def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray]:
+    def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray, bool]:
         """All of it as kernels take it; ``floor``: scaled pressure below which the density stays."""
-        return self.scale, floor, self.law.kernel_table, self.known, self.rho, self.rho_P
+        return self.scale, floor, self.law.kernel_table, self.known, self.rho, self.rho_P, self.crosses
 
     def at(self, pressure: float) -> float:
         """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""

@@ -1,6 +1,8 @@
 """Compressible film on sliders: against the ordinary differential equation,
 uniform mass flow, kernels against twins."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -262,32 +264,42 @@ def test_journal_in_the_centre_to_rounding(closure):
         assert np.abs(found.wrench[:2]).max() < 1e-6
 
 
-@pytest.mark.parametrize("closure", IN_CELLS, ids=lambda c: type(c).__name__)
-def test_line_inside_the_cells_goes_to_that_of_an_incompressible_film(make_bearing, closure):
-    """Films differ in proportion to the oil's compressibility."""
-    rng, film = np.random.default_rng(8), ehd.FiniteLength(n_theta=48, n_z=6)
-    incompressible = build_model(make_bearing(1.0, cavitation=closure, film=film))
+GROOVE = ehd.AxialGroove(angle=1.0, width_angle=0.3, pressure=2e5)
+FILMS = {
+    "finite": {"film": ehd.FiniteLength(n_theta=48, n_z=6)},
+    "short": {"film": ehd.ShortBearing(n_theta=48, n_z=6)},
+    "long": {"film": ehd.LongBearing(n_theta=48, n_z=3), "supply": (GROOVE,)},
+}
+CASES = [("finite", closure) for closure in IN_CELLS] + [(name, c) for name in ("short", "long") for c in CLOSURES]
+
+
+@pytest.mark.parametrize(("name", "closure"), CASES, ids=lambda c: c if isinstance(c, str) else type(c).__name__)
+def test_films_go_to_those_of_an_incompressible_oil(make_bearing, name, closure):
+    """The less compressible an oil is, the less its films differ."""
+    rng, film = np.random.default_rng(8), FILMS[name]
+    closure = dataclasses.replace(closure, cavity_pressure=-1e5) if closure.conserves_mass else closure
+    incompressible = build_model(make_bearing(1.0, cavitation=closure, **film))
     differences = np.empty((6, 2))
     for state in differences:
         motion = np.zeros(10)
         motion[:2] = 25e-6 * rng.uniform(0.2, 0.9) * np.array([np.cos(a := rng.uniform(0.0, 2.0 * np.pi)), np.sin(a)])
         motion[8] = 300.0
         expected = incompressible.evaluate(motion).wrench[:2]
-        for k, coefficient in enumerate((1e-9, 1e-11)):
+        for k, coefficient in enumerate((1e-11, 1e-13)):
             oil = ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson(coefficient=coefficient))
-            dense = build_model(make_bearing(1.0, cavitation=closure, film=film, lubricant=oil))
+            dense = build_model(make_bearing(1.0, cavitation=closure, lubricant=oil, **film))
             state[k] = np.hypot(*(dense.evaluate(motion).wrench[:2] - expected)) / np.hypot(*expected)
-    assert np.all(differences[:, 0] < 0.03)  # a peak of 10 MPa compresses it by 1 %
-    np.testing.assert_allclose(differences[:, 1], 0.01 * differences[:, 0], rtol=0.05)  # its next power
+    assert np.all(differences[:, 0] < 0.01)  # a peak of 100 MPa compresses it by 0.1 %
+    assert np.all(differences[:, 1] < 0.03 * differences[:, 0])  # in proportion, but for vertices that change sides
 
 
 @pytest.mark.parametrize("closure", IN_CELLS, ids=lambda c: type(c).__name__)
 def test_line_inside_the_cells_does_not_depend_on_the_start(make_bearing, closure):
-    rng, oil = np.random.default_rng(9), ehd.Lubricant(viscosity=0.05, density_law=DENSITY, pressure_law=BARUS)
+    rng, oil = np.random.default_rng(9), ehd.Lubricant(viscosity=0.02, density_law=DENSITY, pressure_law=BARUS)
     bearing = make_bearing(1.0, cavitation=closure, film=ehd.FiniteLength(n_theta=48, n_z=6), lubricant=oil)
     warm, cold = build_model(bearing), build_model(bearing)
     for _ in range(25):
-        e, a, b = 1.0 - 10.0 ** rng.uniform(-1.7, 0.0), *rng.uniform(0.0, 2.0 * np.pi, 2)
+        e, a, b = 1.0 - 10.0 ** rng.uniform(-1.0, 0.0), *rng.uniform(0.0, 2.0 * np.pi, 2)
         motion = np.zeros(10)
         motion[:2] = 25e-6 * e * np.array([np.cos(a), np.sin(a)])
         motion[2:4] = 0.6 * (1.0 - e) * 25e-6 / 0.025 * np.array([np.cos(b), np.sin(b)])

@@ -426,9 +426,9 @@ CLASSIC = {"film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}
         (
             {
                 "lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson()),
-                "film": ehd.ShortBearing(),
+                "film": ehd.ImpedanceMap(),
             },
-            "density_law must be None with film=ShortBearing",
+            "density_law must be None with film=ImpedanceMap",
         ),
     ],
 )
