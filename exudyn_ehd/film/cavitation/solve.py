@@ -50,8 +50,8 @@ MOST_STEPS = 60
 LEFT, SETTLED = 1e-13, 1e-8
 # Share that steps with an older factor have to shrink to, for another one: more takes longer than a factor of its own.
 REUSABLE = 0.01
-# Balance of a vertex over the largest flow: more is no rounding, which a density near the end of its law has more of. Over the largest flow that drives the film: more is
-# that of a singular matrix.
+# Balance of a vertex over the largest flow: more is no rounding, which a density near the end of its law has more of.
+# Over the largest flow that drives the film: more is that of a singular matrix.
 EVEN, EVEN_DENSE, BALANCED = 1e-13, 1e-11, 1e-8
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.

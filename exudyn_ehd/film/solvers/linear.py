@@ -424,7 +424,8 @@ class FilmSolver(FilmAnswers):
         inside = self.law.inverse(self.system.pressure * scale, p_out, ratio_out, ratio_P_out)
         ratio_P_out *= scale
         # pressures that were cut off inside the cells are others than those that the film was solved for
-        np.divide(ratio_out, self.law.density.ratio(p_out) if self.closure.clips else self.rho, out=p_P_out)
+        rho = self.law.density.ratio(np.minimum(p_out, self.law.largest_pressure)) if self.closure.clips else self.rho
+        np.divide(ratio_out, rho, out=p_P_out)
         p_out /= scale
         return inside
 
