@@ -282,7 +282,7 @@ def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:
 def _on_its_housing(
     mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
 ) -> tuple[JournalBearing, Item]:
-    """The bearing with the bush that its housing makes of it, and the side of the housing."""
+    """Return the bearing with the bore of its finite-element housing, and the housing's item."""
     if housing.body is not None and getattr(bearing, "bush", None) is not None:
         # imported here: a rigid bearing needs no solid
         from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
@@ -298,7 +298,7 @@ def _on_its_bodies(
     points: tuple[np.ndarray, np.ndarray],
     rotation: np.ndarray,
 ) -> tuple[JournalBearing, Item, Item]:
-    """The same with the journal that a finite-element body makes of it, and both sides."""
+    """Return the bearing with the bore and journal of the finite-element bodies under it, and both items."""
     bearing, housing = _on_its_housing(mbs, bearing, items[0], points[0], rotation)
     journal = items[1]
     if journal.body is not None and getattr(bearing, "journal", None) is not None:
@@ -410,7 +410,10 @@ def attach(
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:
-    """Whether a bush or liner has a film at a motion (10,) at which a rigid bore has no gap; the sides are there."""
+    """Return whether a flexible bore has a film at a motion (10,) that leaves a rigid bore no gap.
+
+    The arrays of the sides must belong to that motion.
+    """
     if hasattr(model, "bore"):
         # imported here: a rigid bearing needs no solid
         from exudyn_ehd.coupling.element.attach import initial_coordinates

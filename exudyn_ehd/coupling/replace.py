@@ -266,7 +266,7 @@ def _free_name(mbs: exu.MainSystem, joint: Data, number: int) -> str:
 
 
 def _turns(joint: Data) -> bool:
-    """Whether a joint leaves one rotation free."""
+    """Return whether a joint leaves one rotation free."""
     return joint["objectType"] != "JointGeneric" or sum(not held for held in joint["constrainedAxes"][3:]) == 1
 
 

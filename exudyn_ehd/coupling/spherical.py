@@ -56,7 +56,7 @@ class SphericalFailures(Failures):
     axes = 3
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
-        """As for journals; a ball far out of its socket has no film either."""
+        """Return the error of an accepted step as for journals, or of a ball out of its socket; None if it is valid."""
         if float(np.linalg.norm(trial.motion[:3])) > FARTHEST * self.bearing.journal_radius:
             return self._at(
                 time,
@@ -70,7 +70,7 @@ class SphericalFailures(Failures):
         return ""
 
     def place(self, motion: np.ndarray) -> str:
-        """Where the ball is at a motion (10,)."""
+        """Describe the ball's position at a motion (10,), for messages."""
         x, y, z = (motion[:3] / self.bearing.radial_clearance).tolist()
         gap = self.bore.smallest(motion)
         return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
@@ -255,7 +255,7 @@ class LubricatedSphericalJoint(Joint):
         return steady_spherical(self.bearing, **parts)
 
     def audit(self) -> Audit:
-        """Which effects mattered in the accepted steps, and which of them a ball's film leaves out; print it.
+        """Find the effects that mattered in the accepted steps, and those of them that a ball's film omits; print it.
 
         The films at the worst recorded steps are evaluated again, on a model of their own: the joint is not touched.
         See `exudyn_ehd.joint.spherical.audit`.
@@ -263,7 +263,7 @@ class LubricatedSphericalJoint(Joint):
         Raises
         ------
         InputError
-            Before anything was recorded.
+            If nothing was recorded yet.
         """
         h = spherical_history(self._recorded())
         if h.time.size == 0:

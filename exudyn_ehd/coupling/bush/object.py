@@ -288,7 +288,7 @@ def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np
 
 @dataclass(frozen=True, eq=False)
 class Mount:
-    """What carries a bush.
+    """Moving frame that carries a bush.
 
     Parameters
     ----------
@@ -299,7 +299,7 @@ class Mount:
     point : ndarray (3,)
         Global position of the side's frame in the reference configuration [m].
     contains : bool
-        Whether the mass of what carries the bush contains the bush's.
+        True if the mass of the carrier already contains that of the bush.
     """
 
     side: Side

@@ -42,14 +42,14 @@ SAME_TIME = 1e-3
 
 
 class Film(Element, Protocol):
-    """What accepted steps ask of the element they belong to.
+    """Element of a joint, as its accepted steps use it.
 
     Attributes
     ----------
     failures : Failures
     outer : OuterLoad
     is_massless : bool
-        Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
+        True if it has coordinates of its own without mass, which explicit solvers cannot integrate.
     """
 
     failures: Failures
@@ -276,7 +276,7 @@ class AcceptedSteps:
         return memory
 
     def _begin_of_next(self, time: float, trial: Trial) -> StepStart | None:
-        """Where the step after the state at hand begins, under solvers whose formulas are known."""
+        """Return the start of the next step; None if the solver's formulas or the state's motion are unknown."""
         known = trial.status == Status.CONVERGED or np.isfinite(trial.bodies.sum())
         if not (known and solver_state.is_implicit(self.solver)):
             return None
@@ -321,7 +321,7 @@ class AcceptedSteps:
 
     @property
     def is_idle(self) -> bool:
-        """Whether no solver is at work; after a run that an exception has ended it still seems to be."""
+        """Return whether no solver is running; False after a run that an exception has ended."""
         return solver_state.is_finished(self.solver)
 
     @property

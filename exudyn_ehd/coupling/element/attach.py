@@ -193,7 +193,7 @@ class FilmsOnOneBody:
 
     @property
     def elasticity(self) -> Elasticity:
-        """That of the body, with its growth by spin where the first film is on a journal."""
+        """Elasticity of the body; with growth by spin if the first film is on a journal."""
         return self.films[0].model.elasticity
 
     def evaluate(

@@ -1,4 +1,4 @@
-"""Whether the items that a joint was made on still are in its system, under the numbers that it knows them by."""
+"""Check that the items of a joint still exist in its system, under the same numbers."""
 
 from __future__ import annotations
 

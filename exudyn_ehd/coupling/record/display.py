@@ -118,7 +118,7 @@ class FilmDisplay:
         return data
 
     def _scale(self, bearing: JournalBearing) -> float:
-        """What the film is drawn thicker by, and the bore's deflection larger."""
+        """Return the factor by which film thickness and bore deflection are magnified in the picture."""
         return max(1.0, self.clearance * bearing.journal_radius / max(bearing.radial_clearance, self.largest))
 
     def _bore(self, scale: float) -> np.ndarray:

@@ -33,7 +33,7 @@ _MOTION_UNITS = ("m", "m", "rad", "rad", "m/s", "m/s", "rad/s", "rad/s", "rad/s"
 
 
 class Quantity(enum.Enum):
-    """What a sensor can record; the value is the name in `JointHistory`.
+    """Quantities that a sensor can record; the value is the name in `JointHistory`.
 
     Examples
     --------
@@ -105,10 +105,10 @@ _ROWS = (*_NAMES, "step_count")
 
 
 class Source(Protocol):
-    """Where a history on disk finds its columns."""
+    """Columns of a history on disk."""
 
     def column(self, name: str) -> np.ndarray:
-        """One of `_ROWS`, (n, ...)."""
+        """Return the column (n, ...) with one of the names `_ROWS`."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -224,7 +224,7 @@ class JointHistory(History, HistoryPictures):
 
     @property
     def is_thinned(self) -> bool:
-        """Whether accepted steps are missing between the rows."""
+        """Return whether accepted steps are missing between the rows."""
         return bool(np.any(np.diff(self.step_count) > 1))
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""What users call: equilibria over the speed, the speed at which they become unstable, that speed over a parameter."""
+"""User functions: equilibria over the speed, the onset speed of instability, and that speed over a parameter."""
 
 from __future__ import annotations
 

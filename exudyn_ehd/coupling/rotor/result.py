@@ -1,4 +1,4 @@
-"""What was found of rotors in their films: places, coefficients, eigenvalues, and the response to unbalance."""
+"""Results for rotors in their films: positions, coefficients, eigenvalues, and the response to unbalance."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Layout:
-    """Where things of the system are in its N directions, displacements and rotations of nodes in space.
+    """Map of the system's nodes and bodies to its N directions: displacements and rotations of nodes in space.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Layout:
     ratios : dict
         Speed of that rotor over that of the first one.
     length : float
-        Of the longest bearing, by which rotations count as displacements, m.
+        Length of the longest bearing, which scales rotations to displacements, m.
     """
 
     nodes: Mapping[int, int]
@@ -299,7 +299,7 @@ class RotorResult:
         return plot_stability(self.campbell(), ax=ax, path=path)
 
     def plot_positions(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Where the journals run over the speed, in the circle of the clearance, each over its own clearance."""
+        """Plot the journals' positions over the speed in the circle of the clearance, each over its own clearance."""
         from exudyn_ehd.pictures.rotors import plot_positions
 
         places = self.motion[:, :, :2] / self.clearances[:, None]

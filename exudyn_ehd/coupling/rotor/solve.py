@@ -240,7 +240,7 @@ class EquilibriumSearch:
         return None
 
     def _lost(self, speed: float) -> FilmError:
-        """What the films looked like when the search gave up."""
+        """Return the error of a search without equilibrium, with the state of the films at its end."""
         self._update()
         states = []
         for film in self.films:

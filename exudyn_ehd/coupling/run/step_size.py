@@ -69,7 +69,7 @@ class _Joint:
         self.after, self.wanted = self.before, math.inf
 
     def used(self, mbs: exu.MainSystem, time: float) -> float | None:
-        """What the step to ``time`` has missed over what it may miss; None if it is not known."""
+        """Return the error of the step to ``time`` over the allowed error; None if it is unknown."""
         self.wanted = math.inf
         trial, tangent, bearing = self.film.last, self.film.steps.tangent, self.film.model.bearing
         if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:

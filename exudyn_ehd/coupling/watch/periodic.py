@@ -115,12 +115,12 @@ class LastCycle:
 
 
 class Steps(Protocol):
-    """What is asked of the accepted steps of a joint.
+    """Accepted steps of a joint, as this module uses them.
 
     Attributes
     ----------
     record : Record
-        Of all steps.
+        Record of all steps.
     """
 
     record: Record
@@ -157,7 +157,7 @@ class Closing:
         self.last = begin
 
     def __call__(self, mbs: exu.MainSystem, time: float) -> bool:
-        """Whether the run goes on behind the step to ``time``."""
+        """Return whether the run goes on after the step to ``time``."""
         goes_on = bool(self.after_step(mbs, time)) if self.after_step else True
         # joints have recorded the steps before this one
         self.look(mbs, self.last)
@@ -166,7 +166,7 @@ class Closing:
 
     @property
     def closed(self) -> bool:
-        """Whether the last whole cycle is close enough to the one before and to the limit."""
+        """Return whether the last whole cycle is close enough to the one before and to the limit."""
         return bool(self.changes) and max(self.changes[-1], self.left) <= self.aim.tolerance
 
     def look(self, mbs: exu.MainSystem, time: float, *, complete: bool = False) -> None:
@@ -283,7 +283,7 @@ class RunProgress:
         self.steps, self.last = 0, (0, 0.0)
 
     def __call__(self, mbs: exu.MainSystem, t: float) -> bool:
-        """Whether the run goes on behind the step to ``t``."""
+        """Return whether the run goes on after the step to ``t``."""
         goes_on = bool(self.after_step(mbs, t)) if self.after_step else True
         if self.line is None:
             # kernels are compiled before the first call, which is behind the initial state
