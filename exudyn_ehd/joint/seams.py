@@ -130,7 +130,7 @@ def shear_product(first: ShearFactor | None, second: ShearFactor | None) -> Shea
 
 @dataclass(frozen=True)
 class Effects:
-    """What takes part in a bearing model in addition to the plain film; empty by default.
+    """Effects of a bearing model in addition to the plain film; empty by default.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Effects:
         Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
     liner : ElasticLiner or None
     uneven_drag : bool
-        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
+        True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()

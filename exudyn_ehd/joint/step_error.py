@@ -1,4 +1,4 @@
-"""What the steps of a run miss in the gap, from the accepted steps alone.
+"""Error of the gap by the steps of a run, from the accepted steps alone.
 
 A film has no inertia: in balance with its load it gives the journal's pose a rate, dp/dt = f(p, t), and a time
 integration has to add these rates up. The rates r that the film was told in the last three states tell what a step h
@@ -147,7 +147,7 @@ def errors_behind(
 
 
 def pack_of_ball(tangent: np.ndarray) -> np.ndarray:
-    """What a record keeps (15,) of a ball's tangent (3, >= 7) to place, 0 and velocity: K, and D's symmetric part."""
+    """Return the recorded part (15,) of a ball's tangent (3, >= 7) to place, 0 and velocity: K, symmetric part of D."""
     damping = -tangent[:3, 4:7]
     return np.concatenate([-tangent[:3, :3].ravel(), (0.5 * (damping + damping.T))[_UPPER]])
 
@@ -283,7 +283,7 @@ def missed_in_steps(time: np.ndarray, pose: np.ndarray, rate: np.ndarray) -> np.
 
 
 def _lag(time: np.ndarray, deflection: np.ndarray | None) -> np.ndarray:
-    """What a liner's difference quotient misses in every step of the pose (n, 4)."""
+    """Return the error of the pose (n, 4) by a liner's difference quotient in every step."""
     out = np.zeros((time.size, 4))
     if deflection is None:
         return out
@@ -365,7 +365,9 @@ def _parts(
     first: int,
     known: slice,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of ``known`` steps: what they keep of errors (m, 2 k, 2 k), add (m, 2 k), and its standard deviation (m, 2 k).
+    """Return terms of the errors' recursion for ``known`` steps.
+
+    These are the propagation (m, 2 k, 2 k), the new errors (m, 2 k) and their standard deviation (m, 2 k).
 
     Pose, rate and ``lag`` (n, k) belong to the columns of ``load`` (n, 20) from ``first`` on.
     """

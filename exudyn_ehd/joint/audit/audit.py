@@ -62,12 +62,12 @@ class Audit:
 
     @property
     def neglected(self) -> tuple[Finding, ...]:
-        """What matters and is off, or an assumption or number that does not hold."""
+        """Effects that matter and are off, and assumptions or numbers that do not hold."""
         return tuple(f for f in self.findings if f.matters and not f.on)
 
     @property
     def unneeded(self) -> tuple[Finding, ...]:
-        """What takes time and does not matter."""
+        """Effects that take time and do not matter."""
         return tuple(f for f in self.findings if f.unneeded)
 
     @property

@@ -1,4 +1,4 @@
-"""What another description of a bearing changes at the audited states: computed, not guessed.
+"""Changes by another description of a bearing at the audited states: computed, not guessed.
 
 At a steady state the journal of the other bearing is moved to where its film carries the same load; minimum film
 thickness, peak pressure and loss are compared there, the load at the same position. The films of a record that remember
@@ -36,14 +36,14 @@ NO_LOAD = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """What another description changes, relative to the bearing as it is, at the state where it changes most.
+    """Changes by another description, relative to the bearing as it is, at the state where they are largest.
 
     Attributes
     ----------
     load : float
-        At the same position or motion; nan if there is no such film.
+        Change at the same position or motion; nan if there is no such film.
     minimum_gap, peak_pressure, power_loss : float
-        At the same load; nan if no film was found that carries it.
+        Changes at the same load; nan if no film was found that carries it.
     """
 
     load: float
@@ -53,7 +53,7 @@ class Change:
 
     @property
     def found(self) -> bool:
-        """Whether a film was found that carries the same load."""
+        """Return whether a film was found that carries the same load."""
         return not math.isnan(self.minimum_gap)
 
     @property

@@ -1,4 +1,4 @@
-"""What an audit looks at: recorded steps of a joint, states to evaluate again, and the numbers that one film shows."""
+"""Data of an audit: recorded steps of a joint, states to evaluate again, and the numbers of one film."""
 
 from __future__ import annotations
 

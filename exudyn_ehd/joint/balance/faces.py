@@ -31,7 +31,7 @@ CLOSED, FARTHEST = 1e-3, 100.0
 
 @dataclass(frozen=True, eq=False)
 class FacesShare:
-    """What the faces add at one position of the journal.
+    """Contribution of the thrust faces at one position of the journal.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class FacesShare:
     tangent : (6, 11) array
         d wrench / d (motion, axial position).
     slope : (2, 2) array
-        What they add to dF/d(x, y) of the journal's film, with an axial load at the place that follows (x, y).
+        Contribution to dF/d(x, y) of the journal's film; under an axial load the axial position follows (x, y).
     """
 
     evaluation: ThrustEvaluation

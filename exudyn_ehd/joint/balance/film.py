@@ -155,7 +155,9 @@ def _settle_field(
 
 
 def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) -> np.ndarray:
-    """What Anderson's acceleration takes off the next step of a fixed-point iteration, ``damping`` times its change.
+    """Return the part of the next fixed-point step that Anderson's acceleration subtracts.
+
+    The step is ``damping`` times the iteration's change.
 
     ``past``: points (k,) of two rounds and more with the changes (k,) that the iteration gave there, the newest last.
     """
@@ -164,7 +166,7 @@ def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) ->
 
 
 def is_settled(T: float | np.ndarray, change: float | np.ndarray, cold: float | np.ndarray) -> bool:
-    """Whether a change of a field of temperatures counts as none."""
+    """Return whether a change of a temperature field is negligible."""
     rise = max(float(np.ptp(T + change)), float(np.abs(T - cold).max()), 1e-3)
     return float(np.abs(change).max()) <= SETTLED * rise
 
@@ -178,13 +180,13 @@ def _unsettled(change: float) -> FilmError:
 
 
 def lacks_oil(bearing: JournalBearing) -> bool:
-    """Whether the film conserves mass and has no source of oil, unless the journal slides along."""
+    """Return whether the film conserves mass and has no source of oil, unless the journal slides axially."""
     closure = bearing.cavitation
     return closure.conserves_mass and not is_fed(bearing, closure.cavity_pressure)
 
 
 def is_fed(bearing: JournalBearing, cavity_pressure: float) -> bool:
-    """Whether oil comes to cavities of this pressure, Pa, from ends, supply or an open inlet."""
+    """Return whether ends, supply areas or an open inlet feed oil into cavities of this pressure, Pa."""
     supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap)
     return supplied or max(bearing.end_pressures) > cavity_pressure
 

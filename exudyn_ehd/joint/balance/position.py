@@ -158,13 +158,13 @@ class LoadSearch:
         return motion
 
     def damped(self, motion: np.ndarray, tolerance: float) -> Carried:
-        """Where damped steps lead from a motion (10,); see `newton`."""
+        """Return the result of damped Newton steps from a motion (10,); see `newton`."""
         self._follows = np.zeros((2, 2))
         held_back = 10.0 * self.size / self.model.bearing.radial_clearance
         return self.newton(self._start(motion), tolerance, LARGEST_DAMPED_STEPS, held_back)
 
     def _remedy(self) -> str:
-        """What to try for a load that was not found, by the largest that films on the way have carried."""
+        """Return the remedy for a load that was not found, with the largest load carried during the search."""
         if self.strongest[0] > self.size:
             return (
                 f"On the way a film has carried more, {self.strongest[0]:.4g} N at eccentricity ratio "

@@ -36,9 +36,9 @@ LARGEST_WAY, STRAIGHT_WAY = 3000, 60
 
 
 class Elasticity:
-    """What resists the bore's coordinates in a steady state: a constant stiffness matrix.
+    """Stiffness of the bore's coordinates in a steady state: a constant matrix.
 
-    `exudyn_ehd.joint.bore.solid` has that of a solid at any strain.
+    `exudyn_ehd.joint.bore.solid` has the stiffness of a solid at any strain.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Elasticity:
     Attributes
     ----------
     failure : str
-        Why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
+        Reason why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
     straight : bool
         `settle` gives up where Newton's method does not go straight to a balance: for searches that can come nearer.
     """
@@ -79,7 +79,7 @@ class Elasticity:
         return evaluation.tangent()
 
     def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray | None:
-        """The same, exact; None if `tangent` is."""
+        """Return the exact tangent; None if `tangent` is exact."""
         return None
 
     def settle(
@@ -89,7 +89,7 @@ class Elasticity:
         film: tuple[History | None, float, float],
         start: np.ndarray,
     ) -> tuple[NodalEvaluation | None, int, tuple[float, np.ndarray]]:
-        """As `bore_equilibrium`."""
+        """Find the balance of bore and film, as `bore_equilibrium` does."""
         return bore_equilibrium(model, motion, film, start)
 
 
@@ -174,7 +174,7 @@ class Newton(Generic[Result]):
         self.trials = 0
 
     def settle(self, q: np.ndarray, part: float) -> Result | None:
-        """As `solve`: straight, or as a viscous bore comes there from q, or somehow."""
+        """Find the balance by full Newton steps, else as a viscous bore comes to rest from q, else by halved steps."""
         found = self.solve(q, part, straight=True)
         if found is None and self.trials < LARGEST_EFFORT and not self.model.elasticity.straight:
             found = self._come_to_rest(q, part) or self.solve(q, part)

@@ -1,4 +1,4 @@
-"""From the film's vertices to the faces of a bore and back: pressures as loads, displacements as gaps.
+"""Transfer between the film's vertices and the faces of a bore: pressures as loads, displacements as gaps.
 
 The pressure is interpolated along every line of vertices, ``p(x) = sum_v p_v L_v(x)``, by the cubic through the four
 vertices around x. With the vertices' integration weights A_v and the bore's shape functions N
@@ -80,9 +80,9 @@ def vertex_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
 
 
 def end_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
-    """The same (2 n, nodes) for ``int p N dA`` of p = (1 - zeta) / 2 and (1 + zeta) / 2, zeta = 2 z / L.
+    """Return S (2 n, nodes) of the loads ``int p N dA`` of p = (1 - zeta) / 2 and (1 + zeta) / 2, zeta = 2 z / L.
 
-    Along each of the n lines of vertices one after the other, divided by the integral of p, which is half the length.
+    Rows follow the n lines of vertices one after the other. They are divided by the integral of p, half the length.
     """
     z, _, weight = _along(grid, faces.cuts[1] / grid.reference_length)
     theta, around = _around(grid, faces.cuts[0])

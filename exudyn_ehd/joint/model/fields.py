@@ -63,7 +63,7 @@ class FilmFields(JointFilm, FilmPictures):
 
 
 def film_record(film: SolvedFilm) -> Film:
-    """What both `FilmFields` and a steady result hold of a solved film, copied."""
+    """Return the common data of `FilmFields` and of a steady result for a solved film, copied."""
     film.require_current()
     solver, grid, temperature, bearing = film.solver, film.grid, film.temperature, film.parts.bearing
     liner, bore = film.parts.liner, film.bore

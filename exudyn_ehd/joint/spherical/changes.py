@@ -1,4 +1,4 @@
-"""What another description of a ball changes: films that carry the same load at the same velocities."""
+"""Changes by another description of a ball: films that carry the same load at the same velocities."""
 
 from __future__ import annotations
 

@@ -363,7 +363,7 @@ class SphericalModel:
 
 
 def _drag_of_moments(R: float) -> np.ndarray:
-    """From the moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
+    """Return the map from moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
     out = np.zeros((6, 6, 10))
     for k in range(3):
         turn = R * skew(np.eye(3)[k])

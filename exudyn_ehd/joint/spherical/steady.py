@@ -79,7 +79,7 @@ class SphericalResult:
         return f"<SphericalResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
 
     def audit(self) -> Audit:
-        """Which effects matter in this film, and which of them it leaves out; print it for a table."""
+        """Find the effects that matter in this film, and those of them that the film omits; print it for a table."""
         # imported here: films need none of it
         from exudyn_ehd.joint.spherical.audit import audit_ball
 

@@ -283,7 +283,7 @@ def equilibrium(
 
 
 class _SmallMotions(NamedTuple):
-    """What `EquilibriumResult` has of small motions."""
+    """Values of small motions in `EquilibriumResult`."""
 
     stiffness: np.ndarray
     damping: np.ndarray
@@ -295,7 +295,7 @@ class _SmallMotions(NamedTuple):
 
 
 def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
-    """Of a position whose film is the model's last."""
+    """Return the values of small motions about a position whose film is the model's last."""
     evaluation, omega = found.evaluation, abs(float(found.motion[8]))
     central = is_central(evaluation)
     if central:

@@ -133,14 +133,14 @@ class SteadyResult(Film, FilmPictures):
         return f"<SteadyResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
-        """Which effects matter at this position, are left out, or take time without need; print it for a table.
+        """Find effects at this position that matter, are omitted, or take time without need; print it for a table.
 
         Parameters
         ----------
         liner : ElasticLiner, optional
-            Of which to say whether its elasticity would matter; for bearings without one.
+            Liner whose elasticity is assessed, for bearings without one.
         measure_time : bool
-            Measure the share of the time that every effect takes which is on.
+            Measure the share of computing time of each active effect.
 
         Returns
         -------
