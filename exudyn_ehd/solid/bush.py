@@ -1,4 +1,4 @@
-"""What a scene writes about a flexible bush: on the nodes of its mesh, or reduced to modes of its bore."""
+"""Descriptions of flexible bushes by the user: on the nodes of a mesh, or reduced to modes of the bore."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Rayleigh:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Solid:
-    """What both kinds of bush are made of; parameters as in `ANCFBush`."""
+    """Common part of both kinds of bush; parameters as in `ANCFBush`."""
 
     mesh: HollowCylinder | BushMesh
     material: SaintVenantKirchhoff

@@ -1,4 +1,4 @@
-"""Where a finite-element body carries the film: the nodes and faces of its bore, and their shape functions, unrolled.
+"""Surface under the film of a finite-element body: nodes and faces of its bore, and their shape functions, unrolled.
 
 Faces are those of hexahedra, or triangles of three or six nodes.
 """
@@ -26,7 +26,7 @@ OUTSIDE = 0.02
 
 
 class BodyMesh(Protocol):
-    """What is read of the ``FEMinterface`` that a body was made of, and filled into it."""
+    """Attributes of a body's ``FEMinterface`` that are read and written."""
 
     nodes: dict[str, np.ndarray]
     elements: list[dict[str, np.ndarray]]
@@ -63,7 +63,7 @@ class BoreFaces(Unrolled):
 
     @property
     def local(self) -> np.ndarray:
-        """As `faces`."""
+        """Indices of the faces into ``positions``: `faces`."""
         return self.faces
 
     def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:

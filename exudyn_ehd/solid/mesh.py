@@ -61,7 +61,7 @@ class Surface(Unrolled):
 
     @property
     def local(self) -> np.ndarray:
-        """As `local_faces`."""
+        """Indices of the faces into ``positions``: `local_faces`."""
         return self.local_faces
 
     @cached_property
@@ -190,7 +190,7 @@ class BushMesh:
 
     @property
     def element(self) -> Element:
-        """What the elements are."""
+        """Kind of the elements."""
         return element_of(self.elements)
 
     @cached_property

@@ -28,16 +28,16 @@ _SOLIDS = ("tetra", "hexahedron", "wedge", "pyramid", "VTK_LAGRANGE")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FileMesh:
-    """What a file holds of one body.
+    """Mesh of one body in a file.
 
     Attributes
     ----------
     nodes : ndarray (n, 3)
-        In the file's unit; of an instance in the assembly's frame.
+        Positions in the file's unit; those of an instance in the assembly's frame.
     elements : ndarray of int (m, 20) or (m, 10)
         Rows of ``nodes``.
     numbers : ndarray of int (m,)
-        Of the elements in the file.
+        Numbers of the elements in the file.
     sets : dict
         Rows of ``nodes`` by the names of node sets.
     """

@@ -70,7 +70,7 @@ class JournalModes:
         return interpolation(self.edges, z) @ self.profiles.T
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """What unit coordinates open the gap by on the grid theta x z, (len(theta), len(z), k)."""
+        """Return the opening of the gap by unit coordinates on the grid theta x z, (len(theta), len(z), k)."""
         return self.around(theta)[:, None] * self.along(z)
 
 

@@ -134,12 +134,12 @@ class TurningJournal:
 
     @property
     def waves(self) -> JournalModes:
-        """Of the film."""
+        """Waves of the journal's surface that the film sees."""
         return self._parts[0]
 
     @cached_property
     def _partner(self) -> tuple[np.ndarray, np.ndarray]:
-        """Of every wave the number of its other phase, and its rate per angle from there."""
+        """Number of the other phase of every wave, and the wave's rate per angle from there."""
         n, is_sine = self.waves.waves, self.waves.phases > 0.0
         own = np.arange(n.size)
         for wave in np.unique(n[n > 0.0]):
@@ -163,9 +163,9 @@ class TurningJournal:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """What resists the modes in the film's object: nothing (k,), the body does it itself."""
+        """Stiffness (k,) of the modes in the film's object: zero, since the body has its own."""
         return np.zeros(self.count)
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """What unit modes open the gap by at no angle on the grid theta x z, (len(theta), len(z), k)."""
+        """Return the opening of the gap by unit modes at zero angle, on the grid theta x z, (len(theta), len(z), k)."""
         return self.waves.radial(theta, z) @ self.map(0.0)

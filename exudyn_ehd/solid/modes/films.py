@@ -208,7 +208,7 @@ def answers(
     tilted: bool,
     without_rigid: bool = False,
 ) -> Answers:
-    """What a body does under the films; odd pressures come in if it answers even ones by odd displacements.
+    """Return a body's responses to the films; odd pressures are included if even ones displace the body oddly.
 
     Parameters
     ----------

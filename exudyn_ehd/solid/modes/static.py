@@ -69,7 +69,7 @@ class BoreModes:
 
     @property
     def faces(self) -> Surface:
-        """Of the bore."""
+        """Faces of the bore."""
         return self.mesh.bore
 
     def largest_strain(self, coordinates: np.ndarray) -> float:
@@ -90,7 +90,7 @@ class BoreModes:
         return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
 
     def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """The same (p, k) at points (p,) whose ``values`` (p, nodes) of displacements come from those at the nodes."""
+        """Return `radial` (p, k) at points (p,), where ``values`` (p, nodes) maps nodal displacements to the points."""
         H = directed(values, np.stack([np.cos(theta), np.sin(theta)], axis=1))
         bore = self.displacements[:, self.faces.nodes].reshape(self.count, -1)
         return np.ascontiguousarray(H @ bore.T)
