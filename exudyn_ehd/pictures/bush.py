@@ -41,12 +41,12 @@ class Frame:
 
 @dataclass(frozen=True, kw_only=True)
 class View:
-    """How the bush is looked at.
+    """View of a bush in its pictures.
 
     Parameters
     ----------
     axes : three ints
-        Which coordinates run along the picture's first, second and vertical axis; the default puts y upright.
+        Coordinates along the picture's first, second and vertical axis; the default puts y upright.
     elevation, azimuth : float
         Camera angles [deg].
     magnification : float

@@ -1,5 +1,5 @@
-"""What the pictures look at: a film on its grid, the film of a joint, and a history; whatever is one can be drawn.
-A quantity is shown in the usual unit of its size, with its factor from SI.
+"""Data of the pictures: a film on its grid, the film of a joint, and a history. Any object with these attributes can be
+drawn. A quantity is shown in the usual unit of its size, with its factor from SI.
 """
 
 from __future__ import annotations
