@@ -1,4 +1,4 @@
-"""What a scene writes: one frozen, validated description per bearing. Effects are named or absent."""
+"""Descriptions of bearings by the user: one frozen, validated object per bearing. Effects are named or absent."""
 
 from __future__ import annotations
 
@@ -212,7 +212,7 @@ class JournalBearing:
             )
 
     def _check_plain(self) -> None:
-        """What `ImpedanceMap` needs: nothing besides geometry, viscosity and a closure at ambient cavity pressure."""
+        """Check for `ImpedanceMap`: nothing besides geometry, viscosity and a closure at ambient cavity pressure."""
         expected = "the map holds plain bearings only; use film=FiniteLength(...)."
         own = {"journal_radius", "length", "radial_clearance", "lubricant", "film", "cavitation"}
         # without a thermal effect the oil has its viscosity, and all else of it that heat would need is not asked for

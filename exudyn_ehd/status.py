@@ -294,7 +294,7 @@ def require_number(
 
 
 def require_numbers(item: object, *, above: float | None = None, at_least: float | None = None, **units: str) -> None:
-    """As `require_number` for attributes of an object, by name with their units."""
+    """Check attributes of an object by `require_number`; keywords are their names, with their units as values."""
     for name, unit in units.items():
         where = f"{type(item).__name__}.{name}"
         require_number(where, getattr(item, name), unit, above=above, at_least=at_least)
@@ -309,7 +309,7 @@ def require_integer(where: str, value: int, *, at_least: int, hint: str = "") ->
 
 
 def require_count(where: str, value: int, *, at_least: int, hint: str = "it is of a film grid.") -> int:
-    """As `require_integer`, of vertices or intervals of a film grid in one direction: up to `MOST_VERTICES`."""
+    """Return a number of vertices or intervals of a film grid in one direction, checked: up to `MOST_VERTICES`."""
     count = require_integer(where, value, at_least=at_least, hint=hint)
     if count > MOST_VERTICES:
         raise InputError(f"{where} must be within {at_least} and {MOST_VERTICES}, got {value!r}; {hint}")

@@ -1,4 +1,4 @@
-"""What a steady film says of a bearing, and how far two grids are apart in it.
+"""Results of a steady film of a bearing, and the difference of two grids in them.
 
 A converged reference and an estimate of its own error from three levels of refinement.
 
@@ -112,7 +112,7 @@ def converged(levels: Sequence[np.ndarray], *, ratio: float, formal_order: float
 
 
 def scale_of(name: str, reference: np.ndarray) -> float:
-    """What errors of a quantity against ``reference`` are divided by."""
+    """Return the divisor of a quantity's errors against ``reference``."""
     scale = SCALES[name]
     largest = float(np.max(np.abs(reference))) if scale is None else scale
     return largest if largest > 0.0 else 1.0

@@ -22,14 +22,14 @@ _FORMAT = "exudyn_ehd parameter_study 1"
 
 @dataclasses.dataclass(frozen=True)
 class Row:
-    """What came back from one call.
+    """Result of one call.
 
     Attributes
     ----------
     results : dict
         Numbers by name; empty if it failed.
     error : str
-        Why it failed, in one line; empty if it did not.
+        Reason of a failure, in one line; empty without one.
     seconds : float
         Wall time; nan if the call never returned.
     """

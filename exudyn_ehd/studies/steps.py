@@ -1,4 +1,4 @@
-"""How many time steps a bearing needs in a mechanism, measured on the bearing alone under the load of one cycle.
+"""Number of time steps that a bearing needs in a mechanism, measured on the bearing alone under one cycle's load.
 
 The journal, a mass with a given spin, carries the cycle's load on the film, in Exudyn and with the settings of
 `ConfigureSolver`, for two periods; the second one counts. Runs with N and 2 N steps a period differ by
