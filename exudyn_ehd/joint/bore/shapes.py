@@ -39,7 +39,7 @@ _NO_PLACES, _NO_VALUES = np.zeros(0, dtype=np.int32), np.zeros(0)
 
 
 class Bore(Protocol):
-    """What a bearing model needs from a flexible bore with k coordinates on an (n, m) film grid."""
+    """Flexible bore with k coordinates on an (n, m) film grid, as a bearing model uses it."""
 
     @property
     def size(self) -> int:
