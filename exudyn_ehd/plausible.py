@@ -310,7 +310,7 @@ def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
     where : str
         ``Class.argument`` or ``function: argument``, as in messages.
     value : object
-        As given, for the message.
+        Value as given, for the message.
     size : float
         Its size in the unit of the table.
     """

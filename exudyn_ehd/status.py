@@ -233,9 +233,9 @@ def require_plausible(where: str, value: object, size: float | np.ndarray | None
     where : str
         ``Class.argument``, as in the table.
     value : object
-        What the user gave.
+        Value given by the user.
     size : float or array, optional
-        What is judged in place of ``value``, which then is only named; of arrays the largest number.
+        Size to be judged in place of ``value``, which then is only named; of arrays the largest number.
     """
     judged = np.abs(np.asarray(value if size is None else size, dtype=float))
     largest = float(judged.max(initial=0.0))
@@ -264,7 +264,7 @@ def require_number(
     where : str
         ``Class.argument`` for the message.
     value : float
-        What the user gave.
+        Value given by the user.
     unit : str
         SI unit for the message.
     above, at_least, below, at_most : float, optional

@@ -46,7 +46,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     mbs : exudyn.MainSystem
         The system it belongs to.
     bearing : object
-        What was given as bearing.
+        Bearing as given by the user.
     objectNumber : exudyn.ObjectIndex
         The film element.
     constraintNumber : exudyn.ObjectIndex or None

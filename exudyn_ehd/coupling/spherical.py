@@ -119,8 +119,8 @@ class SphericalHistory:
     time : (n,) array
         s.
     place, velocity, angular_velocity : (n, 3) arrays
-        Of the ball's centre and of the ball as seen from the socket, m, m/s, rad/s; velocities as the film takes them
-        (`exudyn_ehd.joint.step_rates`).
+        Motion of the ball's centre and of the ball as seen from the socket, m, m/s, rad/s; velocities as the film
+        takes them (`exudyn_ehd.joint.step_rates`).
     force, torque : (n, 3) arrays
         On the ball, N; torque about its centre, N m.
     eccentricity_ratio : (n,) array
@@ -355,7 +355,7 @@ def CreateLubricatedSphericalJoint(
     show : bool
         Draw the socket in Exudyn's renderer, in the colours of its pressure.
     color : (4,)
-        Of the film element's nodes, RGBA; Exudyn's default for -1.
+        Colour of the film element's nodes, RGBA; Exudyn's default for -1.
 
     Returns
     -------

@@ -142,7 +142,7 @@ class Effects:
     shear_factor : ShearFactor or None
     thermal : ThermalEffect or None
     density : CompressibleLaw or None
-        Of a compressible film; then also the ``pressure_law``.
+        Density law of a compressible film; then also the ``pressure_law``.
     wear : Wear or None
         Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
     liner : ElasticLiner or None

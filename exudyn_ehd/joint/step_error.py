@@ -122,7 +122,7 @@ def errors_behind(
     clearance, length : float
         m.
     deflection : (n, 2) array, optional
-        Of a liner, where it is largest, m.
+        Deflection of a liner, where it is largest, m.
     load : (n, 20) array
         On the film, N and N m (rows of `JOURNAL`), nan where it is not known: no jump. Behind it, see `OFFSET`: offset,
         nan where it is not known, masses (kg, kg m^2), momentum missed (N s, N m s) and forces of inertia (N, N m).
@@ -210,19 +210,19 @@ def next_error(
     Parameters
     ----------
     time : (n,) array
-        Of the last states, three or more, six to tell all pulses from ringing, s.
+        Times of the last states, three or more, six to tell all pulses from ringing, s.
     motion : (n, 10) array
         There, with the rates that the film was told.
     tangents : two (6, 10) arrays
-        Of the film's wrench, at the start of the step and at its end.
+        Tangents of the film's wrench, at the start of the step and at its end.
     load : (n, 20) array
         On the film, as for `errors_behind` or `errors_of_ball`.
     before : sequence of arrays
         Errors at the start of the step: `NO_ERROR`, `NO_BALL_ERROR` or what was returned.
     length, largest : float
-        Of the bearing, and error of the gap that is allowed, m.
+        Length of the bearing, and allowed error of the gap, m.
     deflection : (n, 2) array, optional
-        Of a liner, where it is largest, m.
+        Deflection of a liner, where it is largest, m.
 
     Returns
     -------

@@ -28,7 +28,7 @@ class Kernel(NamedTuple):
     Attributes
     ----------
     group : str
-        Which films need it.
+        Films that need it.
     function : str
         ``module:function``, modules without the package's name.
     arguments : str

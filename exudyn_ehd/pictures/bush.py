@@ -70,7 +70,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view:
     mesh : BushMesh
     frames : sequence of Frame
     label : str
-        Of the colour bar, with unit.
+        Label of the colour bar, with unit.
     view : View, optional
     """
     if len(frames) == 0:

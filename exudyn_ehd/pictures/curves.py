@@ -38,9 +38,9 @@ def plot_curves(
     ----------
     curves : sequence of Curve
     names : (str, str)
-        Of the columns x and y; quantities that are known are shown in their usual unit.
+        Names of the columns x and y; known quantities are shown in their usual unit.
     units : dict
-        Of columns by name, for others.
+        Units of other columns by name.
     ax : matplotlib Axes, optional
     path : path, optional
 

@@ -147,7 +147,7 @@ class ModalBush(_Solid):
         False leaves out the modes that are odd in z: for journals that stay parallel, others are warned of. A bush
         that is not symmetric about its mid-plane gets them all the same.
     quadrature : Quadrature, optional
-        Of the stiffness, as in `ANCFBush`.
+        Quadrature of the stiffness, as in `ANCFBush`.
 
     Examples
     --------

@@ -80,7 +80,7 @@ class FEBore(FESurface):
     nodes : sequence of int, optional
         Mesh nodes on the bore; by default those on the cylinder around the joint's axis.
     radius_tolerance : float
-        How far a node's radius may be from the bearing's bore radius, over that radius.
+        Largest relative difference of a node's radius from the bearing's bore radius.
     settled : bool
         Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
         where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
@@ -108,9 +108,9 @@ class ReducedBore:
     displacements : ndarray, shape (n, 3, k)
         Their displacements per unit of the modes.
     stiffness_matrix : ndarray, shape (k, k)
-        Of the modes, with the body's frame held.
+        Stiffness of the modes, with the body's frame held.
     radius, length : float
-        Of the film's area [m].
+        Radius and length of the film's area [m].
     settled, exact_jacobian : bool
         As in `FEBore`.
     """
@@ -244,7 +244,7 @@ def add_bore_modes(
     position, axis : three numbers
         Mid-plane point [m] and direction of the bore's axis, in the body's frame.
     radius, length : float
-        Of the bore under the film [m].
+        Radius and length of the bore under the film [m].
     fixed_nodes : sequence of int
         Mesh nodes held: those of the first interface, which carries the body's frame.
     tolerance, tilted

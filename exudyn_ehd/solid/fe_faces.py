@@ -163,13 +163,13 @@ def find_bore(
     positions : ndarray, shape (n, 3)
         All nodes in the joint's frame [m].
     radius, length : float
-        Of the film's area [m].
+        Radius and length of the film's area [m].
     tolerance : float
         On a node's radius, over the radius.
     nodes : sequence of int, optional
-        Where to look; by default all.
+        Nodes to search; by default all.
     outer : bool
-        Of a journal, whose surface is what is farthest from its axis.
+        True for a journal, whose surface is farthest from its axis.
 
     Raises
     ------

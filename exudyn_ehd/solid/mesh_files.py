@@ -81,7 +81,7 @@ def read_abaqus(where: str, path: pathlib.Path, instance: str | None = None) -> 
         For messages.
     path : path
     instance : str, optional
-        Of several.
+        Name of the instance, if there are several.
 
     Raises
     ------

@@ -66,7 +66,7 @@ class Converged:
     Attributes
     ----------
     value : ndarray
-        Of the finest level, not extrapolated.
+        Value of the finest level, not extrapolated.
     error : float
         Estimate of the distance from ``value`` to the limit.
     order : float
@@ -139,7 +139,7 @@ def measure_motions(model: Model, motions: Motions) -> tuple[dict[str, np.ndarra
     Raises
     ------
     FilmError
-        Where there is no film.
+        If there is no film.
     """
     columns: dict[str, list[float | np.ndarray]] = {}
     iterations, before = 0, _films(model)

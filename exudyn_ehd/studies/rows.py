@@ -78,7 +78,7 @@ class RowFile:
     path : path
         New, or written by a study of the same function.
     function : callable
-        What the rows are results of; a file of another one is refused.
+        Function of which the rows are results; a file of another one raises an error.
     """
 
     def __init__(self, path: str | pathlib.Path, function: Function) -> None:

@@ -101,16 +101,16 @@ def recommend_steps(
     bearing : JournalBearing
         Any that moves in a plane; with an `ANCFBush` it takes minutes.
     error : float
-        Of the minimum film thickness, relative to its smallest value in the period.
+        Error of the minimum film thickness, relative to its smallest value in the period.
     speed : float or (n,) array
         Spin of the journal in the housing, rad/s; of a pin that swings at the instants of the load.
     period : float
-        Of the load, s: a turn of a crank, two of a four-stroke engine.
+        Period of the load, s: a turn of a crank, two of a four-stroke engine.
     load : (n, 2) array
         Force on the journal at n equal intervals of a period, in the housing's frame, N, n >= 8: of a run with an ideal
         joint, say.
     mass : float
-        Of the lighter of the two bodies, kg.
+        Mass of the lighter of the two bodies, kg.
 
     Returns
     -------

@@ -38,7 +38,7 @@ class Support:
     nodes : ndarray of int
         Mesh node numbers, for example ``mesh.end_low.nodes`` or ``mesh.generatrix(...).nodes``.
     directions : three bools
-        Which of x, y, z are held.
+        True for those of x, y, z that are held.
 
     Examples
     --------
@@ -209,7 +209,7 @@ def CreateFlexibleBush(
         Name of the object.
     bush : ANCFBush
     outer : FreeOuter, FixedOuter or CarriedOuter
-        What holds the outer surface.
+        Support of the outer surface.
     position : three numbers
         Global reference position of the bush frame [m].
     rotationMatrix : ndarray, shape (3, 3), optional

@@ -96,15 +96,15 @@ class AcceptedSteps:
     solver : object or None
         The one of them that is at work.
     memory : History or None
-        What the film remembers at ``start``; None for a film that remembers nothing, or is steady.
+        Memory of the film at ``start``; None for a film that remembers nothing, or is steady.
     asked : (float, list of float)
         Time and coordinates for which a solver has asked last.
     begin : StepStart or None
-        Where the present step begins; None where the film takes the velocities as they are.
+        Start of the present step; None where the film takes the velocities as they are.
     control : GapWatch or None
         Rejects steps that are too coarse.
     record : Record
-        What was accepted.
+        Record of the accepted steps.
     recorder : FilmRecorder or None
         Keeps films.
     observers : list of functions
@@ -118,7 +118,7 @@ class AcceptedSteps:
     chosen : bool
         Whether the run under way chooses the size of its steps.
     tangent : (6, 10) array or None
-        Of the film's wrench, as Newton's method of an implicit run has asked for it last.
+        Tangent of the film's wrench that Newton's method of an implicit run has evaluated last.
     """
 
     def __init__(self, film: Film) -> None:

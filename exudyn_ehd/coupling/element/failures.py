@@ -41,7 +41,7 @@ class Failures:
     Parameters
     ----------
     name : str
-        Of the joint.
+        Name of the joint.
     bearing : JournalBearing
 
     Attributes

@@ -94,12 +94,12 @@ class ModalFilmElement(BoreFilmElement):
     Parameters
     ----------
     bore : ModalBore or TurningJournal
-        That of the model.
+        Bore of the model.
 
     Attributes
     ----------
     modes : BoreModes, ReducedBore or None
-        Of the bore; those of an elastic journal follow.
+        Modes of the bore; those of an elastic journal follow.
     stiffness : (k,) array
         Modal stiffness, N/m.
     """

@@ -22,9 +22,9 @@ class Presence:
     ----------
     mbs : exudyn.MainSystem
     name : str
-        Of the joint.
+        Name of the joint.
     owner : object
-        Whose method is the force function of the joint's object.
+        Object whose method is the force function of the joint's object.
     number : exudyn.ObjectIndex
         The joint's object.
     sides : pair of Side

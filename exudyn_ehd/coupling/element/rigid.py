@@ -58,13 +58,13 @@ class FilmElement:
     is_massless : bool
         Whether it has coordinates of its own whose mass is a numerical one.
     evaluations : int
-        How often the film was asked.
+        Number of film evaluations.
     kinematics : module
         Of the motion that the film knows.
     crew : SideBySide or None
         Evaluates it with the films of other joints.
     late : Exception or None
-        What `arrive` has met, for the film's own call.
+        Error of `arrive`, which the film's own call raises.
     """
 
     kinematics: ModuleType = relative

@@ -41,7 +41,7 @@ class Film(Protocol):
     Attributes
     ----------
     crew : SideBySide or None
-        Whom it tells of its calls.
+        Group of films that is told of its calls.
     late : Exception or None
         Error of `arrive` that its own call raises.
     model : JointModel
@@ -73,7 +73,7 @@ class SideBySide:
     Parameters
     ----------
     films : sequence of Film
-        Of all joints, each in its own model.
+        Films of all joints, each in its own model.
     threads : int
         More than one.
 

@@ -42,7 +42,7 @@ class ThrustElement:
     Parameters
     ----------
     film : FilmElement
-        Of the journal's film, which keeps the record.
+        Element of the journal's film, which keeps the record.
     sides : pair of Side
         Housing and journal, not those of ``film``.
     offset : float
@@ -51,7 +51,7 @@ class ThrustElement:
     Attributes
     ----------
     objectNumber : exudyn.ObjectIndex
-        Of the element in the system.
+        Number of the element in the system.
     """
 
     objectNumber: ObjectIndex
@@ -184,7 +184,7 @@ def attach_faces(
     ----------
     mbs : exudyn.MainSystem
     film : FilmElement
-        Of the journal's film.
+        Element of the journal's film.
     items : pair of Item
         Housing and journal.
     points, rotation : pair of (3,) arrays, (3, 3) array

@@ -84,7 +84,7 @@ class FloatingBody:
     Parameters
     ----------
     frame : NodeSide
-        Of the rigid node, without a lever arm.
+        Frame of the rigid node, without a lever arm.
     integrals : BodyIntegrals
     """
 

@@ -222,7 +222,7 @@ def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f
         Wrench and loads on the modes to the motion and, combined by f_q and f_qt, to the modes; without their stiffness
         (k,).
     k_rigid, d_rigid, motion_q, motion_qt : (n, n), (n, n), (10, n), (10, n) arrays
-        Of the sides, see `tangent_matrices`.
+        Matrices of the sides, see `tangent_matrices`.
     wrench_map : (n, 6) array
     """
     n, k = wrench_map.shape[0], stiffness.size

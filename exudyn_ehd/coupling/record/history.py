@@ -158,7 +158,7 @@ class JointHistory(History, HistoryPictures):
         Number of the accepted step, 0 for the initial state; it has gaps where the record was thinned (`Every`,
         `Period`): the first, last and worst steps are there, and ``step_error`` is the largest since the row before.
     radial_clearance, journal_radius, length : float
-        Of the bearing [m].
+        Dimensions of the bearing [m].
 
     Notes
     -----

@@ -58,7 +58,7 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, since: fl
     Parameters
     ----------
     name : str
-        Of the joint.
+        Name of the joint.
     bearing : JournalBearing
     history : JointHistory
         With one step or more.

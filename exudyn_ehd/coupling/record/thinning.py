@@ -102,7 +102,7 @@ class Thinner:
     ----------
     rule : Every or Period
     clearance, length : float
-        Of the bearing, m.
+        Radial clearance and length of the bearing, m.
     lags : bool
         Whether it is on a liner.
     """

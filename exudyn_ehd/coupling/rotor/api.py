@@ -48,7 +48,7 @@ def SolveEquilibrium(
     mbs : exudyn.MainSystem
         Assembled, with lubricated joints whose journals spin.
     speeds : float or (k,) array
-        Of the first rotor about its joint's z axis, rad/s, not 0. Each is looked for from the one before.
+        Speeds of the first rotor about its joint's z axis, rad/s, not 0. Each is looked for from the one before.
     rotors : sequence, optional
         One entry for every rotor: a body or node, to which all is added that turns with it through beams, fixed joints
         and springs that hold all rotations; or a sequence of all of its bodies and nodes. The first one is driven at

@@ -72,7 +72,7 @@ class FilmLoads(NamedTuple):
     by_place, by_rate : (n, n) arrays
         Its derivatives by x and u.
     motion_by_place : (10, n) array
-        Of the journal's motion in the joint frame.
+        Derivative of the journal's motion in the joint frame.
     """
 
     force: np.ndarray

@@ -62,7 +62,7 @@ class RotorResult:
     Attributes
     ----------
     speeds : (k,) array
-        Of the first rotor, rad/s.
+        Speeds of the first rotor, rad/s.
     joints : tuple of str
         Names of the films' joints.
     motion : (k, j, 10) array
@@ -91,7 +91,7 @@ class RotorResult:
     clearances : (j,) array
         Radial clearances, m.
     layout : Layout
-        Where bodies are in the directions.
+        Map of bodies to the directions.
 
     Examples
     --------
@@ -263,7 +263,7 @@ class RotorResult:
         Parameters
         ----------
         mbs : exudyn.MainSystem
-            That of the result, or one like it, assembled.
+            System of the result, or one like it, assembled.
         speed : float
             One of ``speeds``, rad/s.
 
@@ -317,14 +317,14 @@ class UnbalanceResponse:
     Attributes
     ----------
     speeds, spin : (k,) arrays
-        Of the first rotor, and of that with the unbalance, rad/s.
+        Speeds of the first rotor and of the rotor with the unbalance, rad/s.
     is_stable : (k,) array
         Whether the equilibrium is.
     joints : tuple of str
     films : (k, j, 2) array
         Complex amplitudes of x and y of the journals, joint frame, time factor exp(i spin t), m.
     displacement : (k, N) array
-        The same of all directions of the system.
+        Displacements in all directions of the system.
     clearances : (j,) array
         m.
     layout : Layout
@@ -392,7 +392,7 @@ class StabilityMap:
     Attributes
     ----------
     values : (k,) array
-        Of the parameter.
+        Values of the parameter.
     thresholds : (k,) array
         rad/s; inf where the rotor is stable up to the highest speed, 0 where it is unstable at the lowest.
     whirl_ratios : (k,) array

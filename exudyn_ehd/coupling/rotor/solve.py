@@ -46,7 +46,7 @@ class Balance(NamedTuple):
     Attributes
     ----------
     r : (N,) array
-        What is not in balance, constraints with their multipliers so far included.
+        Residual of the balance, constraints with their multipliers so far included.
     K, r_u : (N, N) arrays
         Its derivatives, K with the turning of the spins.
     free : (N, n) array

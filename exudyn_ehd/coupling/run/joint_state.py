@@ -46,7 +46,7 @@ class JointState:
     rows : (n, k) array
         The record of accepted steps up to that time.
     begin : StepStart or None
-        Where the next step begins, if its rates follow the positions.
+        Start of the next step, if its rates follow the positions.
     modes : (p, k) array or None
         Displacements and stiffness of the bore's modes, whose coordinates are part of the state.
 

@@ -245,7 +245,7 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     Returns
     -------
     SystemState
-        What was stored.
+        Stored state.
 
     Raises
     ------

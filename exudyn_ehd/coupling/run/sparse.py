@@ -105,7 +105,7 @@ class SparseRun:
     steps, rejected : int
         Newton solutions that converged, and those that did not (Exudyn then halves the step).
     iterations, jacobians : int
-        Of Newton's method.
+        Iterations and Jacobians of Newton's method.
     products : int
         Products with the tangents of films on nodal bushes.
     seconds, seconds_jacobian, seconds_solve : float

@@ -149,7 +149,7 @@ class ConstraintJumps:
     ----------
     mbs : exudyn.MainSystem
     settings : exudyn.SimulationSettings
-        Of the run.
+        Settings of the run.
     start : StartGuess
         Told where every pass has ended.
     before : callable or None

@@ -45,11 +45,11 @@ class UntilPeriodic:
     Parameters
     ----------
     period : float
-        Of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
+        Period of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
     tolerance : float
-        How far the last cycle may be from the one before, and from the limit that the changes from cycle to cycle lead
-        to: distances of the journal's axis, at both ends, and of the journal between its thrust faces over the radial
-        clearance, and of the film's temperature over its rise since the start of the run.
+        Largest difference of the last cycle from the one before, and from the limit of the changes from cycle to
+        cycle. Distances of the journal's axis at both ends, and of the journal between its thrust faces, count over
+        the radial clearance. The film's temperature counts over its rise since the start of the run.
 
     Examples
     --------

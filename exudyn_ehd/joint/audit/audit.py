@@ -167,11 +167,11 @@ def audit_states(
     model : BearingModel
     states : sequence of FilmState
     record : RecordedSteps, optional
-        Where the states come from: adds how often contacts acted, mean heating and the time step.
+        Record that the states come from; it adds how often contacts acted, mean heating and the time step.
     liner : ElasticLiner, optional
-        Of which to say whether it would matter; for bearings without one.
+        Liner whose elasticity is assessed, for bearings without one.
     faces : ThrustFaces, optional
-        Of whose films the record is.
+        Thrust faces in the record.
     measure_time : bool
         Measure the share of the time that every effect takes which is on and can be left out.
 

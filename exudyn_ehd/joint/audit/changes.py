@@ -77,7 +77,7 @@ class Comparison:
     model : BearingModel
     states : sequence of FilmState
     record : RecordedSteps, optional
-        Where the states come from.
+        Record that the states come from.
     """
 
     def __init__(self, model: BearingModel, states: Sequence[FilmState], record: RecordedSteps | None) -> None:

@@ -59,9 +59,9 @@ class FacesUnderLoad:
     load : float or None
         Force on the journal along z, N; None: the position is held.
     size : float
-        Of the whole load, N.
+        Magnitude of the whole load, N.
     where : str
-        Who asks, for messages.
+        Name of the caller, for error messages.
     """
 
     def __init__(self, bearing: JournalBearing, position: float, load: float | None, size: float, where: str) -> None:

@@ -57,7 +57,7 @@ def settled_history(model: BearingModel, motion: np.ndarray, near: History | Non
     motion : (10,) array
         As for `BearingModel.evaluate`.
     near : History, optional
-        Of a film nearby, from whose temperature to start; it saves time.
+        Memory of a film nearby, whose temperature is the initial guess; it saves time.
 
     Raises
     ------

@@ -49,13 +49,13 @@ class Carried:
     ----------
     motion : (10,) array
     evaluation, film : Evaluation, SolvedFilm
-        Of the steady film there.
+        Evaluation and solution of the steady film there.
     unbalance : (2,) array
         Force of the film and load, N.
     tangent : (6, 10) array
         d wrench / d motion at the temperature of this film.
     faces : FacesShare or None
-        What films on the end faces add, which ``unbalance`` contains.
+        Contribution of the thrust faces, which ``unbalance`` contains.
     """
 
     motion: np.ndarray
@@ -89,7 +89,7 @@ class LoadSearch:
     force : (2,) array
         Load on the journal, N.
     where : str
-        Who asks, for messages.
+        Name of the caller, for error messages.
     effort : int
         Film solves after which it gives up.
     faces : FacesUnderLoad, optional

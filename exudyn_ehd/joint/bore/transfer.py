@@ -225,7 +225,7 @@ def _with_moments(
     L : (p, m) array
         Interpolation.
     changes : (p, c, m) array
-        What may be added to it at each point.
+        Possible additions to it at each point.
     on_ends : bool
         The first and the last vertex count for nothing.
     """

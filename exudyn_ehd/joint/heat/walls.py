@@ -111,7 +111,7 @@ class WalledTemperature(FilmTemperature):
     spec, bearing, field
         As for `FilmTemperature`.
     shape : (int, int)
-        Of the film's grid.
+        Shape of the film's grid.
     """
 
     blocks = 1

@@ -197,7 +197,7 @@ class ElasticBearingModel(BearingModel):
     bore : function of FilmGrid
         Makes the bore for the film's grid.
     elasticity : Elasticity
-        What resists q in a steady state.
+        Elasticity that resists q in a steady state.
     start_angle, effects
         As in `BearingModel`.
     """

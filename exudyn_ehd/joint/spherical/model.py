@@ -113,7 +113,7 @@ class SphericalEvaluation:
     wrench : (6,) array
         On the ball, moment about O; nan without a film.
     minimum_gap : float
-        Of the rigid surfaces, exact, m.
+        Minimum gap of the rigid surfaces, exact, m.
     film : BallFilm or None
     """
 

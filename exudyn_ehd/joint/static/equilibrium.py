@@ -86,7 +86,7 @@ class EquilibriumResult:
         bore settles at each of them.
     film : SteadyResult
     response : FilmResponse or None
-        What `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
+        Response that `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def equilibrium(
     tilt : (float, float)
         Slopes (bx, by), held fixed, rad.
     axial_position : float
-        Of the journal between the faces of ``bearing.thrust``, m; 0 without them, and with ``axial_load``.
+        Position of the journal between the faces of ``bearing.thrust``, m; 0 without them, and with ``axial_load``.
     axial_load : float, optional
         Force on the journal along z, N, which the faces carry; None: the journal is held at ``axial_position``.
 

@@ -55,11 +55,11 @@ class Element:
     rules : dict
         Quadratures of the stiffness by their names; the first is the default.
     exact : Quadrature
-        Of the mass, exact with straight edges.
+        Quadrature of the mass, exact with straight edges.
     sampling : Quadrature
-        Where stresses are most accurate.
+        Points at which stresses are most accurate.
     extrapolation : ndarray, shape (n, q)
-        From values there to values at the nodes.
+        Map from values at these points to values at the nodes.
     """
 
     name: str

@@ -79,9 +79,9 @@ class ElasticJournal:
     span : (float, float)
         Axial places of its end faces in the joint frame, about the bearing's mid-plane [m]; the film lies between them.
     held : HeldEnds, HeldBands or None
-        Where its body holds it; None: the journal is the body, and its mean motion is the body's.
+        Bands or ends where its body holds it; None: the journal is the body, and its mean motion is the body's.
     inner_radius : float
-        Of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
+        Inner radius of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
     tolerance : float
         Error of the surface's displacement under sampled films, as in `ModalBush`; 2e-3 to 0.2. Of a pin that bends by
         more than it flattens, over what it deforms locally.

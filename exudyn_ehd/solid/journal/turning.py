@@ -49,7 +49,7 @@ class FEJournal(FESurface):
     nodes : sequence of int, optional
         Mesh nodes on the journal; by default those on the cylinder around the joint's axis.
     radius_tolerance : float
-        How far a node's radius may be from the bearing's journal radius, over that radius.
+        Largest relative difference of a node's radius from the bearing's journal radius.
     settled : bool
         As in `FEBore`, with a shape that stands under the turning journal. Stiff modes that start undeformed ring.
     exact_jacobian : bool

@@ -189,7 +189,7 @@ class Answers(NamedTuple):
     loads : ndarray, shape (3 m, c + t)
         Nodal forces of the candidates and of the measuring films.
     seen : ndarray, shape (p, c + t)
-        What the film sees of the displacements under both, as `FilmSurface.weighted`.
+        Displacements under both as the film sees them, by `FilmSurface.weighted`.
     tilted : bool
         With pressures that are odd in z.
     """
@@ -214,7 +214,7 @@ def answers(
     ----------
     surface : FilmSurface
     places : ndarray of int
-        Of the coordinates of its faces' nodes in those of the body.
+        Places of the coordinates of its faces' nodes among those of the body.
     solve : callable
         Displacements of the held body under nodal forces, both (size, k).
     size : int

@@ -110,7 +110,7 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
     ----------
     bush : ModalBush
     length : float, optional
-        Of the film about the bush's mid-plane [m]; by default as long as the bush's bore.
+        Length of the film about the bush's mid-plane [m]; by default as long as the bush's bore.
 
     Raises
     ------
