@@ -18,7 +18,7 @@ from exudyn_ehd.status import require_type
 
 # Seconds until work counts as long, and from one look to the next.
 PATIENCE, PERIOD = 2.0, 0.5
-# What `show_progress` was called with last.
+# Last argument of `show_progress`.
 _asked: list[bool | None] = [None]
 
 

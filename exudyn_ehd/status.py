@@ -19,8 +19,9 @@ import numpy as np
 from exudyn_ehd.plausible import doubt
 
 Item = TypeVar("Item")
-# Of a film grid in one direction. The error of the load falls with the square, 0.05 % at 192 (`FiniteLength`): 5e-8 at
-# this limit, where the closures' tolerances dominate. A larger limit allows films that take minutes and gigabytes.
+# Largest number of vertices of a film grid in one direction. The error of the load falls with its square, 0.05 % at 192
+# (`FiniteLength`): 5e-8 at this limit, where the closures' tolerances dominate. A larger limit allows films that take
+# minutes and gigabytes.
 MOST_VERTICES = 20_000
 
 

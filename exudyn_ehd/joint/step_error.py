@@ -61,7 +61,7 @@ from exudyn_ehd.joint.jump_error import GAMMA, errors_of_jumps, resists
 BLOCKS = np.array([[10 * i + j for i in (k, k + 1) for j in (m, m + 1)] for k, m in ((0, 0), (0, 4), (3, 2), (3, 6))])
 # Rows of a tangent and places of the pose that go together.
 JOURNAL, BALL = (([0, 1], [0, 1]), ([3, 4], [2, 3])), (([0, 1, 2], [0, 1, 2]),)
-# Of a symmetric matrix what a ball's row keeps.
+# Entries of a symmetric matrix that a ball's row keeps.
 _UPPER = np.triu_indices(3)
 # First state whose error is known.
 FIRST = 3
@@ -82,7 +82,7 @@ JUMP = 0.9
 # 0.5. Steps of a spatial four-bar mechanism without jumps: none is repeated at 0.05 to 0.3, five at 0.5, which then
 # takes 1.6 times the evaluations of films and has five times the error.
 SUDDEN = 0.3
-# What a step has missed over what it may miss, from which it is repeated.
+# Error of a step over its allowed error, from which it is repeated.
 REFUSED = 8.0
 # What a step may miss of the error that is left, and of the largest one at least.
 BUDGET, SMALLEST_BUDGET = 0.1, 0.01

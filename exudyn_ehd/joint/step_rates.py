@@ -42,7 +42,7 @@ import numpy as np
 from numba import njit
 
 _BORE = 10
-# Of the misses of the last steps, the last one first, by how many there are.
+# Weights of the velocities' errors in the last steps, the last one first, by the number of known errors.
 WEIGHTS = tuple(np.array(w) for w in ((), (1.0,), (0.5, 0.5), (1.5, 0.5, -1.0)))
 # Displacement by misses in a step, share of the clearance: less changes no film, and may be rounding of positions.
 SMALLEST_MISS = 1e-6

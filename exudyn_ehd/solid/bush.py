@@ -12,7 +12,7 @@ from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, own_rule
 from exudyn_ehd.status import InputError, require_number, require_numbers, require_type
 
-# Of the error of a modal bush; below, the waves of its search do not suffice.
+# Limits of a modal bush's tolerance. Below the smallest, the waves of its search do not suffice.
 SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
 
 

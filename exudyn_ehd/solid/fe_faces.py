@@ -19,9 +19,9 @@ from exudyn_ehd.status import InputError
 LARGEST_SPACING = 0.6
 # Spread of the radii of nodes on one surface, over the radius: facets.
 SURFACE = 5e-3
-# How far a film may reach beyond the outermost nodes, in lengths: rounding.
+# Largest distance of a film's end beyond the outermost nodes, over the length: round-off.
 BEYOND_END = 1e-6
-# How far a point may lie beyond a face, in natural coordinates: facets, and films as long as the bore.
+# Largest distance of a point beyond a face, in natural coordinates: facets, and films as long as the bore.
 OUTSIDE = 0.02
 
 

@@ -18,7 +18,7 @@ from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
 from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces, wrapped
 from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
 
-# How far a point of a surface may lie beyond its faces, in natural coordinates: round-off.
+# Largest distance of a surface's point beyond its faces, in natural coordinates: round-off.
 OUTSIDE = 1e-6
 
 

@@ -22,7 +22,7 @@ from exudyn_ehd.status import InputError, require_number
 _UNREAD = ("INCLUDE", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY")
 _TYPES = {name: element for element in ELEMENTS for name in element.abaqus}
 _WHERE = "mesh_from_file"
-# How the names of solid elements start in meshio.
+# First letters of the names of solid elements in meshio.
 _SOLIDS = ("tetra", "hexahedron", "wedge", "pyramid", "VTK_LAGRANGE")
 
 

@@ -40,7 +40,7 @@ from exudyn_ehd.studies.film_errors import LOWEST_ORDER
 
 FEWEST, LEVELS = 90, 7
 FEWEST_ROWS = 8
-# What else moves in a mechanism adds to the error of its bearing.
+# Safety factor: other moving parts of a mechanism add to the error of its bearing.
 MARGIN = 2.0
 # Changes that fall faster from run to run tell of a first run too coarse to belong to the order of the others.
 FASTEST = 8.0

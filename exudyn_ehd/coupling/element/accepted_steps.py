@@ -49,7 +49,7 @@ class Film(Element, Protocol):
     failures : Failures
     outer : OuterLoad
     is_massless : bool
-        True if it has coordinates of its own without mass, which explicit solvers cannot integrate.
+        True if it has coordinates of its own without mass, which explicit solvers do not support.
     """
 
     failures: Failures

@@ -129,7 +129,7 @@ class Failures:
         return None
 
     def crushes(self, trial: Trial) -> bool:
-        """Return whether the film's pressure exceeds that of any accepted step."""
+        """Return whether the film's pressure exceeds the limit for accepted steps."""
         if trial.evaluation is None or trial.status != Status.CONVERGED:
             return False
         mean = self._mean(trial.evaluation.wrench[:3])

@@ -124,8 +124,8 @@ class ModalFilmElement(BoreFilmElement):
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """Return the force of `FilmElement.force`, without loads on massless modes for initial accelerations.
 
-        An implicit solver evaluates the force at the start of its first step to find initial accelerations. Massless
-        modes have none, in balance or not. An unbalanced load on their numerical mass would give a huge one.
+        An implicit solver evaluates the force at the start of a step to find initial accelerations. Massless modes
+        have none, in balance or not. An unbalanced load on their numerical mass would give a huge one.
         """
         force = super().force(mbs, t, item, q, q_t)
         steps = self.steps

@@ -77,7 +77,7 @@ class Quantity(enum.Enum):
     THRUST_CONTACT_LOAD = "thrust_contact_load"
 
 
-# Of the film's quantities those behind motion, eccentricities and loads.
+# Scalar quantities of the film: those behind motion, eccentricities and loads.
 _SCALARS = tuple(member.value for member in Quantity)[6:]
 TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
@@ -99,7 +99,7 @@ COLUMNS: dict[str, int | slice] = {
     "moment": slice(_WRENCH + 3, _WRENCH + 6),
     **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
 }
-# What a history has for every step, and for every row.
+# Columns of a history for every step, and for every row.
 _NAMES = (*COLUMNS, "step_error")
 _ROWS = (*_NAMES, "step_count")
 

@@ -19,7 +19,7 @@ from exudyn_ehd.status import InputError, require_number, require_plausible
 
 # Speeds at which a threshold is first looked for between its limits.
 SCAN = 16
-# What the search overwrites of a system, and a run or the history of one goes on with.
+# Configurations of a system that the search overwrites, although a run or its history continues from them.
 CONFIGURATIONS = (CURRENT, START_OF_STEP)
 
 

@@ -26,7 +26,7 @@ from exudyn_ehd.status import InputError, require_number, require_type, warn_use
 from exudyn_ehd.storage import fingerprint
 
 FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
-# Where the modes of a bore are compared: angles, shares of the length, and the part of the largest that is rounding
+# Points at which modes of a bore are compared: angles [rad], shares of the length; relative round-off of equal modes.
 _ANGLES, _PLACES, _SAME_MODES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37]), 1e-6
 
 

@@ -26,8 +26,8 @@ class Limit(NamedTuple):
     below: bool = False
 
 
-# Where an effect is not computed, it matters where leaving it out would change load, peak pressure, friction or minimum
-# film thickness by some 5 to 10 %.
+# An effect that is not computed matters if load, peak pressure, friction or minimum film thickness would change by some
+# 5 to 10 % without it.
 # Shares without another source: of a bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
 LIMITS = {
     "misalignment": Limit(0.1, "of the mid-plane gap: that much of the minimum film thickness, 1 % of the peak"),

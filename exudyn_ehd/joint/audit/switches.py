@@ -198,7 +198,7 @@ def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 
 
-# What an effect is taken away by, and what one without numbers of its own is added by.
+# Switches that take an effect away, or add one without numbers of its own.
 rigid: Switch = partial(replace, bush=None)
 rigid_journal: Switch = partial(replace, journal=None)
 isoviscous: Switch = partial(_oil, pressure_law=None)

@@ -23,7 +23,7 @@ from exudyn_ehd.status import FilmError, Status
 LARGEST_PLACE_STEPS = 100
 # Share of the load that is left along the axis, below what the search for x and y leaves.
 AXIAL_TOLERANCE = 1e-12
-# Of the clearance: step with a wall, and what two places differ by at rounding.
+# Shares of the clearance: step with a wall, and round-off of the difference of two places.
 WALL_STEP, SAME_PLACE = 0.3, 1e-13
 # Smallest gaps beyond which no place is looked for, over the clearance.
 CLOSED, FARTHEST = 1e-3, 100.0

@@ -21,7 +21,7 @@ from exudyn_ehd.status import FilmError, Status
 # Largest change of temperature that counts as settled, as a share of the film's rise over its coldest source.
 SETTLED = 1e-11
 MAX_ROUNDS = 200
-# The same behind all rounds, where rounding of hot fields keeps changes from falling further.
+# Like SETTLED, after `MAX_ROUNDS`: round-off of hot fields keeps changes from falling further.
 NEARLY = 1e-9
 # Differences of past rounds that the acceleration combines.
 DEPTH = 10

@@ -35,7 +35,7 @@ STEP_HALVINGS = 8
 HEATED_ROUNDS, NEARBY_ROUNDS = 60, 20
 TYPICAL_CHANGE = 30.0
 LOAD_TOLERANCE = 1e-10
-# Of a way from small loads: first step and smallest, shares of the load.
+# Continuation from small loads: first and smallest step, shares of the load.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16

@@ -33,8 +33,8 @@ from exudyn_ehd.status import GridWarning, warn_user
 # Intervals across the peak around below which, and narrowing from which on, the peak pressure is off by some 5 %; rows
 # from an end up to which a peak is that end's.
 FEWEST, STEEPEST, NEAR = 3.2, 2.15, 2
-# What a wanted grid has, whose peak pressure is off by 2 %: intervals across the peak; narrowing less one, of rows at
-# the largest stretch, whose end intervals are 0.235 / n_z of half the length; rows at least, with this stretch.
+# Properties of a wanted grid, whose peak pressure is off by 2 %: intervals across the peak; narrowing less one; stretch
+# of the rows, whose end intervals are then 0.235 / n_z of half the length; least number of rows.
 ENOUGH, GENTLE, STRETCH, END_INTERVAL, FEWEST_ROWS = 6.0, 0.4, 0.95, 0.235, 48
 # Narrowing up to which the film is even along the bearing; from 1.15 on its crest between two rows costs up to 4 %.
 EVEN = 1.02

@@ -24,12 +24,12 @@ from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.status import Status
 
-# Of the way to the prescribed place: step that is too short to go on, and by how much one that was reached lengthens.
+# Continuation to the prescribed position: step below which it ends, and growth of the step after a success.
 SMALLEST_PART, LONGER = 1e-4, 1.5
 # Steps of Newton's method and what they may leave of the residual, over the load; of a viscous bore's step likewise.
 LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60, 1e-11, 10, 1e-5
-# Of a viscous bore's way: slowness at its start and its end, share of q that the motion may leave to Newton's method;
-# trials after which no way is begun or gone on.
+# Pseudo-transient continuation of a viscous bore: slowness at its start and its end, share of q that it may leave to
+# Newton's method; trials after which no continuation is begun or continued.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
 # Trials after which the whole way ends, and a straight one.
 LARGEST_WAY, STRAIGHT_WAY = 3000, 60

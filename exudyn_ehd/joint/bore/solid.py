@@ -24,7 +24,7 @@ from exudyn_ehd.solid.linear.solvers import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import Status
 
-# Of the residual over the film's forces: what counts as balanced, and what does where rounding lets it fall no more.
+# Residual over the film's forces that counts as balanced, and that counts so if round-off lets it fall no more.
 TOLERANCE, ROUNDING = 1e-11, 1e-8
 # Largest ratio of successive residuals of the corrections, and those up to which their K serves a search and a tangent.
 SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
@@ -33,7 +33,7 @@ CORRECTIONS, LINEARISATIONS, HALVINGS = 40, 40, 8
 SMALLEST_PART = 0.05
 # Unit loads that the solid answers at a time.
 COLUMNS = 256
-# Of nodes of the bore that are held: times the largest stiffness of the others.
+# Stiffness of held nodes of the bore, times the largest stiffness of the others.
 HELD = 1e6
 NO_BALANCE = (
     "the solid finds no balance with the film's load, which may lie above a limit point; take NeoHooke(...) for "

@@ -34,10 +34,10 @@ from exudyn_ehd.film.grid import FilmGrid
 # Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.
 STENCIL = 4
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
-# Of an interval, that is no panel; of lengths and of values of order one, rounding.
+# Share of an interval that is too short for a panel; round-off of lengths, and of values of order one.
 TOUCHING, ROUNDING, SMALLEST = 1e-3, 1e-9, 1e-14
 LINEAR = 0.03
-# Of half the length, within which an edge lies on the film's end.
+# Distance, as a share of half the length, within which an edge lies on the film's end.
 RIM = 1e-4
 # Points that are looked up at once, times faces.
 LARGEST_BLOCK = 2e7

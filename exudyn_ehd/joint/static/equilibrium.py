@@ -35,7 +35,7 @@ from exudyn_ehd.status import InputError, require_number, require_size, require_
 if TYPE_CHECKING:
     from exudyn_ehd.joint.balance.faces import FacesUnderLoad
 
-# Of the difference quotients between settled films, as a share of the minimum film thickness.
+# Step of the difference quotients between converged films, as a share of the minimum film thickness.
 SETTLED_STEP = 1e-4
 # Relative errors of the critical mass from here on are told when a result is printed.
 SURE = 0.05

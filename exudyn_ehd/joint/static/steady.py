@@ -40,7 +40,7 @@ from exudyn_ehd.status import (
 if TYPE_CHECKING:
     from exudyn_ehd.joint.static.thrust import ThrustResult
 
-# Of a linear bush, displacement over thickness: above, its displacement is off by more than one per cent.
+# Displacement of a linear bush over its thickness; above it the displacement is off by more than one per cent.
 LARGEST_STRAIN = 0.01
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 

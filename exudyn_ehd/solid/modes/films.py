@@ -57,7 +57,7 @@ from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.status import InputError
 
-# Of the choice of modes: raise it with every change of what follows, so that files of older modes are not taken.
+# Version of the choice of modes: raise it with every change of what follows, so that files of older modes are not used.
 FORMAT = 6
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
 # Films of the set and those that measure the error: eccentricity ratios; slopes and waves of the gap (shares of the
