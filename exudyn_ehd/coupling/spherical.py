@@ -66,7 +66,7 @@ class SphericalFailures(Failures):
         return super().absurd(time, row, trial)
 
     def tilting(self, motion: np.ndarray) -> str:
-        """Nothing: balls have no axis."""
+        """Return an empty text: balls have no axis."""
         return ""
 
     def place(self, motion: np.ndarray) -> str:

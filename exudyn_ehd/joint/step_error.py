@@ -436,6 +436,6 @@ def enough_steps(time: np.ndarray, omega: np.ndarray, error: np.ndarray, count: 
 
 
 def _rounded(number: float) -> int:
-    """Up to two digits."""
+    """Return the number rounded up to two significant digits."""
     unit = 10 ** max(0, math.floor(math.log10(max(number, 1.0))) - 1)
     return unit * math.ceil(number / unit - 1e-9)

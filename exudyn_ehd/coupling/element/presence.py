@@ -64,7 +64,7 @@ class Presence:
 
 
 def force_owner(mbs: exu.MainSystem, number: int) -> object:
-    """Whose method is the force function of an object; None if it has no such function."""
+    """Return the object whose method is the force function of an Exudyn object; None without such a function."""
     item = ObjectIndex(number)
     # only some objects have a force function
     if mbs.GetObject(item)["objectType"] != "GenericODE2":

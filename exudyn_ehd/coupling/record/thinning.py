@@ -142,7 +142,7 @@ class Thinner:
         return whole, np.concatenate([self._open, np.column_stack([rows, count, errors])]), error
 
     def _keep(self, rows: np.ndarray) -> tuple[np.ndarray, int]:
-        """Those of rows (n, WIDTH + 2) that are kept, and where among them the last span begins."""
+        """Return the rows (n, WIDTH + 2) that are kept, and the index among them at which the last span begins."""
         spans = self.rule.spans(rows[:, STEP_COUNT], rows[:, TIME])
         edges = [0, *(np.flatnonzero(np.diff(spans)) + 1).tolist(), len(rows)]
         load = np.hypot(rows[:, FORCE.start], rows[:, FORCE.start + 1])

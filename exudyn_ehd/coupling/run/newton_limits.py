@@ -221,7 +221,7 @@ class ForceTolerance:
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
 
     def limit(self, solver: _Solver, iteration: int) -> None:
-        """Before an iteration of Newton's method, where the films were evaluated last in the one before."""
+        """Set Newton's relative tolerance before an iteration, with the films evaluated in the iteration before."""
         newton = solver.newton
         if self.given is None or newton.residualMode != 0:
             return

@@ -191,7 +191,7 @@ class SystemMatrix:
 
 
 def _owner(mbs: exu.MainSystem, item: Index) -> object:
-    """Whose method the Jacobian of an object is: a film's element, a bush's functions, or None."""
+    """Return the owner of an object's Jacobian function: a film's element, a bush's functions, or None."""
     if mbs.GetObject(item)["objectType"] != "GenericODE2":
         return None
     jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")

@@ -126,7 +126,7 @@ class Steps(Protocol):
     record: Record
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
-        """Their record, with the current state if ``complete``."""
+        """Return the record of the steps, with the current state if ``complete``."""
 
 
 class Closing:

@@ -213,7 +213,7 @@ def finding(
 
 
 def _refusal(switch: Switch, bearing: JournalBearing) -> str:
-    """Why a bearing can't be switched: what turbulent films do not go with. Its own message names both."""
+    """Return the message why a turbulent film does not support a switch; empty if it does."""
     if bearing.turbulence is None and switch is not turbulent:
         return ""
     try:

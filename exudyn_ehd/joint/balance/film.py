@@ -230,7 +230,7 @@ def evaluate_at(
 
 
 def _without_a_shape(evaluation: ElasticEvaluation) -> str:
-    """Why no shape of a flexible bore has a film, and what to do."""
+    """Return the reason why no shape of a flexible bore has a film, and the remedy."""
     bearing, last = evaluation.model.bearing, evaluation.closing
     kind = type(bearing.yielding).__name__
     if evaluation.model.elasticity.failure:

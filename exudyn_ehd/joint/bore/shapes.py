@@ -323,7 +323,7 @@ class NodalBore:
         project_columns(self.columns, stencil, fields, direct, out)
 
     def of_journal(self, q: np.ndarray) -> float:
-        """Nothing: it is rigid."""
+        """Return zero: the journal is rigid."""
         return 0.0
 
     def product(self, field: np.ndarray) -> np.ndarray:

@@ -56,7 +56,7 @@ class Faces(Protocol):
 
     @property
     def count(self) -> int:
-        """Their number."""
+        """Number of faces."""
 
     def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
         """Values at points (p,) from values at the bore's nodes."""
@@ -119,7 +119,7 @@ def _values(
 
 
 def _pruned(matrix: csr_matrix) -> csr_matrix:
-    """Without what is rounding."""
+    """Return a matrix without the entries that are round-off."""
     matrix.data[np.abs(matrix.data) < SMALLEST] = 0.0
     matrix.eliminate_zeros()
     return matrix

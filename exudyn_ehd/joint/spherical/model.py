@@ -166,7 +166,7 @@ class SphericalEvaluation:
         }
 
     def history(self) -> History | None:
-        """None: the film remembers nothing."""
+        """Return None: the film remembers nothing."""
         return None
 
     def _require_current(self) -> None:
@@ -215,7 +215,7 @@ class SphericalModel:
         self.solver.forget()
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """None: the film remembers nothing."""
+        """Return None: the film remembers nothing."""
         return None
 
     def is_at_rest(self, motion: np.ndarray) -> bool:

@@ -92,7 +92,7 @@ class TurningJournal:
     mass: np.ndarray
 
     def require_fit(self, radius: float, length: float, bush: object) -> None:
-        """Nothing: its description did."""
+        """Check nothing: the description of the journal was checked."""
 
     @property
     def count(self) -> int:

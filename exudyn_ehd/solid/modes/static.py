@@ -139,7 +139,7 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
 
 
 def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
-    """Everything that determines the modes."""
+    """Data that determine the modes, for their digest."""
     material, quadrature = bush.material, bush.quadrature
     assert quadrature is not None
     described = (films.FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, length)
