@@ -1,4 +1,4 @@
-"""What a scene writes: one frozen, validated description per bearing. Effects are named or absent."""
+"""Descriptions of bearings by the user: one frozen, validated object per bearing. Effects are named or absent."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class JournalBearing:
     film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR
         Film model and grid.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams
-        What happens below the cavity pressure.
+        Closure at the cavity pressure.
     inlet : Periodic or MaximumGap
         Circumferential condition.
     end_pressures : (float, float)
@@ -113,13 +113,14 @@ class JournalBearing:
     squeeze : bool
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None
-        What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+        Contact that carries load before the gap vanishes; None: a vanishing gap ends the run with an error.
     supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket
         Areas with a prescribed supply pressure; empty: none.
     thermal : LumpedThermal, FilmEnergy or None
         Temperature of the film; None: isothermal.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None
-        What deflects under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
+        Flexible bore that deflects under the film's pressure; the outer surface of a bush moves with the housing.
+        None: a rigid bore.
     journal : ElasticJournal, FEJournal or None
         A pin that deflects, with a rigid bore or a `ModalBush` around it; or the joint's journal, a reduced
         finite-element body, by its own modes in a rigid bore. None: a rigid journal.
@@ -128,7 +129,7 @@ class JournalBearing:
     roughness : PatirCheng or None
         Flow factors of rough surfaces.
     profile : Profile, tuple of Profile or None
-        What the surfaces' shape adds to the gap: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
+        Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
     wear : ArchardWear or None
         Wear of the bore by the asperity contact.
     turbulence : NgPan, Hirs or None
@@ -212,7 +213,7 @@ class JournalBearing:
             )
 
     def _check_plain(self) -> None:
-        """What `ImpedanceMap` needs: nothing besides geometry, viscosity and a closure at ambient cavity pressure."""
+        """Check for `ImpedanceMap`: nothing besides geometry, viscosity and a closure at ambient cavity pressure."""
         expected = "the map holds plain bearings only; use film=FiniteLength(...)."
         own = {"journal_radius", "length", "radial_clearance", "lubricant", "film", "cavitation"}
         # without a thermal effect the oil has its viscosity, and all else of it that heat would need is not asked for

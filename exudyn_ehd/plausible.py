@@ -1,9 +1,9 @@
-"""Which sizes an argument can have: one table of all arguments with a physical dimension.
+"""Plausible sizes of arguments: one table of all arguments with a physical dimension.
 
-A value in another unit (mm, GPa, degrees, bar) is a thousand or a million times off, and mostly gives a film all the
-same. Between the plausible range and the limits a value warns, beyond the limits it is refused. Plausible is what
-bearings have, from a watch's pivot to a ship's shaft, from gels to ceramics, from liquid gases to cold grease; limits
-are far from all of it. Both are of the size: signs are the arguments' own matter, and 0 has no unit.
+A value in another unit (mm, GPa, degrees, bar) is a thousand or a million times off, and often still gives a film.
+Between the plausible range and the limits a value gives a warning. Beyond the limits it raises `InputError`. The
+plausible range covers bearings from a watch's pivot to a ship's shaft, gels to ceramics, liquid gases to cold grease.
+The limits are far outside it. Both hold for the magnitude: each argument checks its own sign, and 0 has no unit.
 """
 
 from __future__ import annotations
@@ -303,14 +303,14 @@ ARGUMENTS: dict[str, str] = {argument: kind for kind, group in _ARGUMENTS.items(
 
 
 def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
-    """What to say about the size of an argument, and whether it is refused; None where nothing is to be said.
+    """Return a message on an implausible size of an argument, and whether it is an error; None if it is plausible.
 
     Parameters
     ----------
     where : str
         ``Class.argument`` or ``function: argument``, as in messages.
     value : object
-        As given, for the message.
+        Value as given, for the message.
     size : float
         Its size in the unit of the table.
     """

@@ -1,6 +1,6 @@
-"""How far long work is: a line that renews itself where somebody looks, which is a terminal or a notebook.
+"""Progress of long work: one line that is rewritten in place, on a terminal or in a notebook.
 
-Pipes, files and the processes of a study see nothing. Work of less than two seconds says nothing either.
+Pipes, files and the processes of a study get no such line, nor does work of less than two seconds.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from exudyn_ehd.status import require_type
 
 # Seconds until work counts as long, and from one look to the next.
 PATIENCE, PERIOD = 2.0, 0.5
-# What `show_progress` was called with last.
+# Last argument of `show_progress`.
 _asked: list[bool | None] = [None]
 
 
@@ -45,7 +45,7 @@ def show_progress(on: bool | None = True) -> None:
 
 
 def is_shown() -> bool:
-    """Whether somebody looks, or has asked for it."""
+    """Return whether progress is shown: on a terminal or in a notebook, or as the user has chosen."""
     if _asked[0] is not None:
         return _asked[0]
     if multiprocessing.parent_process() is not None:
@@ -75,7 +75,7 @@ class Progress:
 
     @property
     def is_due(self) -> bool:
-        """Whether it is time for a new line."""
+        """Return whether the line is due for a new text."""
         return time.perf_counter() >= self.next
 
     def tell(self, share: float, note: str = "") -> None:
@@ -112,7 +112,7 @@ def announced(message: str, patience: float = PATIENCE) -> Iterator[None]:
 
 
 def _duration(seconds: float) -> str:
-    """As people say it: 45 s, 3 min 20 s, 2 h 5 min."""
+    """Return a duration in everyday units: 45 s, 3 min 20 s, 2 h 5 min."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     if hours:

@@ -19,8 +19,9 @@ import numpy as np
 from exudyn_ehd.plausible import doubt
 
 Item = TypeVar("Item")
-# Of a film grid in one direction. The error of the load falls with the square, 0.05 % at 192 (`FiniteLength`): 5e-8 at
-# this limit, where the closures' tolerances dominate. A larger limit allows films that take minutes and gigabytes.
+# Largest number of vertices of a film grid in one direction. The error of the load falls with its square, 0.05 % at 192
+# (`FiniteLength`): 5e-8 at this limit, where the closures' tolerances dominate. A larger limit allows films that take
+# minutes and gigabytes.
 MOST_VERTICES = 20_000
 
 
@@ -233,9 +234,9 @@ def require_plausible(where: str, value: object, size: float | np.ndarray | None
     where : str
         ``Class.argument``, as in the table.
     value : object
-        What the user gave.
+        Value given by the user.
     size : float or array, optional
-        What is judged in place of ``value``, which then is only named; of arrays the largest number.
+        Size to be judged in place of ``value``, which then is only named; of arrays the largest number.
     """
     judged = np.abs(np.asarray(value if size is None else size, dtype=float))
     largest = float(judged.max(initial=0.0))
@@ -264,7 +265,7 @@ def require_number(
     where : str
         ``Class.argument`` for the message.
     value : float
-        What the user gave.
+        Value given by the user.
     unit : str
         SI unit for the message.
     above, at_least, below, at_most : float, optional
@@ -294,7 +295,7 @@ def require_number(
 
 
 def require_numbers(item: object, *, above: float | None = None, at_least: float | None = None, **units: str) -> None:
-    """As `require_number` for attributes of an object, by name with their units."""
+    """Check attributes of an object by `require_number`; keywords are their names, with their units as values."""
     for name, unit in units.items():
         where = f"{type(item).__name__}.{name}"
         require_number(where, getattr(item, name), unit, above=above, at_least=at_least)
@@ -309,7 +310,7 @@ def require_integer(where: str, value: int, *, at_least: int, hint: str = "") ->
 
 
 def require_count(where: str, value: int, *, at_least: int, hint: str = "it is of a film grid.") -> int:
-    """As `require_integer`, of vertices or intervals of a film grid in one direction: up to `MOST_VERTICES`."""
+    """Return a number of vertices or intervals of a film grid in one direction, checked: up to `MOST_VERTICES`."""
     count = require_integer(where, value, at_least=at_least, hint=hint)
     if count > MOST_VERTICES:
         raise InputError(f"{where} must be within {at_least} and {MOST_VERTICES}, got {value!r}; {hint}")

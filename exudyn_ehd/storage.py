@@ -1,10 +1,10 @@
-"""What lies on disk: files that are either whole or absent, and arrays kept between runs.
+"""Storage on disk: files that are either whole or absent, and arrays kept between runs.
 
 Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. Their
-file carries a digest of key and content, and must hold the arrays asked for: a damaged or foreign one warns and is
-replaced. Runs side by side don't disturb each other, since a file appears under its name only when complete. A folder
-that can't be written costs the computing time of every run and nothing else. What was not used for longest goes when
-the folder is full. numba keeps compiled kernels in folders of its own; where it finds none, the process gets one.
+file carries a digest of key and content, and must hold the arrays asked for: a damaged or foreign one gives a warning
+and is replaced. Simultaneous runs don't disturb each other, since a file appears under its name only when complete. If
+a folder can't be written, every run computes the arrays again. When the folder is full, the file unused for longest is
+deleted. numba keeps compiled kernels in folders of its own; where it finds none, the process gets one.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def _parts(value: object, above: set[int]) -> Iterator[bytes]:
 
 
 def _content(value: Any) -> Iterable[object]:
-    """What an object is made of."""
+    """Return the parts of an object that determine its digest."""
     if dataclasses.is_dataclass(value):
         return [(field.name, getattr(value, field.name)) for field in dataclasses.fields(value)]
     if isinstance(value, types.CodeType):
@@ -138,7 +138,7 @@ def _content(value: Any) -> Iterable[object]:
 
 
 def cache_folder() -> pathlib.Path:
-    """Where results are kept: ``EXUDYN_EHD_CACHE``, else ``exudyn_ehd`` in the user's cache folder."""
+    """Return the folder of kept results: ``EXUDYN_EHD_CACHE``, else ``exudyn_ehd`` in the user's cache folder."""
     chosen = os.environ.get(CACHE_VARIABLE)
     if chosen:
         return pathlib.Path(chosen)

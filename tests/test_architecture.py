@@ -8,6 +8,7 @@ import inspect
 import io
 import pathlib
 import pkgutil
+import re
 import subprocess
 import sys
 import tokenize
@@ -95,6 +96,9 @@ LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 300, 60, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
 MOST_SKIPS, MOST_ANY, MOST_CODE = 14, 60, 28582
+# Docstrings of the whole package that begin with a clause without its noun ("What ...", "Of ..."); it can only fall.
+MOST_BARE_CLAUSES = 105
+BARE_CLAUSE = re.compile(r"(What|Whether|As|Of|The same|Where|Which|How|From|With|That|Who|For|At|When)\b")
 
 
 def _docstring_lines(tree):
@@ -181,6 +185,18 @@ def test_the_package_stays_small():
     assert skips <= MOST_SKIPS
     assert unknown <= MOST_ANY
     assert code <= MOST_CODE
+
+
+def test_docstrings_begin_with_a_noun_or_a_verb():
+    found = []
+    for path, _, tree, _ in _parsed():
+        for node in ast.walk(tree):
+            if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+                text = ast.get_docstring(node) or ""
+                if BARE_CLAUSE.match(text):
+                    found.append(f"{path}: {text.splitlines()[0]}")
+    listed = "\n".join(found)
+    assert len(found) <= MOST_BARE_CLAUSES, f"{len(found)} docstrings, e.g. 'Return whether ...' is better:\n{listed}"
 
 
 def test_functions_of_bench_and_examples_are_short():

@@ -1,4 +1,4 @@
-"""Everything that touches Exudyn.
+"""Coupling of the films to Exudyn.
 
 Module map
 ----------

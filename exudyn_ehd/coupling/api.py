@@ -177,25 +177,25 @@ def CreateLubricatedJoint(
         Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are
         halved.
     bushGravity : (3,) [m/s^2], optional
-        Of every bush mass, inertia and weight are the housing's, whose values contain them, so that a model weighs the
-        same whatever its bush is made of. For a housing that does not contain its `ANCFBush` (a beam, a cable, a mesh):
-        the bush's mass then counts beside the housing's, and this gravity, global, pulls at it.
+        By default the housing's mass, inertia and weight contain those of the bush, so that a model weighs the same
+        with every kind of bush. Give this for a housing that does not contain its `ANCFBush` (a beam, a cable, a
+        mesh). The bush's mass then counts in addition to the housing's, and this global gravity acts on it.
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
         Draw the bearing in Exudyn's renderer: a ring of the housing, and the film of the last accepted step in the
         colours of its pressure, its thickness enlarged.
     axisRadius, axisLength : float
-        As ``mbs.CreateRevoluteJoint`` has them, so that its calls can be taken over; without effect: the film is drawn
+        Arguments of ``mbs.CreateRevoluteJoint``, so that its calls can be taken over; without effect: the film is drawn
         in the bearing's own size.
     color : (4,)
-        Of the film element's nodes, RGBA; Exudyn's default for -1.
+        Colour of the film element's nodes, RGBA; Exudyn's default for -1.
     bodyNumbers : sequence of two, optional
         The name that ``itemNumbers`` had in older calls of Exudyn; a DeprecationWarning says so.
     returnDict : bool
         Return a dictionary of numbers in place of the handle.
     record : File, Every, Period or None
-        Which of the accepted steps `LubricatedJoint.history` keeps, and where: all of them or some, in a file or in
+        Accepted steps that `LubricatedJoint.history` keeps, and their place: all of them or some, in a file or in
         memory; None: all, in memory.
 
     Returns
@@ -282,7 +282,7 @@ def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:
 def _on_its_housing(
     mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
 ) -> tuple[JournalBearing, Item]:
-    """The bearing with the bush that its housing makes of it, and the side of the housing."""
+    """Return the bearing with the bore of its finite-element housing, and the housing's item."""
     if housing.body is not None and getattr(bearing, "bush", None) is not None:
         # imported here: a rigid bearing needs no solid
         from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
@@ -298,7 +298,7 @@ def _on_its_bodies(
     points: tuple[np.ndarray, np.ndarray],
     rotation: np.ndarray,
 ) -> tuple[JournalBearing, Item, Item]:
-    """The same with the journal that a finite-element body makes of it, and both sides."""
+    """Return the bearing with the bore and journal of the finite-element bodies under it, and both items."""
     bearing, housing = _on_its_housing(mbs, bearing, items[0], points[0], rotation)
     journal = items[1]
     if journal.body is not None and getattr(bearing, "journal", None) is not None:
@@ -410,7 +410,10 @@ def attach(
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:
-    """Whether a bush or liner has a film at a motion (10,) at which a rigid bore has no gap; the sides are there."""
+    """Return whether a flexible bore has a film at a motion (10,) that leaves a rigid bore no gap.
+
+    The arrays of the sides must belong to that motion.
+    """
     if hasattr(model, "bore"):
         # imported here: a rigid bearing needs no solid
         from exudyn_ehd.coupling.element.attach import initial_coordinates

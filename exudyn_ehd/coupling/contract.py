@@ -1,4 +1,4 @@
-"""What the coupling asks of a film, of a side of a joint and of a joint's element; names for Exudyn's types."""
+"""Protocols of a film, of a side of a joint and of a joint's element in the coupling; names for Exudyn's types."""
 
 from __future__ import annotations
 
@@ -52,13 +52,13 @@ class Evaluation(Protocol):
         """Scalars by name: minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load."""
 
     def history(self) -> History | None:
-        """What the film remembers if this state is accepted."""
+        """Return the film's memory after this state, for the case that it is accepted."""
 
 
 class Trial:
-    """One state handed to the film, and what came back; ``evaluation`` is None if the film was not asked.
+    """One state and the film's evaluation there; ``evaluation`` is None if the film was not evaluated.
 
-    ``motion`` is what the film was told of the ``bodies``' motion in the step from ``begin``.
+    ``motion`` is the film's input. It follows from the motion of the ``bodies`` in the step from ``begin``.
     """
 
     __slots__ = ("begin", "bodies", "evaluation", "memory", "motion", "q", "q_t", "status", "step")
@@ -88,12 +88,12 @@ class Trial:
             self.take(evaluation)
 
     def take(self, evaluation: Evaluation) -> None:
-        """Add what the film has answered."""
+        """Store the film's evaluation."""
         self.evaluation, self.status = evaluation, evaluation.status
 
     @property
     def found(self) -> Evaluation:
-        """What came back of a film that was asked."""
+        """Evaluation of the film, which must exist."""
         assert self.evaluation is not None
         return self.evaluation
 
@@ -105,11 +105,11 @@ class JointModel(Protocol):
     def bearing(self) -> JournalBearing: ...
     @property
     def remembers(self) -> bool:
-        """Whether the force depends on accepted steps before; if not, memory is neither asked for nor handed over."""
+        """Return whether the force depends on earlier accepted steps; if not, the film needs no memory."""
 
     @property
     def needs_spin(self) -> bool:
-        """Whether the journal's angle matters (supply areas in the journal)."""
+        """Return whether the force depends on the journal's angle (supply areas in the journal)."""
 
     def initial_history(self, motion: np.ndarray) -> History | None:
         """Memory at the start of a run, at this motion."""
@@ -125,7 +125,7 @@ class JointModel(Protocol):
 
 
 class Side(Protocol):
-    """What carries the frame of one side of a joint.
+    """Frame of one side of a joint as a function of the coordinates of its nodes.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ class Steps(Protocol):
 
     @property
     def is_idle(self) -> bool:
-        """Whether no solver is at work."""
+        """Return whether no solver is running."""
 
     def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, exu.ConfigurationType]:
         """Time of the last accepted state, the film there, and the configuration that holds it."""
@@ -208,7 +208,7 @@ class Element(Protocol):
         """Refuse a system of which items were deleted that the joint was made on."""
 
     def faces_wrench(self) -> np.ndarray:
-        """What films on the end faces do to the journal (6,), joint frame, at the state that was looked at last."""
+        """Return the wrench (6,) of the thrust faces on the journal in the joint frame, at the state evaluated last."""
 
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

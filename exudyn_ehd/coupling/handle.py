@@ -46,7 +46,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     mbs : exudyn.MainSystem
         The system it belongs to.
     bearing : object
-        What was given as bearing.
+        Bearing as given by the user.
     objectNumber : exudyn.ObjectIndex
         The film element.
     constraintNumber : exudyn.ObjectIndex or None
@@ -131,19 +131,19 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         return place(self.mbs, self.element, self.name, load, speed)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
-        """Which effects mattered in the accepted steps, which were left out, which were without effect.
+        """Find the effects that mattered in the accepted steps, omitted ones that would have, and those without effect.
 
         The films at the worst recorded states (minimum film thickness, highest pressure, loss, speed, tilt, squeeze)
-        are evaluated again, on a model of their own: the joint is not touched. What the record holds counts as
-        recorded; what it takes a field for (cavitated share, grid, heat of a field) is that of a flexible bore settled
-        under the film.
+        are evaluated again, on a model of their own: the joint is not touched. Recorded quantities are taken from the
+        record. Those that need fields (cavitated share, grid, heat of a field) are computed with a flexible bore in
+        equilibrium with the film.
 
         Parameters
         ----------
         liner : ElasticLiner, optional
-            Of which to say whether its elasticity would matter; for bearings without one.
+            Liner whose elasticity is assessed, for bearings without one.
         measure_time : bool
-            Measure the share of the time that every effect takes which is on.
+            Measure the share of computing time of each active effect.
 
         Returns
         -------
@@ -153,7 +153,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         Raises
         ------
         InputError
-            Before anything was recorded, and of a thinned record (`Every`, `Period`).
+            If nothing was recorded yet, or if the record is thinned (`Every`, `Period`).
         """
         history = self._recorded()
         if history.time.size == 0:

@@ -56,9 +56,9 @@ def ReplaceJoint(
     bearing : JournalBearing
         Geometry, lubricant, film and effects.
     name : str
-        Of the film; by default that of the joint, with "film of" before it.
+        Name of the film; by default that of the joint, with "film of" before it.
     journal : int
-        Which of the joint's markers is on the journal, 0 or 1; the other is on the housing.
+        Index of the joint's marker on the journal, 0 or 1; the other is on the housing.
     options
         Further arguments of `CreateLubricatedJoint`: axial, tilt, stepControl, bushGravity, show, record. A short film
         that takes the place of a joint which alone carried a tilting moment wants ``tilt=Held()``.
@@ -134,7 +134,7 @@ def ReplaceJoints(
     mbs : exudyn.MainSystem
         The system, before Assemble.
     bearing : JournalBearing or function
-        The same for all, or a function of the joint's object number; None of it leaves that joint as it is.
+        One bearing for all joints, or a function of the joint's object number; None of it leaves that joint as it is.
     types : sequence of str
         Exudyn's object types that count.
     options
@@ -266,7 +266,7 @@ def _free_name(mbs: exu.MainSystem, joint: Data, number: int) -> str:
 
 
 def _turns(joint: Data) -> bool:
-    """Whether a joint leaves one rotation free."""
+    """Return whether a joint leaves one rotation free."""
     return joint["objectType"] != "JointGeneric" or sum(not held for held in joint["constrainedAxes"][3:]) == 1
 
 

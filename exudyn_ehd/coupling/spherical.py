@@ -56,7 +56,7 @@ class SphericalFailures(Failures):
     axes = 3
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
-        """As for journals; a ball far out of its socket has no film either."""
+        """Return the error of an accepted step as for journals, or of a ball out of its socket; None if it is valid."""
         if float(np.linalg.norm(trial.motion[:3])) > FARTHEST * self.bearing.journal_radius:
             return self._at(
                 time,
@@ -66,11 +66,11 @@ class SphericalFailures(Failures):
         return super().absurd(time, row, trial)
 
     def tilting(self, motion: np.ndarray) -> str:
-        """Nothing: balls have no axis."""
+        """Return an empty text: balls have no axis."""
         return ""
 
     def place(self, motion: np.ndarray) -> str:
-        """Where the ball is at a motion (10,)."""
+        """Describe the ball's position at a motion (10,), for messages."""
         x, y, z = (motion[:3] / self.bearing.radial_clearance).tolist()
         gap = self.bore.smallest(motion)
         return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
@@ -119,8 +119,8 @@ class SphericalHistory:
     time : (n,) array
         s.
     place, velocity, angular_velocity : (n, 3) arrays
-        Of the ball's centre and of the ball as seen from the socket, m, m/s, rad/s; velocities as the film takes them
-        (`exudyn_ehd.joint.step_rates`).
+        Motion of the ball's centre and of the ball as seen from the socket, m, m/s, rad/s; velocities as the film
+        takes them (`exudyn_ehd.joint.step_rates`).
     force, torque : (n, 3) arrays
         On the ball, N; torque about its centre, N m.
     eccentricity_ratio : (n,) array
@@ -255,7 +255,7 @@ class LubricatedSphericalJoint(Joint):
         return steady_spherical(self.bearing, **parts)
 
     def audit(self) -> Audit:
-        """Which effects mattered in the accepted steps, and which of them a ball's film leaves out; print it.
+        """Find the effects that mattered in the accepted steps, and those of them that a ball's film omits; print it.
 
         The films at the worst recorded steps are evaluated again, on a model of their own: the joint is not touched.
         See `exudyn_ehd.joint.spherical.audit`.
@@ -263,7 +263,7 @@ class LubricatedSphericalJoint(Joint):
         Raises
         ------
         InputError
-            Before anything was recorded.
+            If nothing was recorded yet.
         """
         h = spherical_history(self._recorded())
         if h.time.size == 0:
@@ -355,7 +355,7 @@ def CreateLubricatedSphericalJoint(
     show : bool
         Draw the socket in Exudyn's renderer, in the colours of its pressure.
     color : (4,)
-        Of the film element's nodes, RGBA; Exudyn's default for -1.
+        Colour of the film element's nodes, RGBA; Exudyn's default for -1.
 
     Returns
     -------

@@ -21,7 +21,7 @@ _NO_CONTACT = np.zeros(6)
 
 
 def is_plain(parts: FilmParts, effects: Effects) -> bool:
-    """Whether `solve_plain` knows the films of these parts."""
+    """Return whether `solve_plain` can solve films of these parts."""
     s = parts.solver
     return (
         effects == Effects()

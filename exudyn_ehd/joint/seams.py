@@ -130,7 +130,7 @@ def shear_product(first: ShearFactor | None, second: ShearFactor | None) -> Shea
 
 @dataclass(frozen=True)
 class Effects:
-    """What takes part in a bearing model in addition to the plain film; empty by default.
+    """Effects of a bearing model in addition to the plain film; empty by default.
 
     Attributes
     ----------
@@ -142,12 +142,12 @@ class Effects:
     shear_factor : ShearFactor or None
     thermal : ThermalEffect or None
     density : CompressibleLaw or None
-        Of a compressible film; then also the ``pressure_law``.
+        Density law of a compressible film; then also the ``pressure_law``.
     wear : Wear or None
         Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
     liner : ElasticLiner or None
     uneven_drag : bool
-        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
+        True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()

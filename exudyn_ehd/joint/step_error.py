@@ -1,4 +1,4 @@
-"""What the steps of a run miss in the gap, from the accepted steps alone.
+"""Error of the gap by the steps of a run, from the accepted steps alone.
 
 A film has no inertia: in balance with its load it gives the journal's pose a rate, dp/dt = f(p, t), and a time
 integration has to add these rates up. The rates r that the film was told in the last three states tell what a step h
@@ -61,7 +61,7 @@ from exudyn_ehd.joint.jump_error import GAMMA, errors_of_jumps, resists
 BLOCKS = np.array([[10 * i + j for i in (k, k + 1) for j in (m, m + 1)] for k, m in ((0, 0), (0, 4), (3, 2), (3, 6))])
 # Rows of a tangent and places of the pose that go together.
 JOURNAL, BALL = (([0, 1], [0, 1]), ([3, 4], [2, 3])), (([0, 1, 2], [0, 1, 2]),)
-# Of a symmetric matrix what a ball's row keeps.
+# Entries of a symmetric matrix that a ball's row keeps.
 _UPPER = np.triu_indices(3)
 # First state whose error is known.
 FIRST = 3
@@ -82,7 +82,7 @@ JUMP = 0.9
 # 0.5. Steps of a spatial four-bar mechanism without jumps: none is repeated at 0.05 to 0.3, five at 0.5, which then
 # takes 1.6 times the evaluations of films and has five times the error.
 SUDDEN = 0.3
-# What a step has missed over what it may miss, from which it is repeated.
+# Error of a step over its allowed error, from which it is repeated.
 REFUSED = 8.0
 # What a step may miss of the error that is left, and of the largest one at least.
 BUDGET, SMALLEST_BUDGET = 0.1, 0.01
@@ -122,7 +122,7 @@ def errors_behind(
     clearance, length : float
         m.
     deflection : (n, 2) array, optional
-        Of a liner, where it is largest, m.
+        Deflection of a liner, where it is largest, m.
     load : (n, 20) array
         On the film, N and N m (rows of `JOURNAL`), nan where it is not known: no jump. Behind it, see `OFFSET`: offset,
         nan where it is not known, masses (kg, kg m^2), momentum missed (N s, N m s) and forces of inertia (N, N m).
@@ -147,7 +147,7 @@ def errors_behind(
 
 
 def pack_of_ball(tangent: np.ndarray) -> np.ndarray:
-    """What a record keeps (15,) of a ball's tangent (3, >= 7) to place, 0 and velocity: K, and D's symmetric part."""
+    """Return the recorded part (15,) of a ball's tangent (3, >= 7) to place, 0 and velocity: K, symmetric part of D."""
     damping = -tangent[:3, 4:7]
     return np.concatenate([-tangent[:3, :3].ravel(), (0.5 * (damping + damping.T))[_UPPER]])
 
@@ -210,19 +210,19 @@ def next_error(
     Parameters
     ----------
     time : (n,) array
-        Of the last states, three or more, six to tell all pulses from ringing, s.
+        Times of the last states, three or more, six to tell all pulses from ringing, s.
     motion : (n, 10) array
         There, with the rates that the film was told.
     tangents : two (6, 10) arrays
-        Of the film's wrench, at the start of the step and at its end.
+        Tangents of the film's wrench, at the start of the step and at its end.
     load : (n, 20) array
         On the film, as for `errors_behind` or `errors_of_ball`.
     before : sequence of arrays
         Errors at the start of the step: `NO_ERROR`, `NO_BALL_ERROR` or what was returned.
     length, largest : float
-        Of the bearing, and error of the gap that is allowed, m.
+        Length of the bearing, and allowed error of the gap, m.
     deflection : (n, 2) array, optional
-        Of a liner, where it is largest, m.
+        Deflection of a liner, where it is largest, m.
 
     Returns
     -------
@@ -283,7 +283,7 @@ def missed_in_steps(time: np.ndarray, pose: np.ndarray, rate: np.ndarray) -> np.
 
 
 def _lag(time: np.ndarray, deflection: np.ndarray | None) -> np.ndarray:
-    """What a liner's difference quotient misses in every step of the pose (n, 4)."""
+    """Return the error of the pose (n, 4) by a liner's difference quotient in every step."""
     out = np.zeros((time.size, 4))
     if deflection is None:
         return out
@@ -365,7 +365,9 @@ def _parts(
     first: int,
     known: slice,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of ``known`` steps: what they keep of errors (m, 2 k, 2 k), add (m, 2 k), and its standard deviation (m, 2 k).
+    """Return terms of the errors' recursion for ``known`` steps.
+
+    These are the propagation (m, 2 k, 2 k), the new errors (m, 2 k) and their standard deviation (m, 2 k).
 
     Pose, rate and ``lag`` (n, k) belong to the columns of ``load`` (n, 20) from ``first`` on.
     """
@@ -434,6 +436,6 @@ def enough_steps(time: np.ndarray, omega: np.ndarray, error: np.ndarray, count: 
 
 
 def _rounded(number: float) -> int:
-    """Up to two digits."""
+    """Return the number rounded up to two significant digits."""
     unit = 10 ** max(0, math.floor(math.log10(max(number, 1.0))) - 1)
     return unit * math.ceil(number / unit - 1e-9)

@@ -42,7 +42,7 @@ import numpy as np
 from numba import njit
 
 _BORE = 10
-# Of the misses of the last steps, the last one first, by how many there are.
+# Weights of the velocities' errors in the last steps, the last one first, by the number of known errors.
 WEIGHTS = tuple(np.array(w) for w in ((), (1.0,), (0.5, 0.5), (1.5, 0.5, -1.0)))
 # Displacement by misses in a step, share of the clearance: less changes no film, and may be rounding of positions.
 SMALLEST_MISS = 1e-6
@@ -52,7 +52,7 @@ LARGEST_GROWTH = 4.0
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class StepStart:
-    """Where a step begins.
+    """Start of a step.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class StepStart:
     step : float
         Length of the step before, s; 0 if there was none.
     misses : (n, 4 + k) array
-        What the velocities missed in the last steps, up to three, the last one first, over the square of the step.
+        Error of the velocities in up to three last steps, the last one first, over the square of the step.
     clearance : float
         m.
     """
@@ -80,7 +80,7 @@ class StepStart:
 
     @functools.cached_property
     def _largest(self) -> float:
-        """Of the places; journals have two places and two slopes, balls, whose motion is odd, three places."""
+        """Largest expected error of the places: two of a journal (without tilts), three of a ball (odd motion)."""
         return max(map(abs, self._expected[: 2 + self.motion.size % 2].tolist()))
 
     def film_motion(self, motion: np.ndarray, time: float) -> np.ndarray:
@@ -105,7 +105,7 @@ def _add_rates(expected, factor, motion_out):
 
 @njit(cache=True)
 def _misses(motion, old, step, known, misses_out):
-    """What velocities have missed in a step between two motions (10 + 2 k,), and the ``known`` of the steps before."""
+    """Write the error of the velocities in a step between two motions (10 + 2 k,), then the ``known`` earlier ones."""
     size = misses_out.shape[1]
     for j in range(size):
         place, rate = (j, 4 + j) if j < 4 else (6 + j, 2 + size + j)
@@ -116,14 +116,14 @@ def _misses(motion, old, step, known, misses_out):
 
 
 def next_start(before: StepStart | None, motion: np.ndarray, time: float, clearance: float) -> StepStart:
-    """Where the step after an accepted state begins.
+    """Return the start of the step after an accepted state.
 
     Parameters
     ----------
     before : StepStart or None
-        Where the step before it began, or another one that begins here.
+        Start of the step before it, or of another one that begins here.
     motion : (10 + 2 k,) array
-        At the state, with the velocities.
+        Motion at the state, with the velocities.
     time : float
         s.
     clearance : float

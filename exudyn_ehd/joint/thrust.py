@@ -180,7 +180,7 @@ def is_at_rest(face: FaceFilm) -> bool:
 
 
 def no_film(found: ThrustEvaluation, where: str) -> str:
-    """What to say of an evaluation without a film at a prescribed position, in the name of ``where``."""
+    """Return the message for an evaluation without a film at a given position; it begins with ``where``."""
     gap, (bx, by) = min(state.minimum_gap for state in found.states), found.motion[2:4]
     return (
         f"{where}: {found.status.name} on a thrust face at the axial position {found.position:.4g} m, tilt = "

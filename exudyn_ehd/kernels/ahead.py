@@ -74,7 +74,7 @@ def cores() -> int:
 
 
 def _is_cached(group: str, kernels: Iterable[Kernel]) -> bool:
-    """Whether one of the group's kernels is there, which takes a moment to compile if it is not."""
+    """Return whether the group's probe, a kernel that compiles fast, was in numba's cache; it is compiled if not."""
     return next(kernel for kernel in kernels if kernel.function == PROBES[group]).compile()
 
 

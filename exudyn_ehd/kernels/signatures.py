@@ -28,7 +28,7 @@ class Kernel(NamedTuple):
     Attributes
     ----------
     group : str
-        Which films need it.
+        Films that need it.
     function : str
         ``module:function``, modules without the package's name.
     arguments : str
@@ -52,7 +52,7 @@ class Kernel(NamedTuple):
 
 
 def find(name: str) -> Any:
-    """What a ``module:name`` of the package names."""
+    """Return the object of the package with the path ``module:name``."""
     module, function = name.split(":")
     return getattr(importlib.import_module(f"{PACKAGE}.{module}"), function)
 

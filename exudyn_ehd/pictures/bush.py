@@ -41,12 +41,12 @@ class Frame:
 
 @dataclass(frozen=True, kw_only=True)
 class View:
-    """How the bush is looked at.
+    """View of a bush in its pictures.
 
     Parameters
     ----------
     axes : three ints
-        Which coordinates run along the picture's first, second and vertical axis; the default puts y upright.
+        Coordinates along the picture's first, second and vertical axis; the default puts y upright.
     elevation, azimuth : float
         Camera angles [deg].
     magnification : float
@@ -70,7 +70,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view:
     mesh : BushMesh
     frames : sequence of Frame
     label : str
-        Of the colour bar, with unit.
+        Label of the colour bar, with unit.
     view : View, optional
     """
     if len(frames) == 0:

@@ -38,9 +38,9 @@ def plot_curves(
     ----------
     curves : sequence of Curve
     names : (str, str)
-        Of the columns x and y; quantities that are known are shown in their usual unit.
+        Names of the columns x and y; known quantities are shown in their usual unit.
     units : dict
-        Of columns by name, for others.
+        Units of other columns by name.
     ax : matplotlib Axes, optional
     path : path, optional
 
@@ -65,7 +65,7 @@ def plot_curves(
 
 
 def column(name: str, values: np.ndarray, units: Mapping[str, str]) -> tuple[str, Unit]:
-    """What a column is called, and the unit in which its values (SI) are shown; ``units`` of others by name."""
+    """Return the label of a column and the unit in which its SI values are shown; ``units`` holds those of others."""
     text, kind = QUANTITIES.get(name, (name.replace("_", " "), None))
     if name in units:
         return name.replace("_", " "), Unit(units[name])

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Titled:
-    """What may have a name that stands above its pictures."""
+    """Objects that may have a name, which is the title of their pictures."""
 
     def _title(self) -> str:
         return ""
@@ -62,7 +62,7 @@ class FilmPictures(Titled):
         return plot_bearing(self._film(), camera=camera, title=self._title(), ax=ax, path=path)
 
     def _film(self) -> Film:
-        """What is drawn."""
+        """Return the film to draw."""
         return cast(Film, self)
 
     def _map(self, field: str, ax: Axes | None, path: Target) -> Figure:
@@ -98,5 +98,5 @@ class HistoryPictures(Titled):
         return plot_traces(self._history(), quantities, **{"title": self._title(), **options})
 
     def _history(self) -> History:
-        """What is drawn."""
+        """Return the history to draw."""
         return cast(History, self)

@@ -1,5 +1,5 @@
-"""What the pictures look at: a film on its grid, the film of a joint, and a history; whatever is one can be drawn.
-A quantity is shown in the usual unit of its size, with its factor from SI.
+"""Data of the pictures: a film on its grid, the film of a joint, and a history. Any object with these attributes can be
+drawn. A quantity is shown in the usual unit of its size, with its factor from SI.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Film:
     pressure, gap : (n, m) arrays
         Pa (gauge), m.
     unbroken : (n, m) bool array
-        Where the film is not cavitated.
+        True where the film is not cavitated.
     fill : (n, m) array or None
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
@@ -38,13 +38,13 @@ class Film:
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
     bore_displacement : (n, m) array or None
-        Of a flexible bore or a liner, m, positive outward; None for a rigid one.
+        Deflection of a flexible bore or a liner, m, positive outward; None for a rigid one.
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     bearing : JournalBearing
     motion : (10,) array
-        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
-        rates.
+        Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates
+        follow.
     """
 
     theta: np.ndarray
@@ -71,11 +71,11 @@ class JointFilm(Film):
     time : float
         s.
     contact_pressure : (n, m) array or None
-        Of asperities or wall, Pa; None without contact.
+        Pressure of asperities or wall, Pa; None without contact.
     wear_depth : (n, m) array or None
         Worn off the bore up to this instant, m; None without wear.
     bush_displacement : (k, 3) array or None
-        Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
+        Displacements of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
     """
 
     time: float
@@ -99,7 +99,7 @@ class History:
     force : ndarray (n, 3)
         On the journal [N].
     radial_clearance, length : float
-        Of the bearing [m].
+        Dimensions of the bearing [m].
     """
 
     time: np.ndarray

@@ -1,4 +1,4 @@
-"""What a scene writes about a flexible bush: on the nodes of its mesh, or reduced to modes of its bore."""
+"""Descriptions of flexible bushes by the user: on the nodes of a mesh, or reduced to modes of the bore."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, own_rule
 from exudyn_ehd.status import InputError, require_number, require_numbers, require_type
 
-# Of the error of a modal bush; below, the waves of its search do not suffice.
+# Limits of a modal bush's tolerance. Below the smallest, the waves of its search do not suffice.
 SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
 
 
@@ -44,7 +44,7 @@ class Rayleigh:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Solid:
-    """What both kinds of bush are made of; parameters as in `ANCFBush`."""
+    """Common part of both kinds of bush; parameters as in `ANCFBush`."""
 
     mesh: HollowCylinder | BushMesh
     material: SaintVenantKirchhoff
@@ -147,7 +147,7 @@ class ModalBush(_Solid):
         False leaves out the modes that are odd in z: for journals that stay parallel, others are warned of. A bush
         that is not symmetric about its mid-plane gets them all the same.
     quadrature : Quadrature, optional
-        Of the stiffness, as in `ANCFBush`.
+        Quadrature of the stiffness, as in `ANCFBush`.
 
     Examples
     --------

@@ -80,7 +80,7 @@ class FEBore(FESurface):
     nodes : sequence of int, optional
         Mesh nodes on the bore; by default those on the cylinder around the joint's axis.
     radius_tolerance : float
-        How far a node's radius may be from the bearing's bore radius, over that radius.
+        Largest relative difference of a node's radius from the bearing's bore radius.
     settled : bool
         Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
         where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
@@ -108,9 +108,9 @@ class ReducedBore:
     displacements : ndarray, shape (n, 3, k)
         Their displacements per unit of the modes.
     stiffness_matrix : ndarray, shape (k, k)
-        Of the modes, with the body's frame held.
+        Stiffness of the modes, with the body's frame held.
     radius, length : float
-        Of the film's area [m].
+        Radius and length of the film's area [m].
     settled, exact_jacobian : bool
         As in `FEBore`.
     """
@@ -137,14 +137,14 @@ class ReducedBore:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """What resists the modes in the film's object: nothing (k,), the body does it itself."""
+        """Stiffness (k,) of the modes in the film's object: zero, since the body has its own."""
         return np.zeros(self.count)
 
     def _displaced(self, values: csr_matrix) -> np.ndarray:
         return (values @ self.displacements.reshape(len(self.displacements), -1)).reshape(-1, 3, self.count)
 
     def held(self) -> ReducedBore:
-        """The same bore with all of its displacement left to the gap: for a frame that doesn't follow."""
+        """Return this bore with its whole displacement left to the gap, for a frame that does not follow the bore."""
         out = replace(self)
         object.__setattr__(out, "rigid", np.zeros_like(self.rigid))
         return out
@@ -156,7 +156,7 @@ class ReducedBore:
         return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
 
     def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """The same (p, k) at points (p,) whose ``values`` (p, n) of displacements come from those at the nodes."""
+        """Return `radial` (p, k) at points (p,), where ``values`` (p, n) maps nodal displacements to the points."""
         normal = np.stack([np.cos(theta), np.sin(theta)], axis=1)
         u = self._displaced(values)[:, :2]
         turn = np.stack([self.rigid[4][None] * z[:, None], -self.rigid[3][None] * z[:, None]], axis=1)
@@ -191,18 +191,18 @@ def _rigid_fit(place: np.ndarray, weight: np.ndarray, field_: np.ndarray) -> np.
 
 @dataclass(frozen=True, kw_only=True)
 class BoreModesReport:
-    """What `add_bore_modes` did.
+    """Result of `add_bore_modes`.
 
     Parameters
     ----------
     added, total : int
         Modes added, and modes now in the basis.
     error_before, error : float
-        Error of the bore's shape under sampled films, of the basis before and now. The shape is the radial displacement
-        without its rigid motion. The error counts over the part of the shape that is local
-        (`exudyn_ehd.solid.modes.films`): a slender eye gets oval by far more than the film is thick, and over that
-        every error would look small, while the film sees what the local deformation lacks. Films of larger eccentricity
-        ratios than the sampled 0.9 exceed it as in `ModalBush`.
+        Error of the bore's shape under sampled films, with the basis before and now. The shape is the radial
+        displacement without its rigid motion. The error is relative to the local part of the shape
+        (`exudyn_ehd.solid.modes.films`). A slender eye becomes oval by far more than the film thickness. Relative to
+        the whole shape every error would look small, while the film depends on the local deformation. Films of larger
+        eccentricity ratios than the sampled 0.9 exceed the error as in `ModalBush`.
 
     Examples
     --------
@@ -244,7 +244,7 @@ def add_bore_modes(
     position, axis : three numbers
         Mid-plane point [m] and direction of the bore's axis, in the body's frame.
     radius, length : float
-        Of the bore under the film [m].
+        Radius and length of the bore under the film [m].
     fixed_nodes : sequence of int
         Mesh nodes held: those of the first interface, which carries the body's frame.
     tolerance, tilted

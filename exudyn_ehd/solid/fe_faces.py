@@ -1,4 +1,4 @@
-"""Where a finite-element body carries the film: the nodes and faces of its bore, and their shape functions, unrolled.
+"""Surface under the film of a finite-element body: nodes and faces of its bore, and their shape functions, unrolled.
 
 Faces are those of hexahedra, or triangles of three or six nodes.
 """
@@ -19,14 +19,14 @@ from exudyn_ehd.status import InputError
 LARGEST_SPACING = 0.6
 # Spread of the radii of nodes on one surface, over the radius: facets.
 SURFACE = 5e-3
-# How far a film may reach beyond the outermost nodes, in lengths: rounding.
+# Largest distance of a film's end beyond the outermost nodes, over the length: round-off.
 BEYOND_END = 1e-6
-# How far a point may lie beyond a face, in natural coordinates: facets, and films as long as the bore.
+# Largest distance of a point beyond a face, in natural coordinates: facets, and films as long as the bore.
 OUTSIDE = 0.02
 
 
 class BodyMesh(Protocol):
-    """What is read of the ``FEMinterface`` that a body was made of, and filled into it."""
+    """Attributes of a body's ``FEMinterface`` that are read and written."""
 
     nodes: dict[str, np.ndarray]
     elements: list[dict[str, np.ndarray]]
@@ -63,7 +63,7 @@ class BoreFaces(Unrolled):
 
     @property
     def local(self) -> np.ndarray:
-        """As `faces`."""
+        """Indices of the faces into ``positions``: `faces`."""
         return self.faces
 
     def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
@@ -163,13 +163,13 @@ def find_bore(
     positions : ndarray, shape (n, 3)
         All nodes in the joint's frame [m].
     radius, length : float
-        Of the film's area [m].
+        Radius and length of the film's area [m].
     tolerance : float
         On a node's radius, over the radius.
     nodes : sequence of int, optional
-        Where to look; by default all.
+        Nodes to search; by default all.
     outer : bool
-        Of a journal, whose surface is what is farthest from its axis.
+        True for a journal, whose surface is farthest from its axis.
 
     Raises
     ------

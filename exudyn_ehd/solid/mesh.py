@@ -18,7 +18,7 @@ from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
 from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces, wrapped
 from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
 
-# How far a point of a surface may lie beyond its faces, in natural coordinates: round-off.
+# Largest distance of a surface's point beyond its faces, in natural coordinates: round-off.
 OUTSIDE = 1e-6
 
 
@@ -61,7 +61,7 @@ class Surface(Unrolled):
 
     @property
     def local(self) -> np.ndarray:
-        """As `local_faces`."""
+        """Indices of the faces into ``positions``: `local_faces`."""
         return self.local_faces
 
     @cached_property
@@ -190,7 +190,7 @@ class BushMesh:
 
     @property
     def element(self) -> Element:
-        """What the elements are."""
+        """Kind of the elements."""
         return element_of(self.elements)
 
     @cached_property

@@ -22,22 +22,22 @@ from exudyn_ehd.status import InputError, require_number
 _UNREAD = ("INCLUDE", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY")
 _TYPES = {name: element for element in ELEMENTS for name in element.abaqus}
 _WHERE = "mesh_from_file"
-# How the names of solid elements start in meshio.
+# First letters of the names of solid elements in meshio.
 _SOLIDS = ("tetra", "hexahedron", "wedge", "pyramid", "VTK_LAGRANGE")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FileMesh:
-    """What a file holds of one body.
+    """Mesh of one body in a file.
 
     Attributes
     ----------
     nodes : ndarray (n, 3)
-        In the file's unit; of an instance in the assembly's frame.
+        Positions in the file's unit; those of an instance in the assembly's frame.
     elements : ndarray of int (m, 20) or (m, 10)
         Rows of ``nodes``.
     numbers : ndarray of int (m,)
-        Of the elements in the file.
+        Numbers of the elements in the file.
     sets : dict
         Rows of ``nodes`` by the names of node sets.
     """
@@ -81,7 +81,7 @@ def read_abaqus(where: str, path: pathlib.Path, instance: str | None = None) -> 
         For messages.
     path : path
     instance : str, optional
-        Of several.
+        Name of the instance, if there are several.
 
     Raises
     ------

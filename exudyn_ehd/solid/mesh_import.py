@@ -16,8 +16,9 @@ from exudyn_ehd.status import InputError, require_number, require_numbers, requi
 
 
 class FEMData(Protocol):
-    """What is read of Exudyn's ``FEMinterface``: nodes['Position'] (n, 3) and elements, a list of 'Hex20' (m, 20)
-    or 'Tet10' (m, 10)."""
+    """Attributes of Exudyn's ``FEMinterface`` that are read: nodes['Position'] (n, 3) and elements, a list of 'Hex20'
+    (m, 20) or 'Tet10' (m, 10).
+    """
 
     nodes: dict
     elements: list
@@ -207,7 +208,7 @@ def bush_mesh(
     origin: tuple,
     axis: tuple,
 ) -> BushMesh:
-    """What `mesh_from_arrays` does; ``numbers`` (m,) are the elements' own in messages, by default their rows."""
+    """Return the mesh of `mesh_from_arrays`; ``numbers`` (m,) name elements in messages, by default by their rows."""
     radius = require_number("mesh_from_arrays bore_radius", bore_radius, "m", above=0.0)
     try:
         nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)

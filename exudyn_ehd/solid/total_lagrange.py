@@ -218,7 +218,7 @@ class TotalLagrange:
         return float(np.sum(w * self.material.energy_density(H)))
 
     def inversion(self, u: np.ndarray) -> str:
-        """Which element the displacements u (n, 3) turn inside out, and what to do about it; empty if none."""
+        """Return a message on an element that displacements u (n, 3) turn inside out, with a remedy; empty if none."""
         N, _, X = self._blocks
         ratio, row = blocks.smallest_volume_ratio(N, X, self._geometry[0], np.ascontiguousarray(u, dtype=float))
         if not ratio <= 0.0:

@@ -25,7 +25,7 @@ class Unrolled(ABC):
 
     @cached_property
     def kind(self) -> Face:
-        """What the faces are."""
+        """Kind of the faces."""
         return face_of(self.local)
 
     @property
@@ -104,7 +104,7 @@ def invert_faces(kind: Face, corner: np.ndarray, theta: np.ndarray, z: np.ndarra
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:
-    """The same angle within -pi and pi."""
+    """Return the angle in the range from -pi to pi."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 

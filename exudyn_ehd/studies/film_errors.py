@@ -1,4 +1,4 @@
-"""What a steady film says of a bearing, and how far two grids are apart in it.
+"""Results of a steady film of a bearing, and the difference of two grids in them.
 
 A converged reference and an estimate of its own error from three levels of refinement.
 
@@ -66,7 +66,7 @@ class Converged:
     Attributes
     ----------
     value : ndarray
-        Of the finest level, not extrapolated.
+        Value of the finest level, not extrapolated.
     error : float
         Estimate of the distance from ``value`` to the limit.
     order : float
@@ -112,7 +112,7 @@ def converged(levels: Sequence[np.ndarray], *, ratio: float, formal_order: float
 
 
 def scale_of(name: str, reference: np.ndarray) -> float:
-    """What errors of a quantity against ``reference`` are divided by."""
+    """Return the divisor of a quantity's errors against ``reference``."""
     scale = SCALES[name]
     largest = float(np.max(np.abs(reference))) if scale is None else scale
     return largest if largest > 0.0 else 1.0
@@ -139,7 +139,7 @@ def measure_motions(model: Model, motions: Motions) -> tuple[dict[str, np.ndarra
     Raises
     ------
     FilmError
-        Where there is no film.
+        If there is no film.
     """
     columns: dict[str, list[float | np.ndarray]] = {}
     iterations, before = 0, _films(model)

@@ -246,7 +246,7 @@ def _unknown(
     numbers: Mapping[str, tuple[float, tuple[float, float]]],
     eccentricity: tuple[float, float],
 ) -> str:
-    """Why nothing is known of such a bearing; empty if something is."""
+    """Return the reason why nothing is known of such a bearing; empty if something is."""
     if isinstance(bearing.bush, ANCFBush):
         return "an ANCFBush takes minutes a film; ask for the ModalBush of the same mesh, or compare a finer film"
     if isinstance(bearing.inlet, MaximumGap):

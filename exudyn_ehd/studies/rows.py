@@ -22,14 +22,14 @@ _FORMAT = "exudyn_ehd parameter_study 1"
 
 @dataclasses.dataclass(frozen=True)
 class Row:
-    """What came back from one call.
+    """Result of one call.
 
     Attributes
     ----------
     results : dict
         Numbers by name; empty if it failed.
     error : str
-        Why it failed, in one line; empty if it did not.
+        Reason of a failure, in one line; empty without one.
     seconds : float
         Wall time; nan if the call never returned.
     """
@@ -78,7 +78,7 @@ class RowFile:
     path : path
         New, or written by a study of the same function.
     function : callable
-        What the rows are results of; a file of another one is refused.
+        Function of which the rows are results; a file of another one raises an error.
     """
 
     def __init__(self, path: str | pathlib.Path, function: Function) -> None:

@@ -1,4 +1,4 @@
-"""How many time steps a bearing needs in a mechanism, measured on the bearing alone under the load of one cycle.
+"""Number of time steps that a bearing needs in a mechanism, measured on the bearing alone under one cycle's load.
 
 The journal, a mass with a given spin, carries the cycle's load on the film, in Exudyn and with the settings of
 `ConfigureSolver`, for two periods; the second one counts. Runs with N and 2 N steps a period differ by
@@ -40,7 +40,7 @@ from exudyn_ehd.studies.film_errors import LOWEST_ORDER
 
 FEWEST, LEVELS = 90, 7
 FEWEST_ROWS = 8
-# What else moves in a mechanism adds to the error of its bearing.
+# Safety factor: other moving parts of a mechanism add to the error of its bearing.
 MARGIN = 2.0
 # Changes that fall faster from run to run tell of a first run too coarse to belong to the order of the others.
 FASTEST = 8.0
@@ -101,16 +101,16 @@ def recommend_steps(
     bearing : JournalBearing
         Any that moves in a plane; with an `ANCFBush` it takes minutes.
     error : float
-        Of the minimum film thickness, relative to its smallest value in the period.
+        Error of the minimum film thickness, relative to its smallest value in the period.
     speed : float or (n,) array
         Spin of the journal in the housing, rad/s; of a pin that swings at the instants of the load.
     period : float
-        Of the load, s: a turn of a crank, two of a four-stroke engine.
+        Period of the load, s: a turn of a crank, two of a four-stroke engine.
     load : (n, 2) array
         Force on the journal at n equal intervals of a period, in the housing's frame, N, n >= 8: of a run with an ideal
         joint, say.
     mass : float
-        Of the lighter of the two bodies, kg.
+        Mass of the lighter of the two bodies, kg.
 
     Returns
     -------

@@ -144,9 +144,9 @@ class BushEquations:
         return bmat([[self._moving_mass, coupling], [coupling.T, own]], format="csr")
 
     def rounding(self, reach: np.ndarray) -> float:
-        """What the rounding of coordinates up to a size (n,) makes of forces [N] at most, root of sum of squares.
+        """Return the norm of the forces' round-off [N], at most, for coordinates up to a size (n,).
 
-        Nodes on a carrier have the rounding of their places in the model, which are those of the last evaluation.
+        Nodes on a carrier have the round-off of their positions in the model at the last evaluation.
         """
         size = float(reach[: self.count].max(initial=0.0))
         if self.carrier is None:
@@ -215,12 +215,12 @@ class BushEquations:
 
     @cached_property
     def _rounding(self) -> float:
-        """Force [N] per displacement [m]: nodes that are off by their rounding, all to the worst."""
+        """Norm of the forces' round-off [N] per size of coordinates [m], if all nodes have the worst signs."""
         return self._rounding_of(np.arange(self.held.size))
 
     @cached_property
     def _carried_rounding(self) -> float:
-        """The same of the carrier's nodes alone."""
+        """Norm of the forces' round-off [N] per size of coordinates [m], of the carried nodes alone."""
         return self._rounding_of(self._slaved_rows)
 
     def _rounding_of(self, columns: np.ndarray) -> float:
@@ -239,7 +239,7 @@ class BushEquations:
 
     @cached_property
     def _held_inertia(self) -> float:
-        """Of a coordinate held by a spring, which swings far above every frequency of the mesh."""
+        """Mass [kg] of a coordinate held by a spring, which then swings far above every frequency of the mesh."""
         return self._spring / (100.0 * self._highest_frequency_squared)
 
     @cached_property
@@ -330,13 +330,13 @@ class Block:
 
 
 class BushFunctions:
-    """What Exudyn asks of a nodal bush.
+    """User functions of a nodal bush, which Exudyn calls.
 
     Parameters
     ----------
     equations : BushEquations
     name : str
-        Of the object, for messages.
+        Name of the object, for messages.
     """
 
     def __init__(self, equations: BushEquations, name: str) -> None:

@@ -38,7 +38,7 @@ class Support:
     nodes : ndarray of int
         Mesh node numbers, for example ``mesh.end_low.nodes`` or ``mesh.generatrix(...).nodes``.
     directions : three bools
-        Which of x, y, z are held.
+        True for those of x, y, z that are held.
 
     Examples
     --------
@@ -209,7 +209,7 @@ def CreateFlexibleBush(
         Name of the object.
     bush : ANCFBush
     outer : FreeOuter, FixedOuter or CarriedOuter
-        What holds the outer surface.
+        Support of the outer surface.
     position : three numbers
         Global reference position of the bush frame [m].
     rotationMatrix : ndarray, shape (3, 3), optional
@@ -288,7 +288,7 @@ def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np
 
 @dataclass(frozen=True, eq=False)
 class Mount:
-    """What carries a bush.
+    """Moving frame that carries a bush.
 
     Parameters
     ----------
@@ -299,7 +299,7 @@ class Mount:
     point : ndarray (3,)
         Global position of the side's frame in the reference configuration [m].
     contains : bool
-        Whether the mass of what carries the bush contains the bush's.
+        True if the mass of the carrier already contains that of the bush.
     """
 
     side: Side

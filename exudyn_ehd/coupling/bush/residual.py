@@ -108,7 +108,7 @@ def _together(places: np.ndarray) -> np.ndarray | slice:
 
 
 def _as_made(mbs: exu.MainSystem, item: Index, places: np.ndarray, bush: BushFunctions) -> bool:
-    """Whether a bush has no carrier, and force and mass that it was made with."""
+    """Return whether a bush has no carrier and still has the force and mass with which it was created."""
     force: object = mbs.GetObjectParameter(item, "forceUserFunction")
     if bush.equations.carrier is not None or not isinstance(force, dict) or force["function"] != bush.force:
         return False
@@ -117,7 +117,7 @@ def _as_made(mbs: exu.MainSystem, item: Index, places: np.ndarray, bush: BushFun
 
 
 def _lasting(values: dict) -> bool:
-    """Whether an object has no mass matrix but a constant one."""
+    """Return whether an object has a constant mass matrix or none."""
     if values["objectType"] == "GenericODE2":
         return not values["massMatrixUserFunction"]
     return values["objectType"] in _LASTING or values["objectType"].startswith(_MASSLESS)

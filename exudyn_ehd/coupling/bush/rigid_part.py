@@ -1,12 +1,12 @@
-"""What the body that carries a bush has of it already: the bush as a rigid part.
+"""Inertia of a bush as a rigid part, which the mass of its carrier already contains.
 
 With its mass m, first moment s = A int rho X dV and inertia I about the carrier's frame (position p, rotation A,
 velocity v, angular velocity omega), the carrier's kinetic energy contains
 
     m v^2 / 2 + v . (omega x s) + omega . I omega / 2.
 
-The equations of the mesh take it off, so that mass, momentum and weight of the model are those of the carrier, whatever
-its bush is made of, and what remains of the mesh's inertia is that of its strain.
+The equations of the mesh subtract it. Mass, momentum and weight of the model are then those of the carrier, for any
+material of the bush. Of the mesh's inertia only that of its strain remains.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class RigidPart:
         self.second = points.T @ share
 
     def describe(self) -> tuple[str, float, str]:
-        """What messages say of the bush: its kind, its mass [kg], and what else to do."""
+        """Return values for messages: kind of the bush, its mass [kg], and an alternative remedy."""
         remedy = "give the joint bushGravity=(...): the bush's mass then counts beside the housing's, with this gravity"
         return "ANCFBush", self.mass, remedy
 

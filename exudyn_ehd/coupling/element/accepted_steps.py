@@ -42,14 +42,14 @@ SAME_TIME = 1e-3
 
 
 class Film(Element, Protocol):
-    """What accepted steps ask of the element they belong to.
+    """Element of a joint, as its accepted steps use it.
 
     Attributes
     ----------
     failures : Failures
     outer : OuterLoad
     is_massless : bool
-        Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
+        True if it has coordinates of its own without mass, which explicit solvers do not support.
     """
 
     failures: Failures
@@ -96,15 +96,15 @@ class AcceptedSteps:
     solver : object or None
         The one of them that is at work.
     memory : History or None
-        What the film remembers at ``start``; None for a film that remembers nothing, or is steady.
+        Memory of the film at ``start``; None for a film that remembers nothing, or is steady.
     asked : (float, list of float)
         Time and coordinates for which a solver has asked last.
     begin : StepStart or None
-        Where the present step begins; None where the film takes the velocities as they are.
+        Start of the present step; None where the film takes the velocities as they are.
     control : GapWatch or None
         Rejects steps that are too coarse.
     record : Record
-        What was accepted.
+        Record of the accepted steps.
     recorder : FilmRecorder or None
         Keeps films.
     observers : list of functions
@@ -118,7 +118,7 @@ class AcceptedSteps:
     chosen : bool
         Whether the run under way chooses the size of its steps.
     tangent : (6, 10) array or None
-        Of the film's wrench, as Newton's method of an implicit run has asked for it last.
+        Tangent of the film's wrench that Newton's method of an implicit run has evaluated last.
     """
 
     def __init__(self, film: Film) -> None:
@@ -276,7 +276,7 @@ class AcceptedSteps:
         return memory
 
     def _begin_of_next(self, time: float, trial: Trial) -> StepStart | None:
-        """Where the step after the state at hand begins, under solvers whose formulas are known."""
+        """Return the start of the next step; None if the solver's formulas or the state's motion are unknown."""
         known = trial.status == Status.CONVERGED or np.isfinite(trial.bodies.sum())
         if not (known and solver_state.is_implicit(self.solver)):
             return None
@@ -321,7 +321,7 @@ class AcceptedSteps:
 
     @property
     def is_idle(self) -> bool:
-        """Whether no solver is at work; after a run that an exception has ended it still seems to be."""
+        """Return whether no solver is running; False after a run that an exception has ended."""
         return solver_state.is_finished(self.solver)
 
     @property

@@ -61,7 +61,7 @@ def attach_bush(
     place : ndarray (3,), ndarray (3, 3)
         Joint point and joint frame in the reference configuration, global.
     name : str
-        Of the joint.
+        Name of the joint.
     show : bool
         Draw the bush.
     gravity : ndarray (3,) or None
@@ -72,7 +72,7 @@ def attach_bush(
     element : BoreFilmElement
         The film on it.
     arguments : dict
-        What the element's ObjectGenericODE2 needs besides nodes and functions.
+        Arguments of the element's ObjectGenericODE2 besides nodes and functions.
     """
     assert isinstance(model, ElasticBearingModel)
     for item, side in zip(items, sides, strict=True):
@@ -193,7 +193,7 @@ class FilmsOnOneBody:
 
     @property
     def elasticity(self) -> Elasticity:
-        """That of the body, with its growth by spin where the first film is on a journal."""
+        """Elasticity of the body; with growth by spin if the first film is on a journal."""
         return self.films[0].model.elasticity
 
     def evaluate(

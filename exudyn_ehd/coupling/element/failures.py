@@ -1,4 +1,4 @@
-"""What a joint's film says when it can't go on: where, why, and what to do about it."""
+"""Messages for states without a valid film: place, cause and remedy."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Failures:
     Parameters
     ----------
     name : str
-        Of the joint.
+        Name of the joint.
     bearing : JournalBearing
 
     Attributes
@@ -129,7 +129,7 @@ class Failures:
         return None
 
     def crushes(self, trial: Trial) -> bool:
-        """Whether the state has a film that no accepted step may have."""
+        """Return whether the film's pressure exceeds the limit for accepted steps."""
         if trial.evaluation is None or trial.status != Status.CONVERGED:
             return False
         mean = self._mean(trial.evaluation.wrench[:3])
@@ -228,7 +228,7 @@ class Failures:
         return max(self._mean(row[FORCE]) / HIGHEST_MEAN, float(row[PEAK_PRESSURE]) / HIGHEST_PEAK)
 
     def overloaded(self, time: float, row: np.ndarray, motion: np.ndarray) -> str:
-        """What to say of such a step."""
+        """Return the message for an accepted step whose pressure neither oil nor steel bears."""
         force, mean = float(np.linalg.norm(row[FORCE])), self._mean(row[FORCE])
         return (
             f"LubricatedJoint '{self.name}' at t = {time:.9g} s: the accepted step has a film that neither oil nor "
@@ -244,7 +244,7 @@ class Failures:
         return FilmError(f"LubricatedJoint '{self.name}' at t = {time:.9g} s: {message}")
 
     def place(self, motion: np.ndarray) -> str:
-        """Where the journal is at a motion (10,), and `tilting`; the start of advice."""
+        """Describe the journal's position at a motion (10,), followed by `tilting`; messages put advice behind it."""
         bearing = self.bearing
         mid, largest = eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
         gap = self.bore.smallest(motion)

@@ -94,12 +94,12 @@ class ModalFilmElement(BoreFilmElement):
     Parameters
     ----------
     bore : ModalBore or TurningJournal
-        That of the model.
+        Bore of the model.
 
     Attributes
     ----------
     modes : BoreModes, ReducedBore or None
-        Of the bore; those of an elastic journal follow.
+        Modes of the bore; those of an elastic journal follow.
     stiffness : (k,) array
         Modal stiffness, N/m.
     """
@@ -122,11 +122,10 @@ class ModalFilmElement(BoreFilmElement):
         self._at_start = False
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
-        """As `FilmElement.force`.
+        """Return the force of `FilmElement.force`, without loads on massless modes for initial accelerations.
 
-        An implicit solver that asks at the start of its step looks for initial accelerations. Modes that no inertia
-        resists have none, whether they are in balance or not; on their numerical mass a lack of balance would throw
-        them.
+        An implicit solver evaluates the force at the start of a step to find initial accelerations. Massless modes
+        have none, in balance or not. An unbalanced load on their numerical mass would give a huge one.
         """
         force = super().force(mbs, t, item, q, q_t)
         steps = self.steps

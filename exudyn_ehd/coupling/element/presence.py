@@ -1,4 +1,4 @@
-"""Whether the items that a joint was made on still are in its system, under the numbers that it knows them by."""
+"""Check that the items of a joint still exist in its system, under the same numbers."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Presence:
     ----------
     mbs : exudyn.MainSystem
     name : str
-        Of the joint.
+        Name of the joint.
     owner : object
-        Whose method is the force function of the joint's object.
+        Object whose method is the force function of the joint's object.
     number : exudyn.ObjectIndex
         The joint's object.
     sides : pair of Side
@@ -64,7 +64,7 @@ class Presence:
 
 
 def force_owner(mbs: exu.MainSystem, number: int) -> object:
-    """Whose method is the force function of an object; None if it has no such function."""
+    """Return the object whose method is the force function of an Exudyn object; None without such a function."""
     item = ObjectIndex(number)
     # only some objects have a force function
     if mbs.GetObject(item)["objectType"] != "GenericODE2":

@@ -58,13 +58,13 @@ class FilmElement:
     is_massless : bool
         Whether it has coordinates of its own whose mass is a numerical one.
     evaluations : int
-        How often the film was asked.
+        Number of film evaluations.
     kinematics : module
         Of the motion that the film knows.
     crew : SideBySide or None
         Evaluates it with the films of other joints.
     late : Exception or None
-        What `arrive` has met, for the film's own call.
+        Error of `arrive`, which the film's own call raises.
     """
 
     kinematics: ModuleType = relative
@@ -129,7 +129,7 @@ class FilmElement:
             steps.accept(mbs, start, solvers)
 
     def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial | None:
-        """What `force` does before the film is evaluated, with its errors kept for it; None if nothing is left."""
+        """Prepare a trial; errors are stored and raised by `force`. Return None if there is nothing to evaluate."""
         try:
             self._accept(mbs)
             trial = self._prepare(mbs, q, q_t, CURRENT, t, not self.steps.is_idle)
@@ -139,10 +139,10 @@ class FilmElement:
         return None if trial is self._trial else trial
 
     def _refuses(self, t: float, trial: Trial) -> bool:
-        """Whether the solver shall reject the step; raise if there is no film and it can't.
+        """Return whether the solver shall reject the step; raise if there is no film and the step can't be repeated.
 
-        A film behind the end of a pressure law has forces that lead Newton's method back: where cavities have closed
-        since the last step, its first iterate may be too fast for the oil however short the step.
+        Beyond the end of a pressure law the film has forces that lead Newton's method back. Its first iterate may lie
+        there for any step size, if cavities have closed since the last step.
         """
         if trial.status == Status.CONVERGED:
             return False
@@ -277,7 +277,7 @@ class FilmElement:
         return self._trial
 
     def has_result(self) -> bool:
-        """Whether the state evaluated last can be accepted as the end of a step."""
+        """Return whether the state evaluated last can be accepted as the end of a step."""
         trial = self._trial
         return trial is None or not (trial.status == Status.NO_PRESSURE or self.failures.crushes(trial))
 
@@ -349,7 +349,7 @@ class FilmElement:
         return evaluation.quantities()
 
     def faces_wrench(self) -> np.ndarray:
-        """What the end faces do to the journal (6,) at the state to which the sides' arrays belong; zero without."""
+        """Return the wrench (6,) of the thrust faces on the journal at the state of the sides' arrays, or zero."""
         return np.zeros(6) if self.faces is None else self.faces.wrench(self.sides)
 
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:

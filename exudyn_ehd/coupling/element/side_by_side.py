@@ -41,7 +41,7 @@ class Film(Protocol):
     Attributes
     ----------
     crew : SideBySide or None
-        Whom it tells of its calls.
+        Group of films that is told of its calls.
     late : Exception or None
         Error of `arrive` that its own call raises.
     model : JointModel
@@ -58,7 +58,7 @@ class Film(Protocol):
         """Coordinates and rates of all nodes of the element."""
 
     def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial | None:
-        """What its own call does before the film is evaluated; None if nothing is left to evaluate."""
+        """Prepare a trial; errors are stored in ``late``. Return None if there is nothing to evaluate."""
 
     def evaluate(self, trial: Trial) -> None:
         """Evaluate the film at a trial of `arrive`."""
@@ -73,7 +73,7 @@ class SideBySide:
     Parameters
     ----------
     films : sequence of Film
-        Of all joints, each in its own model.
+        Films of all joints, each in its own model.
     threads : int
         More than one.
 

@@ -42,7 +42,7 @@ class ThrustElement:
     Parameters
     ----------
     film : FilmElement
-        Of the journal's film, which keeps the record.
+        Element of the journal's film, which keeps the record.
     sides : pair of Side
         Housing and journal, not those of ``film``.
     offset : float
@@ -51,7 +51,7 @@ class ThrustElement:
     Attributes
     ----------
     objectNumber : exudyn.ObjectIndex
-        Of the element in the system.
+        Number of the element in the system.
     """
 
     objectNumber: ObjectIndex
@@ -150,7 +150,7 @@ class ThrustElement:
         return np.asarray(along + self.offset * (1.0 + tilt @ tilt) ** -1.5 * (tilt @ by_q[2:4]))
 
     def _goes_too_far(self, time: float, found: ThrustEvaluation) -> bool:
-        """Whether the joint's step control asks for a smaller step."""
+        """Return whether the step control rejects the step for its change of the faces' smallest gap."""
         control, faces = self.steps.control, self.model.bearing.thrust
         if control is None or faces is None or not time > self.steps.start:
             return False
@@ -159,7 +159,7 @@ class ThrustElement:
         return control.refuses(change, max(self._gap, least), self.steps.solver)
 
     def _has_film(self, time: float, found: ThrustEvaluation) -> bool:
-        """Whether there are films; raise `FilmError` if there are none and the solver can't repeat the step."""
+        """Return whether the faces have films; raise `FilmError` if they have none and the step can't be repeated."""
         if found.status is Status.CONVERGED:
             return True
         if not solver_state.can_reject_step(self.steps.solver):
@@ -184,7 +184,7 @@ def attach_faces(
     ----------
     mbs : exudyn.MainSystem
     film : FilmElement
-        Of the journal's film.
+        Element of the journal's film.
     items : pair of Item
         Housing and journal.
     points, rotation : pair of (3,) arrays, (3, 3) array

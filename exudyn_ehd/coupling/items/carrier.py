@@ -1,4 +1,4 @@
-"""What carries the slaved nodes of a bush: points that move with the rigid frame of any side of a joint.
+"""Carrier of a bush's slaved nodes: points that move with the rigid frame of any side of a joint.
 
 With the frame's position p, rotation A, velocity v, angular velocity omega and Jacobians Jp, Jr (see `kinematics`), a
 point X of the bush's frame has the arm s = A X and

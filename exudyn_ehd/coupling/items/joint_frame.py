@@ -1,6 +1,7 @@
-"""From the arguments of `CreateLubricatedJoint`: the two items, the joint frame and the joint points, checked.
+"""Items, joint frame and joint points, checked, from the arguments of `CreateLubricatedJoint`.
 
-The constraint that holds a journal along the axis of its joint, or against tilting, for the option `Held`.
+The module also adds the constraint of the option `Held`, which holds a journal along the joint's axis or against
+tilting.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ def hold_fe_bore(
 def hold_fe_journal(
     mbs: exu.MainSystem, bearing: JournalBearing, journal: Item, point: np.ndarray, rotation: np.ndarray
 ) -> tuple[JournalBearing, Item]:
-    """As `hold_fe_bore` of the journal, with an `FEJournal`."""
+    """Return the bearing with the flexible journal of a body, and the journal's item, as `hold_fe_bore` does."""
     pin = bearing.journal
     if not isinstance(pin, FEJournal):
         raise InputError(
@@ -97,7 +97,7 @@ def _find_surface(
     size: tuple[float, float],
     place: tuple[np.ndarray, np.ndarray],
 ) -> tuple[ReducedBore, Item]:
-    """What of a body is under a film of radius and length ``size``, and the item that moves with it."""
+    """Return the body's surface under a film of radius and length ``size``, and the item that moves with it."""
     where, (radius, length), (point, rotation) = (
         f"CreateLubricatedJoint.bearing with {option}={type(surface).__name__}(...)",
         size,

@@ -64,9 +64,9 @@ class BodyIntegrals(NamedTuple):
 
 
 class _Place(NamedTuple):
-    """What coordinates make of a body: G (3, n), s (3,), J (3, 3), R (k, 3, 3) and ``T + C z`` (3, k).
+    """Terms of a body that depend on coordinates: G (3, n), s (3,), J (3, 3), R (k, 3, 3), ``T + C z`` (3, k).
 
-    And of rates: ``sum z_t,i R_i^T`` (3, 3), changes of alpha (3, n).
+    The last two depend on rates too: ``sum z_t,i R_i^T`` (3, 3), changes of alpha (3, n).
     """
 
     G: np.ndarray
@@ -84,7 +84,7 @@ class FloatingBody:
     Parameters
     ----------
     frame : NodeSide
-        Of the rigid node, without a lever arm.
+        Frame of the rigid node, without a lever arm.
     integrals : BodyIntegrals
     """
 

@@ -26,7 +26,7 @@ def move_nodes(housing, journal, q, q_t, motion_out):
 
 @njit(cache=True)
 def derive_nodes(housing, journal, q, q_t, wrench, tangent):
-    """As `sides.derivatives_between` returns them; the sides' frames and Jp, Jr belong to q and q_t."""
+    """Return the derivatives of `sides.derivatives_between`; the sides' frames and Jp, Jr belong to q and q_t."""
     n, size = housing[1].size, q.size
     frame_h, frame_j, jac_h, jac_j = housing[4], journal[4], housing[5], journal[5]
     loads, stiffness, damping = np.empty((4, 3)), np.zeros((size, size)), np.empty((size, size))

@@ -142,7 +142,7 @@ def angle_of(frame_h: np.ndarray, frame_j: np.ndarray) -> float:
 
 
 def motion_of(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
-    """As `relative_motion` leaves it (10,)."""
+    """Return the motion (10,) of `relative_motion`."""
     motion = np.empty(10)
     relative_motion(frame_h, frame_j, motion)
     return motion
@@ -151,7 +151,7 @@ def motion_of(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
 def variation_of(
     frame_h: np.ndarray, frame_j: np.ndarray, jac_h: np.ndarray, jac_j: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """As `motion_variation` leaves it, two (10, n)."""
+    """Return the derivatives of `motion_variation`, two (10, n)."""
     motion_q, motion_qt = np.empty((2, 10, jac_h.shape[2] + jac_j.shape[2]))
     motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q, motion_qt)
     return motion_q, motion_qt
@@ -222,7 +222,7 @@ def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f
         Wrench and loads on the modes to the motion and, combined by f_q and f_qt, to the modes; without their stiffness
         (k,).
     k_rigid, d_rigid, motion_q, motion_qt : (n, n), (n, n), (10, n), (10, n) arrays
-        Of the sides, see `tangent_matrices`.
+        Matrices of the sides, see `tangent_matrices`.
     wrench_map : (n, 6) array
     """
     n, k = wrench_map.shape[0], stiffness.size

@@ -1,4 +1,4 @@
-"""What a run leaves behind.
+"""Records of the accepted steps of a run.
 
 Module map
 ----------

@@ -43,8 +43,8 @@ class FilmDisplay:
     wanted : bool
         Whether a renderer has asked.
     clearance : float
-        What the clearance is drawn as, or a deflection of the bore that is larger: a share of the journal's radius,
-        0.1 by default; 0 draws it as it is.
+        Size of the drawn clearance, or of a larger deflection of the bore, over the journal's radius; 0.1 by default,
+        0 draws the true size.
     """
 
     def __init__(self, element: Element) -> None:
@@ -118,7 +118,7 @@ class FilmDisplay:
         return data
 
     def _scale(self, bearing: JournalBearing) -> float:
-        """What the film is drawn thicker by, and the bore's deflection larger."""
+        """Return the factor by which film thickness and bore deflection are magnified in the picture."""
         return max(1.0, self.clearance * bearing.journal_radius / max(bearing.radial_clearance, self.largest))
 
     def _bore(self, scale: float) -> np.ndarray:

@@ -33,7 +33,7 @@ _MOTION_UNITS = ("m", "m", "rad", "rad", "m/s", "m/s", "rad/s", "rad/s", "rad/s"
 
 
 class Quantity(enum.Enum):
-    """What a sensor can record; the value is the name in `JointHistory`.
+    """Quantities that a sensor can record; the value is the name in `JointHistory`.
 
     Examples
     --------
@@ -77,7 +77,7 @@ class Quantity(enum.Enum):
     THRUST_CONTACT_LOAD = "thrust_contact_load"
 
 
-# Of the film's quantities those behind motion, eccentricities and loads.
+# Scalar quantities of the film: those behind motion, eccentricities and loads.
 _SCALARS = tuple(member.value for member in Quantity)[6:]
 TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
@@ -99,16 +99,16 @@ COLUMNS: dict[str, int | slice] = {
     "moment": slice(_WRENCH + 3, _WRENCH + 6),
     **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
 }
-# What a history has for every step, and for every row.
+# Columns of a history for every step, and for every row.
 _NAMES = (*COLUMNS, "step_error")
 _ROWS = (*_NAMES, "step_count")
 
 
 class Source(Protocol):
-    """Where a history on disk finds its columns."""
+    """Columns of a history on disk."""
 
     def column(self, name: str) -> np.ndarray:
-        """One of `_ROWS`, (n, ...)."""
+        """Return the column (n, ...) with one of the names `_ROWS`."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -158,7 +158,7 @@ class JointHistory(History, HistoryPictures):
         Number of the accepted step, 0 for the initial state; it has gaps where the record was thinned (`Every`,
         `Period`): the first, last and worst steps are there, and ``step_error`` is the largest since the row before.
     radial_clearance, journal_radius, length : float
-        Of the bearing [m].
+        Dimensions of the bearing [m].
 
     Notes
     -----
@@ -224,7 +224,7 @@ class JointHistory(History, HistoryPictures):
 
     @property
     def is_thinned(self) -> bool:
-        """Whether accepted steps are missing between the rows."""
+        """Return whether accepted steps are missing between the rows."""
         return bool(np.any(np.diff(self.step_count) > 1))
 
     def __repr__(self) -> str:

@@ -130,7 +130,7 @@ class RowsOnDisk:
         self.path.write_bytes(self._head)
 
     def rows(self, behind: np.ndarray | None = None) -> RowsInFile:
-        """All settled rows, to read, with others (n, k) behind them."""
+        """Return all settled rows for reading, with others (n, k) behind them."""
         behind = np.empty((0, self._width)) if behind is None else behind
         return RowsInFile(self.path, self.joint, self._head, self.count, behind)
 

@@ -54,12 +54,12 @@ class Record:
 
     @property
     def width(self) -> int:
-        """Of a row that is kept."""
+        """Number of values in a stored row."""
         return WIDTH if self._thinner is None else WIDTH + 2
 
     @property
     def is_thinned(self) -> bool:
-        """Whether rows are dropped."""
+        """Return whether rows are dropped."""
         return self._thinner is not None
 
     def append(self, row: np.ndarray) -> None:
@@ -183,7 +183,7 @@ class Columns:
     lags: bool
 
     def column(self, name: str) -> np.ndarray:
-        """As of `exudyn_ehd.coupling.record.history.Source`."""
+        """Return a column by its name, as `exudyn_ehd.coupling.record.history.Source` does."""
         thinned = self.rows.width > WIDTH
         if name == "step_count":
             return self.rows.column(STEP_COUNT).astype(np.int64) if thinned else np.arange(self.rows.total)

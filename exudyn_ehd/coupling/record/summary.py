@@ -1,4 +1,4 @@
-"""What a run has found, in one line per joint, through the logger of this package.
+"""Summary of a run, one line per joint, through the logger of this package.
 
 ``logging.getLogger("exudyn_ehd").setLevel("WARNING")`` turns the lines off. Where a program has not configured logging,
 the lines go to the standard error stream.
@@ -32,7 +32,7 @@ HALVED = 0.75
 
 
 def is_on() -> bool:
-    """Whether lines are wanted; sets up a handler where a program has none and has not chosen a level."""
+    """Return whether lines are logged; add a handler if the program has none and has not chosen a level."""
     if LOGGER.level == logging.NOTSET and not LOGGER.hasHandlers():
         handler = logging.StreamHandler()
         handler.setFormatter(logging.Formatter("%(name)s: %(message)s"))
@@ -58,7 +58,7 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, since: fl
     Parameters
     ----------
     name : str
-        Of the joint.
+        Name of the joint.
     bearing : JournalBearing
     history : JointHistory
         With one step or more.

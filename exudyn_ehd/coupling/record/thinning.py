@@ -35,7 +35,7 @@ ROUNDING = 1e-9
 
 
 class Thinning(Protocol):
-    """How steps are put into spans."""
+    """Rule that groups steps into spans."""
 
     def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Number (n,) of the span of steps with numbers ``count`` and times (n,), none smaller than the one before."""
@@ -45,11 +45,11 @@ class Thinning(Protocol):
 class Every:
     """``record`` of `CreateLubricatedJoint`: every so many accepted steps are kept, and the worst ones between them.
 
-    Of each span of steps the last one, and those with the smallest ``minimum_gap``, the largest ``peak_pressure`` and
-    the largest load across the axis: the record's extremes are those of the run, ``step_count`` says which steps they
-    are. A span takes up to four rows, 1.9 KB. `LubricatedJoint.audit`, `JointHistory.revolutions` and `UntilPeriodic`,
-    which need all steps, refuse such a record. Means over it are those of its rows, and errors of steps begin anew
-    behind a restart.
+    Each span of steps keeps its last one and those with the smallest ``minimum_gap``, the largest ``peak_pressure``
+    and the largest load across the axis. The record's extremes are those of the run; ``step_count`` says which steps
+    they are. A span takes up to four rows, 1.9 KB. `LubricatedJoint.audit`, `JointHistory.revolutions` and
+    `UntilPeriodic` need all steps and do not accept such a record. Means over the record are means of its rows. Errors
+    of steps begin anew after a restart.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Every:
         require_integer("Every.steps", self.steps, at_least=2)
 
     def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """As of `Thinning`: the initial state alone, then so many steps each."""
+        """Return the number of each step's span: the initial state alone, then ``steps`` steps each."""
         return np.ceil(count / self.steps)
 
 
@@ -91,7 +91,7 @@ class Period:
         require_number("Period.seconds", self.seconds, "s", above=0.0)
 
     def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """As of `Thinning`."""
+        """Return the number of each step's span; spans end at multiples of ``seconds``."""
         return np.ceil(time / self.seconds - ROUNDING)
 
 
@@ -102,7 +102,7 @@ class Thinner:
     ----------
     rule : Every or Period
     clearance, length : float
-        Of the bearing, m.
+        Radial clearance and length of the bearing, m.
     lags : bool
         Whether it is on a liner.
     """
@@ -142,7 +142,7 @@ class Thinner:
         return whole, np.concatenate([self._open, np.column_stack([rows, count, errors])]), error
 
     def _keep(self, rows: np.ndarray) -> tuple[np.ndarray, int]:
-        """Those of rows (n, WIDTH + 2) that are kept, and where among them the last span begins."""
+        """Return the rows (n, WIDTH + 2) that are kept, and the index among them at which the last span begins."""
         spans = self.rule.spans(rows[:, STEP_COUNT], rows[:, TIME])
         edges = [0, *(np.flatnonzero(np.diff(spans)) + 1).tolist(), len(rows)]
         load = np.hypot(rows[:, FORCE.start], rows[:, FORCE.start + 1])

@@ -1,4 +1,4 @@
-"""What users call: equilibria over the speed, the speed at which they become unstable, that speed over a parameter."""
+"""User functions: equilibria over the speed, the onset speed of instability, and that speed over a parameter."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from exudyn_ehd.status import InputError, require_number, require_plausible
 
 # Speeds at which a threshold is first looked for between its limits.
 SCAN = 16
-# What the search overwrites of a system, and a run or the history of one goes on with.
+# Configurations of a system that the search overwrites, although a run or its history continues from them.
 CONFIGURATIONS = (CURRENT, START_OF_STEP)
 
 
@@ -48,7 +48,7 @@ def SolveEquilibrium(
     mbs : exudyn.MainSystem
         Assembled, with lubricated joints whose journals spin.
     speeds : float or (k,) array
-        Of the first rotor about its joint's z axis, rad/s, not 0. Each is looked for from the one before.
+        Speeds of the first rotor about its joint's z axis, rad/s, not 0. Each is looked for from the one before.
     rotors : sequence, optional
         One entry for every rotor: a body or node, to which all is added that turns with it through beams, fixed joints
         and springs that hold all rotations; or a sequence of all of its bodies and nodes. The first one is driven at

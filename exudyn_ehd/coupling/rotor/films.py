@@ -72,7 +72,7 @@ class FilmLoads(NamedTuple):
     by_place, by_rate : (n, n) arrays
         Its derivatives by x and u.
     motion_by_place : (10, n) array
-        Of the journal's motion in the joint frame.
+        Derivative of the journal's motion in the joint frame.
     """
 
     force: np.ndarray
@@ -126,7 +126,7 @@ class RotorFilm:
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
-        """What a wrench (6,) and its tangent (6, 10) do to the directions."""
+        """Return the generalized force of a wrench (6,) with tangent (6, 10) in the directions, and its derivatives."""
         frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
         h, n = self.housing.places.size, self.places.size
         loads, force = np.empty((4, 3)), np.empty(n)
@@ -207,7 +207,7 @@ class RotorFilm:
         return min(1.0, allowed / max(closed, 1e-300))
 
     def found(self, evaluation: Evaluation, tangent: np.ndarray) -> dict[str, np.ndarray | float]:
-        """What `RotorResult` has of a film at its equilibrium."""
+        """Return the values of one film at its equilibrium for `RotorResult`."""
         force, known = evaluation.wrench[:2], evaluation.quantities()
         where = f"{WHERE}, joint '{self.name}'"
         if is_central(evaluation):

@@ -1,4 +1,4 @@
-"""What was found of rotors in their films: places, coefficients, eigenvalues, and the response to unbalance."""
+"""Results for rotors in their films: positions, coefficients, eigenvalues, and the response to unbalance."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Layout:
-    """Where things of the system are in its N directions, displacements and rotations of nodes in space.
+    """Map of the system's nodes and bodies to its N directions: displacements and rotations of nodes in space.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Layout:
     ratios : dict
         Speed of that rotor over that of the first one.
     length : float
-        Of the longest bearing, by which rotations count as displacements, m.
+        Length of the longest bearing, which scales rotations to displacements, m.
     """
 
     nodes: Mapping[int, int]
@@ -62,7 +62,7 @@ class RotorResult:
     Attributes
     ----------
     speeds : (k,) array
-        Of the first rotor, rad/s.
+        Speeds of the first rotor, rad/s.
     joints : tuple of str
         Names of the films' joints.
     motion : (k, j, 10) array
@@ -91,7 +91,7 @@ class RotorResult:
     clearances : (j,) array
         Radial clearances, m.
     layout : Layout
-        Where bodies are in the directions.
+        Map of bodies to the directions.
 
     Examples
     --------
@@ -263,7 +263,7 @@ class RotorResult:
         Parameters
         ----------
         mbs : exudyn.MainSystem
-            That of the result, or one like it, assembled.
+            System of the result, or one like it, assembled.
         speed : float
             One of ``speeds``, rad/s.
 
@@ -299,7 +299,7 @@ class RotorResult:
         return plot_stability(self.campbell(), ax=ax, path=path)
 
     def plot_positions(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Where the journals run over the speed, in the circle of the clearance, each over its own clearance."""
+        """Plot the journals' positions over the speed in the circle of the clearance, each over its own clearance."""
         from exudyn_ehd.pictures.rotors import plot_positions
 
         places = self.motion[:, :, :2] / self.clearances[:, None]
@@ -317,14 +317,14 @@ class UnbalanceResponse:
     Attributes
     ----------
     speeds, spin : (k,) arrays
-        Of the first rotor, and of that with the unbalance, rad/s.
+        Speeds of the first rotor and of the rotor with the unbalance, rad/s.
     is_stable : (k,) array
         Whether the equilibrium is.
     joints : tuple of str
     films : (k, j, 2) array
         Complex amplitudes of x and y of the journals, joint frame, time factor exp(i spin t), m.
     displacement : (k, N) array
-        The same of all directions of the system.
+        Displacements in all directions of the system.
     clearances : (j,) array
         m.
     layout : Layout
@@ -392,7 +392,7 @@ class StabilityMap:
     Attributes
     ----------
     values : (k,) array
-        Of the parameter.
+        Values of the parameter.
     thresholds : (k,) array
         rad/s; inf where the rotor is stable up to the highest speed, 0 where it is unstable at the lowest.
     whirl_ratios : (k,) array

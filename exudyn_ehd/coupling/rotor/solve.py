@@ -46,7 +46,7 @@ class Balance(NamedTuple):
     Attributes
     ----------
     r : (N,) array
-        What is not in balance, constraints with their multipliers so far included.
+        Residual of the balance, constraints with their multipliers so far included.
     K, r_u : (N, N) arrays
         Its derivatives, K with the turning of the spins.
     free : (N, n) array
@@ -240,7 +240,7 @@ class EquilibriumSearch:
         return None
 
     def _lost(self, speed: float) -> FilmError:
-        """What the films looked like when the search gave up."""
+        """Return the error of a search without equilibrium, with the state of the films at its end."""
         self._update()
         states = []
         for film in self.films:

@@ -1,4 +1,4 @@
-"""Which nodes turn with a rotor, and about which axis."""
+"""Nodes that turn with a rotor, and the axes about which they turn."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def _connected(first: int, links: dict[int, set[int]]) -> list[int]:
 
 
 def _links(mbs: exu.MainSystem) -> dict[int, set[int]]:
-    """For every node those that turn with it: through beams, fixed joints and torsional springs."""
+    """Return for every node those that turn with it, through beams, fixed joints and torsional springs."""
     links: dict[int, set[int]] = {}
     for number in range(mbs.systemData.NumberOfObjects()):
         data = mbs.GetObject(ObjectIndex(number))
@@ -127,7 +127,7 @@ def _links(mbs: exu.MainSystem) -> dict[int, set[int]]:
 
 
 def _transmits(data: Data) -> bool:
-    """Whether a joint or a spring hands on every rotation."""
+    """Return whether a joint or a spring transmits every rotation."""
     if not data.get("activeConnector", True):
         return False
     if data["objectType"] == "JointGeneric":

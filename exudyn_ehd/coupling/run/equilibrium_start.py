@@ -87,7 +87,7 @@ def _motion(mbs: exu.MainSystem, element: FilmElement, q: np.ndarray, q_t: np.nd
 
 
 def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) -> History | None:
-    """What the steady film at ``motion`` (10,) remembers; None without effects that do."""
+    """Return the memory of the steady film at ``motion`` (10,); None without effects that need memory."""
     if not model.remembers:
         return None
     assert isinstance(model, BearingModel)

@@ -1,4 +1,4 @@
-"""What a joint knows besides Exudyn's coordinates, and whether a stored state is that of a joint."""
+"""State of a joint besides Exudyn's coordinates, and the check that a stored state belongs to a joint."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from exudyn_ehd.status import InputError, require_number, require_type, warn_use
 from exudyn_ehd.storage import fingerprint
 
 FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
-# Where the modes of a bore are compared: angles, shares of the length, and the part of the largest that is rounding
+# Points at which modes of a bore are compared: angles [rad], shares of the length; relative round-off of equal modes.
 _ANGLES, _PLACES, _SAME_MODES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37]), 1e-6
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class JointState:
-    """What a joint knows besides Exudyn's coordinates.
+    """State of a joint besides Exudyn's coordinates.
 
     Attributes
     ----------
@@ -40,13 +40,13 @@ class JointState:
     bearing : str
         Digest of the bearing's description: a state is for the bearing that it came from.
     time : float
-        s, of the last accepted step.
+        Time of the last accepted step, s.
     memory : History or None
         Oil content, wear, temperature and deflection at that time; None if the film remembers nothing.
     rows : (n, k) array
-        The record of accepted steps up to it.
+        The record of accepted steps up to that time.
     begin : StepStart or None
-        Where the next step begins, if its rates follow the positions.
+        Start of the next step, if its rates follow the positions.
     modes : (p, k) array or None
         Displacements and stiffness of the bore's modes, whose coordinates are part of the state.
 
@@ -73,7 +73,7 @@ class JointState:
 
 
 class Joint:
-    """What all lubricated joints have in common.
+    """Common part of all lubricated joints.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Joint:
     mbs : exudyn.MainSystem
         The system it belongs to.
     bearing : JournalBearing
-        What was given as bearing.
+        Bearing as given by the user.
     objectNumber : exudyn.ObjectIndex
         The film element's object in Exudyn.
     element : FilmElement
@@ -113,11 +113,11 @@ class Joint:
         return history
 
     def _recorded(self) -> JointHistory:
-        """The same without a warning."""
+        """Return the record like `history`, without a warning."""
         return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
 
     def state(self) -> JointState:
-        """What the joint knows besides Exudyn's coordinates at the last accepted state: memory of the film, and record.
+        """Return the state besides Exudyn's coordinates at the last accepted step: memory of the film, and record.
 
         See `SaveState` for the whole system.
         """

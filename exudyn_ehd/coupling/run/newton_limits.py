@@ -159,7 +159,7 @@ def allowed_part(before, after, clearance, length):
 
 
 def _allowed_in_profile(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
-    """As `allowed_part` in a bore with profiles, whose gaps are linear in the journal's place."""
+    """Return the part of a step like `allowed_part`, for a bore with profiles; its gaps are linear in the motion."""
     gaps, ends = bore.values(before), bore.values(after)
     smallest = float(gaps.min())
     if not (smallest > SMALLEST_GAP_SHARE * bore.clearance and np.isfinite(ends).all()):
@@ -202,7 +202,7 @@ class ForceTolerance:
         self.relative, self.first, self.level = 0.0, 0.0, 0.0
 
     def set(self, mbs: exu.MainSystem, solver: _Solver) -> None:
-        """At the start of a step, where the films were evaluated last at the end of the step before."""
+        """Set Newton's tolerances at the start of a step, with the films evaluated at the end of the step before."""
         newton = solver.newton
         if self.given is None:
             self.given, self.relative = newton.absoluteTolerance, newton.relativeTolerance
@@ -221,7 +221,7 @@ class ForceTolerance:
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
 
     def limit(self, solver: _Solver, iteration: int) -> None:
-        """Before an iteration of Newton's method, where the films were evaluated last in the one before."""
+        """Set Newton's relative tolerance before an iteration, with the films evaluated in the iteration before."""
         newton = solver.newton
         if self.given is None or newton.residualMode != 0:
             return

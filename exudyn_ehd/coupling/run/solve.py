@@ -245,7 +245,7 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     Returns
     -------
     SystemState
-        What was stored.
+        Stored state.
 
     Raises
     ------
@@ -303,7 +303,7 @@ def _kept(mbs: exu.MainSystem) -> str:
 
 
 def _story(mbs: exu.MainSystem, *, static: bool) -> str:
-    """What the joints looked like when a solver gave up."""
+    """Describe the joints in the step in which a solver gave up, for its error message."""
     time = mbs.systemData.GetTime(START_OF_STEP)
     parts = [f"Exudyn's solver ended without success at t = {time:.9g} s, though every film could be evaluated; "]
     for joint in joints_of(mbs):
@@ -325,7 +325,7 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
 
 
 def _unheld(mbs: exu.MainSystem) -> str:
-    """What has no stiffness in a static solve."""
+    """Name the motions without stiffness in a static solve, for messages."""
     free = "".join(f"FlexibleBush '{bush.name}', which no support or carrier holds, " for bush in free_bushes(mbs))
     return (
         f"In a static solve {free}a film without relative speed, a journal's spin and its place along the axis have no "
@@ -335,7 +335,7 @@ def _unheld(mbs: exu.MainSystem) -> str:
 
 
 def progress_of(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> AbstractContextManager[None]:
-    """Where somebody looks, the progress of the run within."""
+    """Return the context that shows a run's progress, on terminals and in notebooks."""
     return run_progress(mbs, settings, [(joint.name, joint.element.steps) for joint in joints_of(mbs)])
 
 

@@ -65,17 +65,17 @@ FILMS_FIRST = 4
 
 @dataclass(frozen=True, kw_only=True)
 class FactorReuse:
-    """When the sparse factor is renewed.
+    """Criteria for refactoring in `SolveDynamicSparse`.
 
     Parameters
     ----------
     contractivity : float
-        Renew if an iteration reduces the residual by less than this factor.
+        Refactor if the contraction rate of the residual in an iteration exceeds this.
     maximum_iterations : int
-        Renew after so many iterations of one step.
+        Refactor after so many iterations of one step.
     worth : int
-        Number of iterations that cost as much as a factor. Renew at the start of a step when the iterations spent
-        beyond those of the factor's first step add up to this; a count, not a clock, so that runs repeat exactly.
+        Number of iterations that cost as much as a factor. Refactor at the start of a step when the iterations beyond
+        those of the factor's first step add up to this. It is a count, not a time, so that runs repeat exactly.
 
     Examples
     --------
@@ -97,7 +97,7 @@ class FactorReuse:
 
 @dataclass(kw_only=True)
 class SparseRun:
-    """What a run cost.
+    """Cost of a run of `SolveDynamicSparse`.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class SparseRun:
     steps, rejected : int
         Newton solutions that converged, and those that did not (Exudyn then halves the step).
     iterations, jacobians : int
-        Of Newton's method.
+        Iterations and Jacobians of Newton's method.
     products : int
         Products with the tangents of films on nodal bushes.
     seconds, seconds_jacobian, seconds_solve : float
@@ -299,7 +299,7 @@ class _Newton:
         return False
 
     def _slow_for_films(self, iteration: int, age: int, renewable: bool) -> bool:
-        """Whether films are to blame for a slow iteration, whose tangents follow every one, and no old factor."""
+        """Return whether the films, whose tangents are new in every iteration, slow an iteration, and no old factor."""
         if not self.matrix.films:
             return False
         if self.factor is None or self.factor.coupled:

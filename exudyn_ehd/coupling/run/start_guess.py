@@ -1,4 +1,4 @@
-"""Where Newton's method starts in a step of Exudyn's generalized alpha or Newmark integrator.
+"""Initial guess of Newton's method in a step of Exudyn's generalized alpha or Newmark integrator.
 
 Exudyn starts a step at zero accelerations, as the algorithm is printed (M. Arnold and O. Bruels, Multibody System
 Dynamics 18 (2007) 185). With accelerations a the first positions miss the solution by beta h^2 f a, f = (1 -
@@ -149,7 +149,7 @@ class ConstraintJumps:
     ----------
     mbs : exudyn.MainSystem
     settings : exudyn.SimulationSettings
-        Of the run.
+        Settings of the run.
     start : StartGuess
         Told where every pass has ended.
     before : callable or None
@@ -195,7 +195,7 @@ def motion(mbs: exu.MainSystem) -> list[np.ndarray]:
 
 
 def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:
-    """What to expect after the accelerations of the last steps.
+    """Predict the accelerations of the next step from those of the last steps.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.
 
 
 def additive_coordinates(mbs: exu.MainSystem) -> np.ndarray:
-    """Of the second-order coordinates (n,): one where displacements are added, zero for rotations of Lie groups."""
+    """Return a mask (n,) of the second-order coordinates: one where displacements add, zero for Lie-group rotations."""
     mask = np.ones(len(mbs.systemData.GetODE2Coordinates()))
     for number in range(mbs.systemData.NumberOfNodes()):
         node = NodeIndex(number)

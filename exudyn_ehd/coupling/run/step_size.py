@@ -40,7 +40,7 @@ FIRST, LARGEST = 0.125, 4.0
 SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 # Part of its demand that a step hands on.
 KEPT = 0.94
-# What steps may miss, over what the error asked for allows: errors of steps that follow each other cancel in part.
+# Allowed error of steps over the error asked for: errors of successive steps cancel in part. Larger: longer steps.
 CANCELLED = 1.5
 # Shares of a step in which a repeated one ends that has a jump in its middle.
 LEAST_OF_STEP, MOST_OF_STEP = 0.25, 0.75
@@ -69,7 +69,7 @@ class _Joint:
         self.after, self.wanted = self.before, math.inf
 
     def used(self, mbs: exu.MainSystem, time: float) -> float | None:
-        """What the step to ``time`` has missed over what it may miss; None if it is not known."""
+        """Return the error of the step to ``time`` over the allowed error; None if it is unknown."""
         self.wanted = math.inf
         trial, tangent, bearing = self.film.last, self.film.steps.tangent, self.film.model.bearing
         if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:

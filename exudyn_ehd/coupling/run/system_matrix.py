@@ -37,15 +37,15 @@ RELATIVE_STEP, SMALLEST_COORDINATE = 1e-7, 1e-2
 
 
 class Factors(NamedTuple):
-    """What the parts of an iteration matrix are multiplied with.
+    """Factors of the terms of an iteration matrix.
 
     Attributes
     ----------
     mass, stiffness, damping : float
         1 / f, beta h^2, gamma h.
     position, velocity : float
-        Of the rows of constraints that Exudyn solves for positions and for velocities: 1 and gamma / (beta h), the
-        change of a rate with its coordinate.
+        Factors of the constraints that Exudyn solves for positions and for velocities: 1 and gamma / (beta h), the
+        derivative of a rate with respect to its coordinate.
     """
 
     mass: float
@@ -191,7 +191,7 @@ class SystemMatrix:
 
 
 def _owner(mbs: exu.MainSystem, item: Index) -> object:
-    """Whose method the Jacobian of an object is: a film's element, a bush's functions, or None."""
+    """Return the owner of an object's Jacobian function: a film's element, a bush's functions, or None."""
     if mbs.GetObject(item)["objectType"] != "GenericODE2":
         return None
     jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")

@@ -1,4 +1,4 @@
-"""What a running solver does.
+"""Supervision of a running solver.
 
 Module map
 ----------

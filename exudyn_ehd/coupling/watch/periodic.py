@@ -45,11 +45,11 @@ class UntilPeriodic:
     Parameters
     ----------
     period : float
-        Of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
+        Period of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
     tolerance : float
-        How far the last cycle may be from the one before, and from the limit that the changes from cycle to cycle lead
-        to: distances of the journal's axis, at both ends, and of the journal between its thrust faces over the radial
-        clearance, and of the film's temperature over its rise since the start of the run.
+        Largest difference of the last cycle from the one before, and from the limit of the changes from cycle to
+        cycle. Distances of the journal's axis at both ends, and of the journal between its thrust faces, count over
+        the radial clearance. The film's temperature counts over its rise since the start of the run.
 
     Examples
     --------
@@ -115,18 +115,18 @@ class LastCycle:
 
 
 class Steps(Protocol):
-    """What is asked of the accepted steps of a joint.
+    """Accepted steps of a joint, as this module uses them.
 
     Attributes
     ----------
     record : Record
-        Of all steps.
+        Record of all steps.
     """
 
     record: Record
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
-        """Their record, with the current state if ``complete``."""
+        """Return the record of the steps, with the current state if ``complete``."""
 
 
 class Closing:
@@ -157,7 +157,7 @@ class Closing:
         self.last = begin
 
     def __call__(self, mbs: exu.MainSystem, time: float) -> bool:
-        """Whether the run goes on behind the step to ``time``."""
+        """Return whether the run goes on after the step to ``time``."""
         goes_on = bool(self.after_step(mbs, time)) if self.after_step else True
         # joints have recorded the steps before this one
         self.look(mbs, self.last)
@@ -166,7 +166,7 @@ class Closing:
 
     @property
     def closed(self) -> bool:
-        """Whether the last whole cycle is close enough to the one before and to the limit."""
+        """Return whether the last whole cycle is close enough to the one before and to the limit."""
         return bool(self.changes) and max(self.changes[-1], self.left) <= self.aim.tolerance
 
     def look(self, mbs: exu.MainSystem, time: float, *, complete: bool = False) -> None:
@@ -283,7 +283,7 @@ class RunProgress:
         self.steps, self.last = 0, (0, 0.0)
 
     def __call__(self, mbs: exu.MainSystem, t: float) -> bool:
-        """Whether the run goes on behind the step to ``t``."""
+        """Return whether the run goes on after the step to ``t``."""
         goes_on = bool(self.after_step(mbs, t)) if self.after_step else True
         if self.line is None:
             # kernels are compiled before the first call, which is behind the initial state

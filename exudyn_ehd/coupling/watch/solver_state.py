@@ -1,4 +1,4 @@
-"""Which Exudyn solver is calling, and may it reject a step."""
+"""State of the calling Exudyn solver: its kind, and whether it can reject a step."""
 
 from __future__ import annotations
 
@@ -50,22 +50,22 @@ def warn_unknown(name: str) -> None:
 
 
 def is_static(solver: Solver | None) -> bool:
-    """Whether ``solver`` is a static one: its time is a load parameter."""
+    """Return whether ``solver`` is a static one: its time is a load parameter."""
     return isinstance(solver, exu.MainSolverStatic)
 
 
 def is_explicit(solver: Solver | None) -> bool:
-    """Whether ``solver`` is an explicit integrator."""
+    """Return whether ``solver`` is an explicit integrator."""
     return isinstance(solver, exu.MainSolverExplicit)
 
 
 def is_implicit(solver: Solver | None) -> bool:
-    """Whether ``solver`` takes forces at the end of a step, and coordinates by a rule of second order."""
+    """Return whether ``solver`` is implicit: forces at the end of a step, coordinates by a second-order rule."""
     return isinstance(solver, exu.MainSolverImplicitSecondOrder)
 
 
 def is_finished(solver: Solver | None) -> bool:
-    """Whether the run of ``solver`` has come to its end; a failed one never does."""
+    """Return whether the run of ``solver`` has ended successfully; True without a solver, False after a failed run."""
     return solver is None or bool(solver.output.finishedSuccessfully)
 
 
@@ -81,9 +81,9 @@ def require_end(where: str, mbs: exu.MainSystem, solver: Solver | None) -> None:
 
 
 def can_reject_step(solver: Solver | None) -> bool:
-    """Whether ``solver`` is at work and answers a nan force by repeating the step with a smaller size, as it still can.
+    """Return whether ``solver`` is running and can repeat the step with a smaller size if a force is nan.
 
-    Implicit and static solvers do, down to their smallest step size; explicit ones would accept the nan, and initial
+    Implicit and static solvers can, down to their smallest step size. Explicit ones would accept the nan, and initial
     accelerations (step size zero) can't be repeated.
     """
     if not isinstance(solver, _REJECTING) or is_finished(solver) or solver.timer.total >= 0.0:

@@ -1,4 +1,4 @@
-"""What users ask of the steps, and steps that are too coarse for a film, rejected through Exudyn's own control.
+"""User options for the steps, and the rejection of steps too coarse for a film, through Exudyn's own control.
 
 `exudyn_ehd.coupling.run.step_size` chooses steps by their error.
 """
@@ -118,11 +118,11 @@ class GapWatch:
         self.film = self.gap if film is None else film
 
     def rejects(self, motion: np.ndarray, solver: solver_state.Solver | None) -> bool:
-        """Whether the step to this motion is too coarse and can be repeated."""
+        """Return whether the step to this motion is too coarse and can be repeated."""
         return self.refuses(self.bore.smallest(motion) - self.gap, max(self.film, self.range), solver)
 
     def refuses(self, change: float, gap: float, solver: solver_state.Solver | None) -> bool:
-        """Whether a step that changes a gap (m) by so much is too coarse and can be repeated."""
+        """Return whether a step that changes a gap (m) by ``change`` is too coarse and can be repeated."""
         # not true for a gap that is not finite: the film itself reports that
         too_far = abs(change) > self.share * gap
         if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):

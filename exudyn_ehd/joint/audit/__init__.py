@@ -1,4 +1,4 @@
-"""Which effects mattered, and which had no effect.
+"""Audit of effects: those that mattered, and those without effect.
 
 Module map
 ----------

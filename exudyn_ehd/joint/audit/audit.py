@@ -62,12 +62,12 @@ class Audit:
 
     @property
     def neglected(self) -> tuple[Finding, ...]:
-        """What matters and is off, or an assumption or number that does not hold."""
+        """Effects that matter and are off, and assumptions or numbers that do not hold."""
         return tuple(f for f in self.findings if f.matters and not f.on)
 
     @property
     def unneeded(self) -> tuple[Finding, ...]:
-        """What takes time and does not matter."""
+        """Effects that take time and do not matter."""
         return tuple(f for f in self.findings if f.unneeded)
 
     @property
@@ -167,11 +167,11 @@ def audit_states(
     model : BearingModel
     states : sequence of FilmState
     record : RecordedSteps, optional
-        Where the states come from: adds how often contacts acted, mean heating and the time step.
+        Record that the states come from; it adds how often contacts acted, mean heating and the time step.
     liner : ElasticLiner, optional
-        Of which to say whether it would matter; for bearings without one.
+        Liner whose elasticity is assessed, for bearings without one.
     faces : ThrustFaces, optional
-        Of whose films the record is.
+        Thrust faces in the record.
     measure_time : bool
         Measure the share of the time that every effect takes which is on and can be left out.
 

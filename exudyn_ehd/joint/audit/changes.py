@@ -1,4 +1,4 @@
-"""What another description of a bearing changes at the audited states: computed, not guessed.
+"""Changes by another description of a bearing at the audited states: computed, not guessed.
 
 At a steady state the journal of the other bearing is moved to where its film carries the same load; minimum film
 thickness, peak pressure and loss are compared there, the load at the same position. The films of a record that remember
@@ -27,8 +27,8 @@ from exudyn_ehd.status import FilmError, InputError, Status
 
 # From this change on an effect matters; below the second one nobody needs it.
 MATTERS, NOTHING = 0.03, 0.02
-# Of the search for the same load: unbalance, film solves, steps from each start, and starts, shares of the
-# eccentricity.
+# Search for the same load: relative unbalance, largest numbers of film solves and of steps from each start, and the
+# starts as shares of the eccentricity.
 TOLERANCE, EFFORT, MOST_STEPS, STARTS = 1e-3, 600, 15, (1.0, 0.95, 0.7)
 # Loads below it, over L D mu omega / psi^2, have no relative changes.
 NO_LOAD = 1e-6
@@ -36,14 +36,14 @@ NO_LOAD = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """What another description changes, relative to the bearing as it is, at the state where it changes most.
+    """Changes by another description, relative to the bearing as it is, at the state where they are largest.
 
     Attributes
     ----------
     load : float
-        At the same position or motion; nan if there is no such film.
+        Change at the same position or motion; nan if there is no such film.
     minimum_gap, peak_pressure, power_loss : float
-        At the same load; nan if no film was found that carries it.
+        Changes at the same load; nan if no film was found that carries it.
     """
 
     load: float
@@ -53,7 +53,7 @@ class Change:
 
     @property
     def found(self) -> bool:
-        """Whether a film was found that carries the same load."""
+        """Return whether a film was found that carries the same load."""
         return not math.isnan(self.minimum_gap)
 
     @property
@@ -77,7 +77,7 @@ class Comparison:
     model : BearingModel
     states : sequence of FilmState
     record : RecordedSteps, optional
-        Where the states come from.
+        Record that the states come from.
     """
 
     def __init__(self, model: BearingModel, states: Sequence[FilmState], record: RecordedSteps | None) -> None:

@@ -1,4 +1,4 @@
-"""What an audit says about an effect, and the limit from which on each effect matters."""
+"""Findings of an audit about effects, and the limit from which on each effect matters."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from exudyn_ehd.status import InputError
 
 
 class Limit(NamedTuple):
-    """Where an effect begins to matter: above ``value``, or ``below`` it; ``source`` says what it stands for there."""
+    """Limit from which on an effect matters: above ``value``, or ``below`` it; ``source`` says what the value means."""
 
     value: float
     source: str
     below: bool = False
 
 
-# Where an effect is not computed, it matters where leaving it out would change load, peak pressure, friction or minimum
-# film thickness by some 5 to 10 %.
+# An effect that is not computed matters if load, peak pressure, friction or minimum film thickness would change by some
+# 5 to 10 % without it.
 # Shares without another source: of a bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
 LIMITS = {
     "misalignment": Limit(0.1, "of the mid-plane gap: that much of the minimum film thickness, 1 % of the peak"),
@@ -85,30 +85,30 @@ PLAINLY_MUCH_ON = PLAINLY_MUCH | {"heating": 0.7}
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """What an audit says about one effect.
+    """Finding of an audit about one effect.
 
     Attributes
     ----------
     effect, indicator : str
-        Its name, and what ``value`` is.
+        Name of the effect, and meaning of ``value``.
     value, threshold : float
-        The indicator at the worst state, and from where on the effect matters.
+        The indicator at the worst state, and its limit from which on the effect matters.
     below : bool
         The effect matters below the threshold, not above.
     on : bool or None
-        Whether the bearing has it; None for an assumption or a number that can't be switched.
+        True if the bearing has the effect; None for an assumption or a number that can't be switched.
     matters : bool
         The effect changes something by more than 3 %; where no change was computed or no film was found, ``value``
         beyond ``threshold``.
     unneeded : bool
         It takes time although it does not matter; never where no film was found without it.
     advice : str
-        What to do about it; empty if nothing.
+        Remedy; empty if none is needed.
     change : Change or None
-        What switching the effect changes, computed at the audited states; not ``found`` where no film carries the same
-        load then, None where ``value`` says plainly that it is nothing, or where the films can't be compared.
+        Change by switching the effect, computed at the audited states; not ``found`` if no film then carries the same
+        load. None if ``value`` alone shows that the effect is negligible, or if the films can't be compared.
     remedy : function or None
-        What ``advice`` does to a bearing.
+        Function that applies ``advice`` to a bearing.
     time_share : float or None
         Share of the time of a film evaluation with tangent that the effect takes, 0 to 1; None if not measured.
 
@@ -144,10 +144,11 @@ class Finding:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """What is audited.
+    """Subject of an audit.
 
-    Worst films, those of other bearings to compare with, the record they come from if there is one, a liner that the
-    bearing does not have, and the faces of which the record is; the bearing is that of the journal's film alone.
+    It holds the worst films and those of other bearings to compare with. If they come from a record, it holds the
+    record too. Further data are a liner that the bearing does not have, and the thrust faces of the record. The bearing
+    is that of the journal's film alone.
     """
 
     bearing: JournalBearing
@@ -212,7 +213,7 @@ def finding(
 
 
 def _refusal(switch: Switch, bearing: JournalBearing) -> str:
-    """Why a bearing can't be switched: what turbulent films do not go with. Its own message names both."""
+    """Return the message why a turbulent film does not support a switch; empty if it does."""
     if bearing.turbulence is None and switch is not turbulent:
         return ""
     try:

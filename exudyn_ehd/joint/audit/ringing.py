@@ -156,7 +156,7 @@ class RingingWatch:
 
     @property
     def throws(self) -> bool:
-        """Whether the run rings with forces out of all proportion to what they move and carry."""
+        """Return whether the run rings with forces out of all proportion to the moved masses and the loads."""
         return self.rings and self._throws[0] > self._step - WINDOW
 
 

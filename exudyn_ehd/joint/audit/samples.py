@@ -1,4 +1,4 @@
-"""What an audit looks at: recorded steps of a joint, states to evaluate again, and the numbers that one film shows."""
+"""Data of an audit: recorded steps of a joint, states to evaluate again, and the numbers of one film."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ class Sample:
     deflection, shape : float
         Largest deflection of a liner and largest departure of the surfaces from cylinders, m.
     resolution : Resolution
-        Of the pressure peak by the grid.
+        Resolution of the pressure peak by the grid.
     """
 
     speed: float
@@ -336,7 +336,7 @@ def rate_of_squeeze(
     Parameters
     ----------
     place, velocity : (n, k) arrays
-        Of the axis or centre, m and m/s.
+        Position and velocity of the axis or centre, m and m/s.
     wedge : (n,) array
         Amplitude of the sliding's source, m/s.
     clearance : float

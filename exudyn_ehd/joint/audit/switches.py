@@ -44,7 +44,7 @@ def _oil(bearing: JournalBearing, **laws: object) -> JournalBearing:
 
 
 def _ring(elements: tuple[int, int, int], tolerance: float, bearing: JournalBearing) -> JournalBearing:
-    """With a steel ring half a radius thick, held at its outer surface, of elements (axial, radial, around)."""
+    """Return the bearing with a steel ring half a radius thick, held outside, of elements (axial, radial, around)."""
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ModalBush
     from exudyn_ehd.solid.mesh import HollowCylinder
@@ -63,7 +63,10 @@ steel_ring, coarse_ring = partial(_ring, (4, 2, 40), 0.02), partial(_ring, (2, 1
 
 
 def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
-    """With a solid steel pin as long as the film, held by nothing; at 0.08 peaks are 1 to 3 % off at large changes."""
+    """Return the bearing with a solid steel journal as long as the film, not held.
+
+    With a ``tolerance`` of 0.08, peaks are 1 to 3 % off where the change is large.
+    """
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.journal.description import ElasticJournal
     from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
@@ -76,12 +79,12 @@ steel_pin, coarse_pin = partial(_pin, 0.02), partial(_pin, 0.08)
 
 
 def piezoviscous(bearing: JournalBearing) -> JournalBearing:
-    """With a mineral oil's Roelands law."""
+    """Return the bearing with a mineral oil's Roelands law."""
     return _oil(bearing, pressure_law=RoelandsPressure(coefficient=TYPICAL_PRESSURE_COEFFICIENT))
 
 
 def heated(bearing: JournalBearing) -> JournalBearing:
-    """With one film temperature, oil that enters at the lubricant's temperature, and a mineral oil's law."""
+    """Return the bearing with one film temperature, inflow at the lubricant's temperature, and a mineral oil's law."""
     oil = bearing.lubricant
     if oil.temperature_law is None:
         law = ReynoldsTemperature(point=(oil.temperature, oil.viscosity), coefficient=TYPICAL_TEMPERATURE_COEFFICIENT)
@@ -90,7 +93,7 @@ def heated(bearing: JournalBearing) -> JournalBearing:
 
 
 def typical_conductance(bearing: JournalBearing) -> float:
-    """From a steel ring half a radius thick to air and along a steel shaft to both sides, W/K."""
+    """Conductance from a steel ring half a radius thick to air and along a steel shaft to both sides, W/K."""
     R = bearing.journal_radius
     outside = 2.0 * math.pi * (1.0 + RING_THICKNESS) * R * bearing.length * TYPICAL_AIR_COEFFICIENT
     return outside + _along_shaft(R)
@@ -101,7 +104,7 @@ def _along_shaft(radius: float) -> float:
 
 
 def walled(bearing: JournalBearing) -> JournalBearing:
-    """With a steel ring half a radius thick in air and a solid steel journal, which grow."""
+    """Return the bearing with a steel ring half a radius thick in air and a solid steel journal, both of which grow."""
     R, thermal = bearing.journal_radius, bearing.thermal
     assert isinstance(thermal, FilmEnergy)
     along = _along_shaft(R)
@@ -116,7 +119,7 @@ def walled(bearing: JournalBearing) -> JournalBearing:
 
 
 def isothermal(bearing: JournalBearing) -> JournalBearing:
-    """At the supply temperature throughout."""
+    """Return the bearing with its oil at the supply temperature throughout."""
     assert bearing.thermal is not None
     oil, supply = bearing.lubricant, bearing.thermal.supply_temperature
     oil = oil if oil.temperature_law is None else oil.at(supply)
@@ -124,9 +127,9 @@ def isothermal(bearing: JournalBearing) -> JournalBearing:
 
 
 def warmer(rise: float, coefficient: float) -> Switch:
-    """With the viscosity behind a rise of temperature, K, that the oil's own viscosity would give.
+    """Return a switch to the viscosity after a temperature rise, K, that the oil's own viscosity would give.
 
-    The heat goes with the viscosity: r = rise exp(-coefficient r).
+    The heat is proportional to the viscosity: r = rise exp(-coefficient r).
     """
     r = 0.0
     for _ in range(40):
@@ -139,7 +142,7 @@ def _thinner(factor: float, bearing: JournalBearing) -> JournalBearing:
 
 
 def thinning(bearing: JournalBearing) -> JournalBearing:
-    """With a multigrade oil's Carreau law."""
+    """Return the bearing with a multigrade oil's Carreau law."""
     time, exponent = 1.0 / TYPICAL_SHEAR_ONSET, TYPICAL_SHEAR_EXPONENT
     law = CarreauShear(relaxation_time=time, exponent=exponent, residual=TYPICAL_SHEAR_RESIDUAL)
     return _oil(bearing, shear_law=law)
@@ -153,12 +156,12 @@ def roughness_height(bearing: JournalBearing) -> float:
 
 
 def rough(bearing: JournalBearing) -> JournalBearing:
-    """With flow factors of its roughness, or of a typical one."""
+    """Return the bearing with flow factors of its roughness, or of a typical one."""
     return replace(bearing, roughness=PatirCheng(composite_roughness=roughness_height(bearing)))
 
 
 def touching(bearing: JournalBearing) -> JournalBearing:
-    """With asperities of its roughness, or of a typical one, of steel."""
+    """Return the bearing with steel asperities of its roughness, or of a typical one."""
     height = roughness_height(bearing)
     asperity = GreenwoodTripp(composite_roughness=height, composite_modulus=TYPICAL_COMPOSITE_MODULUS)
     return replace(bearing, asperity=asperity)
@@ -171,23 +174,23 @@ def cavity_pressure(bearing: JournalBearing) -> float:
 
 
 def mass_conserving(bearing: JournalBearing) -> JournalBearing:
-    """With `ElrodAdams` at `cavity_pressure`."""
+    """Return the bearing with `ElrodAdams` at the pressure of `cavity_pressure`."""
     return replace(bearing, cavitation=ElrodAdams(cavity_pressure=cavity_pressure(bearing)))
 
 
 def swift_stieber(bearing: JournalBearing) -> JournalBearing:
-    """With `SwiftStieber` at its cavity pressure."""
+    """Return the bearing with `SwiftStieber` at its cavity pressure."""
     pressure = max(bearing.cavitation.cavity_pressure, TYPICAL_CAVITY_PRESSURE)
     return replace(bearing, cavitation=SwiftStieber(cavity_pressure=pressure))
 
 
 def refined(n_theta: int, n_z: int) -> Switch:
-    """With a grid of this size."""
+    """Return a switch to a grid of this size."""
     return partial(_on_grid, n_theta, n_z)
 
 
 def on_film(film: FiniteLength) -> Switch:
-    """With another grid of the film."""
+    """Return a switch to another grid of the film."""
     return partial(replace, film=film)
 
 
@@ -195,7 +198,7 @@ def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 
 
-# What an effect is taken away by, and what one without numbers of its own is added by.
+# Switches that take an effect away, or add one without numbers of its own.
 rigid: Switch = partial(replace, bush=None)
 rigid_journal: Switch = partial(replace, journal=None)
 isoviscous: Switch = partial(_oil, pressure_law=None)

@@ -23,7 +23,7 @@ from exudyn_ehd.status import FilmError, Status
 LARGEST_PLACE_STEPS = 100
 # Share of the load that is left along the axis, below what the search for x and y leaves.
 AXIAL_TOLERANCE = 1e-12
-# Of the clearance: step with a wall, and what two places differ by at rounding.
+# Shares of the clearance: step with a wall, and round-off of the difference of two places.
 WALL_STEP, SAME_PLACE = 0.3, 1e-13
 # Smallest gaps beyond which no place is looked for, over the clearance.
 CLOSED, FARTHEST = 1e-3, 100.0
@@ -31,7 +31,7 @@ CLOSED, FARTHEST = 1e-3, 100.0
 
 @dataclass(frozen=True, eq=False)
 class FacesShare:
-    """What the faces add at one position of the journal.
+    """Contribution of the thrust faces at one position of the journal.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class FacesShare:
     tangent : (6, 11) array
         d wrench / d (motion, axial position).
     slope : (2, 2) array
-        What they add to dF/d(x, y) of the journal's film, with an axial load at the place that follows (x, y).
+        Contribution to dF/d(x, y) of the journal's film; under an axial load the axial position follows (x, y).
     """
 
     evaluation: ThrustEvaluation
@@ -59,9 +59,9 @@ class FacesUnderLoad:
     load : float or None
         Force on the journal along z, N; None: the position is held.
     size : float
-        Of the whole load, N.
+        Magnitude of the whole load, N.
     where : str
-        Who asks, for messages.
+        Name of the caller, for error messages.
     """
 
     def __init__(self, bearing: JournalBearing, position: float, load: float | None, size: float, where: str) -> None:

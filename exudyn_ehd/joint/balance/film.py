@@ -21,7 +21,7 @@ from exudyn_ehd.status import FilmError, Status
 # Largest change of temperature that counts as settled, as a share of the film's rise over its coldest source.
 SETTLED = 1e-11
 MAX_ROUNDS = 200
-# The same behind all rounds, where rounding of hot fields keeps changes from falling further.
+# Like SETTLED, after `MAX_ROUNDS`: round-off of hot fields keeps changes from falling further.
 NEARLY = 1e-9
 # Differences of past rounds that the acceleration combines.
 DEPTH = 10
@@ -57,7 +57,7 @@ def settled_history(model: BearingModel, motion: np.ndarray, near: History | Non
     motion : (10,) array
         As for `BearingModel.evaluate`.
     near : History, optional
-        Of a film nearby, from whose temperature to start; it saves time.
+        Memory of a film nearby, whose temperature is the initial guess; it saves time.
 
     Raises
     ------
@@ -155,7 +155,9 @@ def _settle_field(
 
 
 def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) -> np.ndarray:
-    """What Anderson's acceleration takes off the next step of a fixed-point iteration, ``damping`` times its change.
+    """Return the part of the next fixed-point step that Anderson's acceleration subtracts.
+
+    The step is ``damping`` times the iteration's change.
 
     ``past``: points (k,) of two rounds and more with the changes (k,) that the iteration gave there, the newest last.
     """
@@ -164,7 +166,7 @@ def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) ->
 
 
 def is_settled(T: float | np.ndarray, change: float | np.ndarray, cold: float | np.ndarray) -> bool:
-    """Whether a change of a field of temperatures counts as none."""
+    """Return whether a change of a temperature field is negligible."""
     rise = max(float(np.ptp(T + change)), float(np.abs(T - cold).max()), 1e-3)
     return float(np.abs(change).max()) <= SETTLED * rise
 
@@ -178,13 +180,13 @@ def _unsettled(change: float) -> FilmError:
 
 
 def lacks_oil(bearing: JournalBearing) -> bool:
-    """Whether the film conserves mass and has no source of oil, unless the journal slides along."""
+    """Return whether the film conserves mass and has no source of oil, unless the journal slides axially."""
     closure = bearing.cavitation
     return closure.conserves_mass and not is_fed(bearing, closure.cavity_pressure)
 
 
 def is_fed(bearing: JournalBearing, cavity_pressure: float) -> bool:
-    """Whether oil comes to cavities of this pressure, Pa, from ends, supply or an open inlet."""
+    """Return whether ends, supply areas or an open inlet feed oil into cavities of this pressure, Pa."""
     supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap)
     return supplied or max(bearing.end_pressures) > cavity_pressure
 
@@ -228,7 +230,7 @@ def evaluate_at(
 
 
 def _without_a_shape(evaluation: ElasticEvaluation) -> str:
-    """Why no shape of a flexible bore has a film, and what to do."""
+    """Return the reason why no shape of a flexible bore has a film, and the remedy."""
     bearing, last = evaluation.model.bearing, evaluation.closing
     kind = type(bearing.yielding).__name__
     if evaluation.model.elasticity.failure:

@@ -63,7 +63,7 @@ def refuse_pressed_through(bearing: JournalBearing, gap: float, where: str) -> N
 
 
 def is_above(limit: float, temperature: float | np.ndarray) -> bool:
-    """Whether a film's temperature, K, is above a limit somewhere, or no number."""
+    """Return whether a film's temperature, K, exceeds a limit anywhere, or is not a number."""
     return not float(np.max(temperature)) <= limit
 
 
@@ -83,7 +83,7 @@ def require_oil_bears(temperature: Temperature, grid: FilmGrid, where: str) -> N
 
 
 def hot_film(temperature: float | np.ndarray, grid: FilmGrid, where: str) -> str:
-    """What to say of a film that oil does not bear for long."""
+    """Return the message for a film that is too hot for oil in the long run."""
     return (
         f"{where}: the film is at {hottest(temperature, grid)}, and mineral oils do not bear {HOT:g} K for long; "
         f"{COOLER}"
@@ -91,7 +91,7 @@ def hot_film(temperature: float | np.ndarray, grid: FilmGrid, where: str) -> str
 
 
 def seized(walls: Walls | None) -> str:
-    """What to say where the walls have grown by the whole clearance; empty if they have not."""
+    """Return the message for walls that have grown by the whole clearance; empty if they have not."""
     if walls is None or walls.clearance > 0.0:
         return ""
     return (
@@ -109,7 +109,7 @@ def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
 
 
 def too_hot(T: Temperature, carried: float) -> str:
-    """What the heat has to do with a load that no film carries, and how much it does."""
+    """Return the part of a message that explains a load limit by heat; empty if the film has no temperature."""
     if T is None:
         return ""
     most = f" Followed from smaller loads, the film carries at least {carried:.4g} N." if carried else ""
@@ -121,7 +121,7 @@ def too_hot(T: Temperature, carried: float) -> str:
 
 
 def advice(status: Status, bearing: object) -> str:
-    """What to do about a failed evaluation of this bearing; `Status.advice` where the bearing changes nothing."""
+    """Return the remedy for a failed evaluation of this bearing; `Status.advice` without a special one."""
     if status is Status.NO_FILM and isinstance(getattr(bearing, "bush", None), ElasticLiner):
         return (
             "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not "

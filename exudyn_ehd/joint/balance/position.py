@@ -35,7 +35,7 @@ STEP_HALVINGS = 8
 HEATED_ROUNDS, NEARBY_ROUNDS = 60, 20
 TYPICAL_CHANGE = 30.0
 LOAD_TOLERANCE = 1e-10
-# Of a way from small loads: first step and smallest, shares of the load.
+# Continuation from small loads: first and smallest step, shares of the load.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16
@@ -49,13 +49,13 @@ class Carried:
     ----------
     motion : (10,) array
     evaluation, film : Evaluation, SolvedFilm
-        Of the steady film there.
+        Evaluation and solution of the steady film there.
     unbalance : (2,) array
         Force of the film and load, N.
     tangent : (6, 10) array
         d wrench / d motion at the temperature of this film.
     faces : FacesShare or None
-        What films on the end faces add, which ``unbalance`` contains.
+        Contribution of the thrust faces, which ``unbalance`` contains.
     """
 
     motion: np.ndarray
@@ -89,7 +89,7 @@ class LoadSearch:
     force : (2,) array
         Load on the journal, N.
     where : str
-        Who asks, for messages.
+        Name of the caller, for error messages.
     effort : int
         Film solves after which it gives up.
     faces : FacesUnderLoad, optional
@@ -158,13 +158,13 @@ class LoadSearch:
         return motion
 
     def damped(self, motion: np.ndarray, tolerance: float) -> Carried:
-        """Where damped steps lead from a motion (10,); see `newton`."""
+        """Return the result of damped Newton steps from a motion (10,); see `newton`."""
         self._follows = np.zeros((2, 2))
         held_back = 10.0 * self.size / self.model.bearing.radial_clearance
         return self.newton(self._start(motion), tolerance, LARGEST_DAMPED_STEPS, held_back)
 
     def _remedy(self) -> str:
-        """What to try for a load that was not found, by the largest that films on the way have carried."""
+        """Return the remedy for a load that was not found, with the largest load carried during the search."""
         if self.strongest[0] > self.size:
             return (
                 f"On the way a film has carried more, {self.strongest[0]:.4g} N at eccentricity ratio "

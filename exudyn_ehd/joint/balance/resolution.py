@@ -33,8 +33,8 @@ from exudyn_ehd.status import GridWarning, warn_user
 # Intervals across the peak around below which, and narrowing from which on, the peak pressure is off by some 5 %; rows
 # from an end up to which a peak is that end's.
 FEWEST, STEEPEST, NEAR = 3.2, 2.15, 2
-# What a wanted grid has, whose peak pressure is off by 2 %: intervals across the peak; narrowing less one, of rows at
-# the largest stretch, whose end intervals are 0.235 / n_z of half the length; rows at least, with this stretch.
+# Properties of a wanted grid, whose peak pressure is off by 2 %: intervals across the peak; narrowing less one; stretch
+# of the rows, whose end intervals are then 0.235 / n_z of half the length; least number of rows.
 ENOUGH, GENTLE, STRETCH, END_INTERVAL, FEWEST_ROWS = 6.0, 0.4, 0.95, 0.235, 48
 # Narrowing up to which the film is even along the bearing; from 1.15 on its crest between two rows costs up to 4 %.
 EVEN = 1.02
@@ -45,7 +45,7 @@ MOST_COLUMNS, MOST_ROWS = 2000, 200
 
 
 class Resolution(NamedTuple):
-    """How a grid resolves a pressure peak.
+    """Resolution of a pressure peak by the grid.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Resolution(NamedTuple):
     narrowing : float
         Film thickness one interval before the end next to the peak over that on the end; 1 for a peak away from ends.
     growth : float
-        The same of both ends, wherever the peak lies.
+        The larger such ratio of both ends, wherever the peak lies.
     wanted : FiniteLength or None
         A grid whose peak pressure is off by 2 %; None where it would be too large, or for another film model.
     """
@@ -67,7 +67,7 @@ class Resolution(NamedTuple):
 
     @property
     def is_coarse(self) -> bool:
-        """Whether the peak pressure may be off by more than 5 %."""
+        """Return whether the peak pressure may be off by more than 5 %."""
         return self.columns < FEWEST or self.narrowing > STEEPEST
 
 
@@ -110,7 +110,7 @@ def _wanted(
 
 
 def coarse_film(found: Resolution, where: str) -> str:
-    """What to say of a film whose peak the grid does not resolve, in the name of ``where``."""
+    """Return the message for a film whose pressure peak the grid does not resolve; it begins with ``where``."""
     thin = (
         "films this thin take a grid of seconds for one film: look at the position, or model what surfaces do that "
         "nearly touch (asperity=, contact=, a bush)"

@@ -24,21 +24,21 @@ from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.status import Status
 
-# Of the way to the prescribed place: step that is too short to go on, and by how much one that was reached lengthens.
+# Continuation to the prescribed position: step below which it ends, and growth of the step after a success.
 SMALLEST_PART, LONGER = 1e-4, 1.5
 # Steps of Newton's method and what they may leave of the residual, over the load; of a viscous bore's step likewise.
 LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60, 1e-11, 10, 1e-5
-# Of a viscous bore's way: slowness at its start and its end, share of q that the motion may leave to Newton's method;
-# trials after which no way is begun or gone on.
+# Pseudo-transient continuation of a viscous bore: slowness at its start and its end, share of q that it may leave to
+# Newton's method; trials after which no continuation is begun or continued.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
 # Trials after which the whole way ends, and a straight one.
 LARGEST_WAY, STRAIGHT_WAY = 3000, 60
 
 
 class Elasticity:
-    """What resists the bore's coordinates in a steady state: a constant stiffness matrix.
+    """Stiffness of the bore's coordinates in a steady state: a constant matrix.
 
-    `exudyn_ehd.joint.bore.solid` has that of a solid at any strain.
+    `exudyn_ehd.joint.bore.solid` has the stiffness of a solid at any strain.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Elasticity:
     Attributes
     ----------
     failure : str
-        Why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
+        Reason why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
     straight : bool
         `settle` gives up where Newton's method does not go straight to a balance: for searches that can come nearer.
     """
@@ -79,7 +79,7 @@ class Elasticity:
         return evaluation.tangent()
 
     def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray | None:
-        """The same, exact; None if `tangent` is."""
+        """Return the exact tangent; None if `tangent` is exact."""
         return None
 
     def settle(
@@ -89,7 +89,7 @@ class Elasticity:
         film: tuple[History | None, float, float],
         start: np.ndarray,
     ) -> tuple[NodalEvaluation | None, int, tuple[float, np.ndarray]]:
-        """As `bore_equilibrium`."""
+        """Find the balance of bore and film, as `bore_equilibrium` does."""
         return bore_equilibrium(model, motion, film, start)
 
 
@@ -174,7 +174,7 @@ class Newton(Generic[Result]):
         self.trials = 0
 
     def settle(self, q: np.ndarray, part: float) -> Result | None:
-        """As `solve`: straight, or as a viscous bore comes there from q, or somehow."""
+        """Find the balance by full Newton steps, else as a viscous bore comes to rest from q, else by halved steps."""
         found = self.solve(q, part, straight=True)
         if found is None and self.trials < LARGEST_EFFORT and not self.model.elasticity.straight:
             found = self._come_to_rest(q, part) or self.solve(q, part)

@@ -39,7 +39,7 @@ _NO_PLACES, _NO_VALUES = np.zeros(0, dtype=np.int32), np.zeros(0)
 
 
 class Bore(Protocol):
-    """What a bearing model needs from a flexible bore with k coordinates on an (n, m) film grid."""
+    """Flexible bore with k coordinates on an (n, m) film grid, as a bearing model uses it."""
 
     @property
     def size(self) -> int:
@@ -83,10 +83,10 @@ class Bore(Protocol):
         """S^T diag(f) S (k, k)."""
 
     def of_journal(self, q: np.ndarray) -> np.ndarray | float:
-        """What an elastic journal's part of q opens the gap by (n, m)."""
+        """Return the opening of the gap (n, m) by an elastic journal's part of q."""
 
     def end_shapes(self) -> np.ndarray:
-        """What S is for linear pressures that vanish at one end, (2, k): the first at L/2, the second at -L/2.
+        """Return S (2, k) for linear pressures that vanish at one end: the first at L/2, the second at -L/2.
 
         Loads are these times the integral of the pressure over the bore's area.
         """
@@ -218,11 +218,11 @@ class ModalBore:
         return np.concatenate(parts, axis=1)
 
     def of_journal(self, q: np.ndarray) -> np.ndarray:
-        """What the journal's part of q opens the gap by (n, m)."""
+        """Return the opening of the gap (n, m) by the journal's part of q."""
         return self.displacement(np.where(np.arange(self.size) < self.own, 0.0, q))
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """What unit coordinates open the gap by on the grid theta x z, m, (len(theta), len(z), k)."""
+        """Return the opening of the gap by unit coordinates on the grid theta x z, m, (len(theta), len(z), k)."""
         return np.concatenate(
             [part.radial(theta, z) for part in (self.modes, self.journal) if part is not None], axis=2
         )
@@ -323,7 +323,7 @@ class NodalBore:
         project_columns(self.columns, stencil, fields, direct, out)
 
     def of_journal(self, q: np.ndarray) -> float:
-        """Nothing: it is rigid."""
+        """Return zero: the journal is rigid."""
         return 0.0
 
     def product(self, field: np.ndarray) -> np.ndarray:

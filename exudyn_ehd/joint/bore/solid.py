@@ -24,7 +24,7 @@ from exudyn_ehd.solid.linear.solvers import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import Status
 
-# Of the residual over the film's forces: what counts as balanced, and what does where rounding lets it fall no more.
+# Residual over the film's forces that counts as balanced, and that counts so if round-off lets it fall no more.
 TOLERANCE, ROUNDING = 1e-11, 1e-8
 # Largest ratio of successive residuals of the corrections, and those up to which their K serves a search and a tangent.
 SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
@@ -33,7 +33,7 @@ CORRECTIONS, LINEARISATIONS, HALVINGS = 40, 40, 8
 SMALLEST_PART = 0.05
 # Unit loads that the solid answers at a time.
 COLUMNS = 256
-# Of nodes of the bore that are held: times the largest stiffness of the others.
+# Stiffness of held nodes of the bore, times the largest stiffness of the others.
 HELD = 1e6
 NO_BALANCE = (
     "the solid finds no balance with the film's load, which may lie above a limit point; take NeoHooke(...) for "
@@ -45,7 +45,7 @@ Film = tuple[History | None, float, float]
 
 
 class SolidElasticity(Elasticity):
-    """What resists the bore's coordinates in a steady state: a solid, linear about a state near its last balance.
+    """Stiffness of the bore's coordinates in a steady state by a solid, linear about a state near its last balance.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class SolidElasticity(Elasticity):
         return self.stiffness @ (q - self._q_free)
 
     def tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
-        """As `Elasticity.tangent`: without the forces that are no radial loads, and by a K of a state nearby."""
+        """Return `Elasticity.tangent` by the stiffness of a nearby state, with radial loads only."""
         self._require(NEARBY)
         return evaluation.tangent()
 
@@ -98,7 +98,7 @@ class SolidElasticity(Elasticity):
     def settle(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
     ) -> tuple[NodalEvaluation | None, int, tuple[float, np.ndarray]]:
-        """As `bore_equilibrium`; from the last balance on, or else from the undeformed bush."""
+        """Find the balance of bore and film from the last balance, or else from the undeformed bush."""
         self.failure, self._linearised, self._reached = "", 0, (0.0, start)
         if self._factor is None:
             self._renew()
@@ -127,7 +127,7 @@ class SolidElasticity(Elasticity):
     def _approach(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
     ) -> tuple[NodalEvaluation | None, int]:
-        """As `_balance`, with the pose in parts from that of the present displacements on."""
+        """Find the balance by continuation of the pose, from that of the present displacements."""
         reached, part, trials = 0.0, 0.5, 0
         between = motion.copy()
         while part > SMALLEST_PART and self._linearised < LINEARISATIONS:
@@ -281,7 +281,7 @@ class SolidElasticity(Elasticity):
             self._renew()
 
     def _release(self) -> None:
-        """Where the bore of the linear solid is without pressure."""
+        """Store the coordinates at which the bore of the linear solid has no pressure."""
         unloaded = self._answer(self._free_part(self._beside - self.solid.force(self.displacements)))
         self._q_free = self._coordinates(self.displacements + unloaded)
 

@@ -1,4 +1,4 @@
-"""From the film's vertices to the faces of a bore and back: pressures as loads, displacements as gaps.
+"""Transfer between the film's vertices and the faces of a bore: pressures as loads, displacements as gaps.
 
 The pressure is interpolated along every line of vertices, ``p(x) = sum_v p_v L_v(x)``, by the cubic through the four
 vertices around x. With the vertices' integration weights A_v and the bore's shape functions N
@@ -34,10 +34,10 @@ from exudyn_ehd.film.grid import FilmGrid
 # Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.
 STENCIL = 4
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
-# Of an interval, that is no panel; of lengths and of values of order one, rounding.
+# Share of an interval that is too short for a panel; round-off of lengths, and of values of order one.
 TOUCHING, ROUNDING, SMALLEST = 1e-3, 1e-9, 1e-14
 LINEAR = 0.03
-# Of half the length, within which an edge lies on the film's end.
+# Distance, as a share of half the length, within which an edge lies on the film's end.
 RIM = 1e-4
 # Points that are looked up at once, times faces.
 LARGEST_BLOCK = 2e7
@@ -56,7 +56,7 @@ class Faces(Protocol):
 
     @property
     def count(self) -> int:
-        """Their number."""
+        """Number of faces."""
 
     def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
         """Values at points (p,) from values at the bore's nodes."""
@@ -80,9 +80,9 @@ def vertex_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
 
 
 def end_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
-    """The same (2 n, nodes) for ``int p N dA`` of p = (1 - zeta) / 2 and (1 + zeta) / 2, zeta = 2 z / L.
+    """Return S (2 n, nodes) of the loads ``int p N dA`` of p = (1 - zeta) / 2 and (1 + zeta) / 2, zeta = 2 z / L.
 
-    Along each of the n lines of vertices one after the other, divided by the integral of p, which is half the length.
+    Rows follow the n lines of vertices one after the other. They are divided by the integral of p, half the length.
     """
     z, _, weight = _along(grid, faces.cuts[1] / grid.reference_length)
     theta, around = _around(grid, faces.cuts[0])
@@ -119,7 +119,7 @@ def _values(
 
 
 def _pruned(matrix: csr_matrix) -> csr_matrix:
-    """Without what is rounding."""
+    """Return a matrix without the entries that are round-off."""
     matrix.data[np.abs(matrix.data) < SMALLEST] = 0.0
     matrix.eliminate_zeros()
     return matrix
@@ -225,7 +225,7 @@ def _with_moments(
     L : (p, m) array
         Interpolation.
     changes : (p, c, m) array
-        What may be added to it at each point.
+        Possible additions to it at each point.
     on_ends : bool
         The first and the last vertex count for nothing.
     """

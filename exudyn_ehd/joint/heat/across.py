@@ -62,7 +62,7 @@ class FluidityField(ViscosityField):
 
 
 class PairBetween(Between):
-    """What warms mean and tilt of a solved film over a step, or for good with a step of 0.
+    """Energy equations of mean and tilt of a solved film over a step, or in the steady state with a step of 0.
 
     Unknowns are mean and tilt (2, n, m), K.
 
@@ -95,7 +95,7 @@ class PairBetween(Between):
         self.own = lost / self.scale
 
     def _carry(self, field: FluidityField, old: np.ndarray) -> None:
-        """What flows carry, with the temperatures ``old`` (4, n, m) of the step's start for the limiter."""
+        """Add the heat that flows carry; the limiter takes the start-of-step temperatures ``old`` (4, n, m)."""
         film, flows = self.film, self.flows
         q, y = film.solver.pressure, film.solver.system
         at, own = at_heights(self.surface), flow_shapes(field.vertices)
@@ -219,7 +219,7 @@ class CubicTemperature(WalledTemperature):
         return 1.0
 
     def heat_tilt(self, film: SolvedFilm) -> np.ndarray:
-        """What P_1 makes of the heat at the vertices, W (n, m); contacts rub evenly."""
+        """Return the P_1 component of the heat at the vertices, W (n, m); contacts heat evenly over the height."""
         sliding, pressed, both = heat_tilts(self.fluidity.vertices)
         s, flow = film.solver, np.zeros(film.grid.shape)
         film_heat(self.dropped(film), s.pressure, s.system.kx, s.system.kz, flow)
@@ -228,7 +228,7 @@ class CubicTemperature(WalledTemperature):
         return power * (self.sheared(film) * sliding + flow * pressed + crossed)
 
     def equations(self, film: SolvedFilm, step: float) -> PairBetween:
-        """Of a solved film over a step, s; 0: for good."""
+        """Return the equations of a solved film over a step, s; 0: steady state."""
         return PairBetween(self, film, step)
 
     def _blocks(self, state: np.ndarray) -> np.ndarray:

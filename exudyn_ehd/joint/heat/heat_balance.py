@@ -51,7 +51,7 @@ class BandSolver:
 
 
 class HeatedOil(Protocol):
-    """What the equation asks of `exudyn_ehd.joint.heat.temperature.FilmTemperature`."""
+    """Part of `exudyn_ehd.joint.heat.temperature.FilmTemperature` that the heat balance uses."""
 
     supply: float
     flow_capacity: float
@@ -59,7 +59,7 @@ class HeatedOil(Protocol):
     band: Callable[[tuple[int, int], int], BandSolver]
 
     def follows(self, T: np.ndarray, heat: np.ndarray, store: np.ndarray) -> float | np.ndarray:
-        """What heat loses per kelvin within a step."""
+        """Return the decrease of the heat per kelvin within a step."""
 
 
 def temperature_of(film: SolvedFilm) -> np.ndarray:
@@ -69,7 +69,7 @@ def temperature_of(film: SolvedFilm) -> np.ndarray:
 
 
 class HeatBalance:
-    """What warms a solved film over a step, or for good with a step of 0; fields (n, m).
+    """Heat balance of a solved film over a step, or in the steady state with a step of 0; fields (n, m).
 
     Attributes
     ----------

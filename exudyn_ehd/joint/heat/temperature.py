@@ -29,7 +29,7 @@ Field = float | np.ndarray
 
 
 class _Temperature:
-    """What the temperatures of both kinds have in common."""
+    """Common part of both kinds of film temperature."""
 
     def __init__(self, spec: LumpedThermal | FilmEnergy, lubricant: Lubricant) -> None:
         assert lubricant.temperature_law is not None
@@ -52,12 +52,12 @@ class _Temperature:
         return self.law.viscosity(temperature, self.density) / self.reference
 
     def follows(self, T: Field, heat: Field, store: Field) -> Field:
-        """What heat loses per kelvin by which a step raises the temperature T; heat, W, and store, W/K, scaled alike.
+        """Return the decrease of the heat per kelvin that a step raises T; heat, W, and store, W/K, are scaled alike.
 
-        Viscosity, and the heat with it, are those at the start of the step. Where the oil stores less than that heat
-        gains or loses by the temperature, a step would overshoot and the next one swing back: there the heat follows
-        the temperature, linearised, by as much as the store lacks. Steps that are short beside the exchange of the oil
-        are explicit. In a steady state, which stores nothing, repeated use converges where the heating is strong.
+        Viscosity and heat are those at the start of the step. Where the oil stores less per kelvin than the heat
+        changes, such a step would overshoot and the next one swing back. There the heat is linearised in the
+        temperature, by the part that the store lacks. Steps much shorter than the exchange of the oil are explicit. In
+        a steady state, which stores nothing, repeated use converges where the heating is strong.
         """
         if not np.any(STEEPEST * heat > store):
             return 0.0
@@ -269,7 +269,7 @@ class FilmTemperature(_Temperature):
         return heat
 
     def dropped(self, film: SolvedFilm) -> np.ndarray:
-        """What pressure flows lose (n, m), scaled: the pressure; mass flows of a compressible film the flow work."""
+        """Return the energy per scaled flow at the vertices (n, m): pressure, or flow work of a compressible film."""
         oil = film.parts.compressible
         return film.oil.P if oil is None else oil.flow_work(film.oil.P)
 

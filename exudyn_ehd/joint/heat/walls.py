@@ -93,7 +93,7 @@ class _Wall:
         return state[: self.rings.columns, self.columns]
 
     def growth(self, state: np.ndarray) -> float:
-        """Of the radius at the film, m."""
+        """Growth of the radius at the film, m."""
         return self.expands * (float(np.mean(self.of(state) @ self.rings.share)) - self.at_clearance)
 
     def heat(self, state: np.ndarray, old: np.ndarray) -> tuple[float, float]:
@@ -111,7 +111,7 @@ class WalledTemperature(FilmTemperature):
     spec, bearing, field
         As for `FilmTemperature`.
     shape : (int, int)
-        Of the film's grid.
+        Shape of the film's grid.
     """
 
     blocks = 1
@@ -163,12 +163,12 @@ class WalledTemperature(FilmTemperature):
         return None
 
     def opening(self, temperature: np.ndarray) -> float:
-        """What the walls' growth adds to the radial clearance, m."""
+        """Return the change of the radial clearance by the walls' growth, m."""
         bush, journal = (0.0 if wall is None else wall.growth(temperature) for wall in self.sides)
         return bush - journal
 
     def set_viscosity(self, temperature: float | np.ndarray) -> float:
-        """As for a film alone."""
+        """Set the viscosity from the film's part of the temperatures, as without walls."""
         return super().set_viscosity(self.split(temperature)[0])
 
     def advance(self, film: SolvedFilm) -> np.ndarray:
@@ -251,11 +251,11 @@ class WalledTemperature(FilmTemperature):
         return solve_by_products(led, lu_solve(lead, missing + given), enough, self.unknowns)
 
     def equations(self, film: SolvedFilm, step: float) -> Between:
-        """Of a solved film over a step, s; 0: for good."""
+        """Return the equations of a solved film over a step, s; 0: steady state."""
         return Between(self, film, step)
 
     def passage(self, film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, tuple[float | None, float | None]]:
-        """What `Passage` asks for."""
+        """Return the arguments of `Passage` for a solved film."""
         assert self.spec.conductivity is not None
         kappa = self.spec.conductivity / (self.clearance * film.solver.H)
         area = film.solver.area * film.grid.reference_length**2
@@ -282,7 +282,7 @@ class WalledTemperature(FilmTemperature):
         return np.concatenate(rows)
 
     def _held(self, of: list[list[np.ndarray]]) -> np.ndarray:
-        """What the walls give per kelvin of their surfaces to a film of held temperatures (k, k), W/K."""
+        """Return the heat from walls to a film of held temperatures, per kelvin of their surfaces (k, k), W/K."""
         parts = [[by.sum(axis=1) for by in row] for row in of]
         (bush, both), (_, journal) = parts
         if self.sides[1] is None:
@@ -293,7 +293,7 @@ class WalledTemperature(FilmTemperature):
 
 
 class Growth:
-    """What the walls grow by, as a gap term: the same everywhere, with the temperatures at the start of a step."""
+    """Growth of the walls as a gap term: uniform, with the temperatures at the start of a step."""
 
     def __init__(self, thermal: WalledTemperature) -> None:
         self.thermal, self.last = thermal, np.full(thermal.shape, np.nan)

@@ -1,4 +1,4 @@
-"""From a bearing's description to its model: the only place that asks whether an effect is present."""
+"""Model from a bearing's description: the only place that asks whether an effect is present."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""From the description of a bush, of an elastic journal or of both to a bearing model with flexible surfaces.
+"""Bearing model with flexible surfaces, from the description of a bush, of an elastic journal or of both.
 
-And the model of a journal whose modes turn under the film, see `exudyn_ehd.solid.journal.turning`.
+It also has the model of a journal whose modes turn under the film, see `exudyn_ehd.solid.journal.turning`.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ class TurningEvaluation(ElasticEvaluation):
     moment: float = 0.0
 
     def quantities(self) -> dict[str, float]:
-        """As `ElasticEvaluation.quantities`; torques with the moment of the pressure on the deflected journal."""
+        """Return `ElasticEvaluation.quantities`; torques contain the pressure's moment on the deflected journal."""
         found = super().quantities()
         if self.film is not None:
             found["friction_torque"] += self.moment
@@ -191,14 +191,14 @@ class TurningModel(ElasticBearingModel):
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
-        """As `ElasticBearingModel.evaluate`."""
+        """Evaluate the film, as `ElasticBearingModel.evaluate` does."""
         self._spin = spin
         return super().evaluate(motion, history, step, spin)
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
-        """As `ElasticBearingModel.evaluate_steady`, with a shape that stands under the turning journal."""
+        """Evaluate `ElasticBearingModel.evaluate_steady` with a deflection at rest under the turning journal."""
         turns, self.turns = self.turns, False
         try:
             return super().evaluate_steady(motion, history, step, spin)

@@ -40,7 +40,7 @@ class FilmModel(Protocol):
     needs_spin: bool
 
     def evaluate_steady(self, motion: np.ndarray, history: History | None, step: float) -> FilmEvaluation:
-        """As of `exudyn_ehd.joint.model.rigid.BearingModel`."""
+        """Evaluate the steady film, see `exudyn_ehd.joint.model.rigid.BearingModel`."""
 
 
 class FilmEvaluation(Protocol):
@@ -53,10 +53,10 @@ class FilmEvaluation(Protocol):
     @property
     def model(self) -> FilmModel: ...
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
-        """As of `exudyn_ehd.joint.model.rigid.Evaluation`."""
+        """Return the tangent, see `exudyn_ehd.joint.model.rigid.Evaluation`."""
 
     def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
-        """As of `exudyn_ehd.joint.model.rigid.Evaluation`."""
+        """Return the steady tangent, see `exudyn_ehd.joint.model.rigid.Evaluation`."""
 
 
 def is_central(evaluation: FilmEvaluation) -> bool:

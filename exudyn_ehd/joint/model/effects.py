@@ -1,5 +1,6 @@
-"""From a bearing's description to the seams of its model: profile, wear, roughness and contact of the surfaces, and
-the laws of the lubricant."""
+"""Effects of a bearing's model from its description: profile, wear, roughness and contact of the surfaces, and
+the laws of the lubricant.
+"""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class FilmFields(JointFilm, FilmPictures):
     pressure, gap : (n, m) arrays
         Pa (gauge), m.
     unbroken : (n, m) bool array
-        Where the film is not cavitated.
+        True where the film is not cavitated.
     fill : (n, m) array or None
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
@@ -32,19 +32,19 @@ class FilmFields(JointFilm, FilmPictures):
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
     bore_displacement : (n, m) array or None
-        Of a flexible bore or a liner, m, positive outward; None for a rigid one.
+        Deflection of a flexible bore or a liner, m, positive outward; None for a rigid one.
     contact_pressure : (n, m) array or None
-        Of asperities or wall, Pa; None without contact.
+        Pressure of asperities or wall, Pa; None without contact.
     wear_depth : (n, m) array or None
         Worn off the bore up to this instant, m; None without wear.
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     motion : (10,) array
-        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
-        rates.
+        Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates
+        follow.
     bearing : JournalBearing
     bush_displacement : (k, 3) array or None
-        Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
+        Displacements of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class FilmFields(JointFilm, FilmPictures):
 
 
 def film_record(film: SolvedFilm) -> Film:
-    """What both `FilmFields` and a steady result hold of a solved film, copied."""
+    """Return the common data of `FilmFields` and of a steady result for a solved film, copied."""
     film.require_current()
     solver, grid, temperature, bearing = film.solver, film.grid, film.temperature, film.parts.bearing
     liner, bore = film.parts.liner, film.bore

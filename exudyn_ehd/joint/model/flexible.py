@@ -51,7 +51,7 @@ TILTED = 0.02
 
 
 class ClosingFilm(NamedTuple):
-    """Where a film closes: on the way to a place, at a part of its eccentricity and tilt.
+    """State in which a film closes on the way to a position: the part of that position's eccentricity and tilt.
 
     ``gap``: minimum film thickness there, m, at the angle ``theta``, rad, and at ``z``, m.
     """
@@ -90,9 +90,9 @@ class ElasticEvaluation(Evaluation):
         return self._tangent((1.0, 0.0), (0.0, 1.0))
 
     def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
-        """As `tangent` with the bore's columns as ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k).
+        """Return `tangent` with the bore's columns as ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k).
 
-        What an integrator needs.
+        Integrators need this form.
         """
         return self._tangent((by_place, by_rate))
 
@@ -127,7 +127,7 @@ class ElasticEvaluation(Evaluation):
         return complete(x, self.wrench, self.nodal_forces())
 
     def nodal_tangent(self) -> tuple[np.ndarray, np.ndarray]:
-        """As `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; there must be a film."""
+        """Return the tangent of `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; there must be a film."""
         return nodal_tangent(self._found(), self._nodes(), self.model.bore_forces)
 
     def tangent_at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -140,7 +140,7 @@ class ElasticEvaluation(Evaluation):
         return NodalProduct(self._found(), self._nodes(), self.model.bore_forces)
 
     def quantities(self) -> dict[str, float]:
-        """As `Evaluation.quantities`, and ``bore_displacement`` (m, largest)."""
+        """Return `Evaluation.quantities` and the largest ``bore_displacement``, m."""
         largest = float(np.max(np.abs(self.bore.displacement))) * self.model.bearing.radial_clearance
         return super().quantities() | {"bore_displacement": largest}
 
@@ -167,7 +167,7 @@ class BoreTerm:
 
 
 def end_load(bore: Bore, grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
-    """What the film's weights lack in the bore's loads (k,) of the ends' pressure, N.
+    """Return the loads (k,) of the ends' pressure on the bore that the film's weights omit, N.
 
     The vertices on the ends load the bore there alone. The pressure is therefore split into
     ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, whose loads are integrated, and a rest that vanishes at
@@ -197,7 +197,7 @@ class ElasticBearingModel(BearingModel):
     bore : function of FilmGrid
         Makes the bore for the film's grid.
     elasticity : Elasticity
-        What resists q in a steady state.
+        Elasticity that resists q in a steady state.
     start_angle, effects
         As in `BearingModel`.
     """
@@ -232,7 +232,7 @@ class ElasticBearingModel(BearingModel):
 
     @cached_property
     def bore_forces(self) -> BoreForces:
-        """Of a nodal bore: what carries the film's forces to its nodes."""
+        """Return the map from the film's forces to the nodes of a nodal bore."""
         assert isinstance(self.bore, NodalBore)
         return BoreForces(self.bore)
 

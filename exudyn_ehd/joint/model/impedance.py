@@ -104,10 +104,10 @@ class ImpedanceModel:
         )
 
     def forget(self) -> None:
-        """There is no warm start."""
+        """Do nothing: there is no warm start."""
 
     def initial_history(self, motion: np.ndarray) -> None:
-        """There is no memory."""
+        """Return None: there is no memory."""
         return None
 
     def evaluate(

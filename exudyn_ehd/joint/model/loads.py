@@ -1,4 +1,4 @@
-"""From the solver's unknowns to pressure and viscosity by the oil's laws, and on to the loads on the journal."""
+"""Pressure and viscosity from the solver's unknowns by the oil's laws, and the loads on the journal."""
 
 from __future__ import annotations
 

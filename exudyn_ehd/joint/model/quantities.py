@@ -113,7 +113,7 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
 
 
 def supply_flows(film: SolvedFilm) -> np.ndarray:
-    """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
+    """Return the inflow of every area of ``bearing.supply``, m3/s; empty without supply."""
     p = film.parts
     if p.supply is None:
         return np.zeros(0)

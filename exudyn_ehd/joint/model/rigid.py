@@ -96,7 +96,7 @@ class Evaluation:
         return quantities(film)
 
     def history(self) -> History | None:
-        """What the bearing remembers if this state is accepted; None without effects that remember.
+        """Return the bearing's memory after this state, if it is accepted; None without effects that remember.
 
         Raises
         ------

@@ -131,7 +131,7 @@ def _sample(model: SphericalModel, found: SphericalEvaluation) -> _Sample:
 
 @dataclass(frozen=True, eq=False)
 class _BallCase:
-    """As `exudyn_ehd.joint.audit.findings.Case`."""
+    """Subject of the audit of a ball joint, like `exudyn_ehd.joint.audit.findings.Case`."""
 
     bearing: SphericalBearing
     samples: list[_Sample]

@@ -129,6 +129,6 @@ class SphericalBearing:
         return 0.5 * math.pi * self.ball_radius
 
     def reference_force(self, speed: float) -> float:
-        """Of a journal of that length, L D mu |omega| / psi^2, N; ``speed`` in rad/s."""
+        """Reference force of a journal of that length, L D mu |omega| / psi^2, N; ``speed`` in rad/s."""
         psi = self.radial_clearance / self.ball_radius
         return 2.0 * self.ball_radius * self.length * self.lubricant.viscosity * abs(speed) / psi**2

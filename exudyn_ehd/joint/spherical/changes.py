@@ -1,4 +1,4 @@
-"""What another description of a ball changes: films that carry the same load at the same velocities."""
+"""Changes by another description of a ball: films that carry the same load at the same velocities."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
 from exudyn_ehd.status import Status
 
-# Of a step towards the same load: share of the smallest gap.
+# Largest step towards the same load, as a share of the minimum film thickness.
 STRIDE = 0.3
 
 

@@ -113,7 +113,7 @@ class SphericalEvaluation:
     wrench : (6,) array
         On the ball, moment about O; nan without a film.
     minimum_gap : float
-        Of the rigid surfaces, exact, m.
+        Minimum gap of the rigid surfaces, exact, m.
     film : BallFilm or None
     """
 
@@ -166,7 +166,7 @@ class SphericalEvaluation:
         }
 
     def history(self) -> History | None:
-        """None: the film remembers nothing."""
+        """Return None: the film remembers nothing."""
         return None
 
     def _require_current(self) -> None:
@@ -215,7 +215,7 @@ class SphericalModel:
         self.solver.forget()
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """None: the film remembers nothing."""
+        """Return None: the film remembers nothing."""
         return None
 
     def is_at_rest(self, motion: np.ndarray) -> bool:
@@ -363,7 +363,7 @@ class SphericalModel:
 
 
 def _drag_of_moments(R: float) -> np.ndarray:
-    """From the moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
+    """Return the map from moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
     out = np.zeros((6, 6, 10))
     for k in range(3):
         turn = R * skew(np.eye(3)[k])

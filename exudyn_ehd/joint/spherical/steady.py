@@ -34,7 +34,7 @@ class SphericalResult:
     pressure, gap : (n, m) arrays
         Pa (gauge), m.
     unbroken : (n, m) bool array
-        Where the film is not cavitated.
+        True where the film is not cavitated.
     force, torque : (3,) arrays
         On the ball; torque about its centre, N and N m. The socket gets minus the force in the ball's centre and minus
         the torque.
@@ -79,7 +79,7 @@ class SphericalResult:
         return f"<SphericalResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
 
     def audit(self) -> Audit:
-        """Which effects matter in this film, and which of them it leaves out; print it for a table."""
+        """Find the effects that matter in this film, and those of them that the film omits; print it for a table."""
         # imported here: films need none of it
         from exudyn_ehd.joint.spherical.audit import audit_ball
 
@@ -118,9 +118,9 @@ def steady_spherical(
     place : (3,) [m]
         The ball's centre in the socket's frame, whose z is the axis of the socket.
     velocity : (3,) [m/s]
-        Of the ball's centre as seen from the socket.
+        Velocity of the ball's centre as seen from the socket.
     angular_velocity : (3,) [rad/s]
-        Of the ball as seen from the socket.
+        Angular velocity of the ball as seen from the socket.
 
     Returns
     -------

@@ -35,7 +35,7 @@ from exudyn_ehd.status import InputError, require_number, require_size, require_
 if TYPE_CHECKING:
     from exudyn_ehd.joint.balance.faces import FacesUnderLoad
 
-# Of the difference quotients between settled films, as a share of the minimum film thickness.
+# Step of the difference quotients between converged films, as a share of the minimum film thickness.
 SETTLED_STEP = 1e-4
 # Relative errors of the critical mass from here on are told when a result is printed.
 SURE = 0.05
@@ -86,7 +86,7 @@ class EquilibriumResult:
         bore settles at each of them.
     film : SteadyResult
     response : FilmResponse or None
-        What `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
+        Response that `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def equilibrium(
     tilt : (float, float)
         Slopes (bx, by), held fixed, rad.
     axial_position : float
-        Of the journal between the faces of ``bearing.thrust``, m; 0 without them, and with ``axial_load``.
+        Position of the journal between the faces of ``bearing.thrust``, m; 0 without them, and with ``axial_load``.
     axial_load : float, optional
         Force on the journal along z, N, which the faces carry; None: the journal is held at ``axial_position``.
 
@@ -283,7 +283,7 @@ def equilibrium(
 
 
 class _SmallMotions(NamedTuple):
-    """What `EquilibriumResult` has of small motions."""
+    """Values of small motions in `EquilibriumResult`."""
 
     stiffness: np.ndarray
     damping: np.ndarray
@@ -295,7 +295,7 @@ class _SmallMotions(NamedTuple):
 
 
 def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
-    """Of a position whose film is the model's last."""
+    """Return the values of small motions about a position whose film is the model's last."""
     evaluation, omega = found.evaluation, abs(float(found.motion[8]))
     central = is_central(evaluation)
     if central:

@@ -40,7 +40,7 @@ from exudyn_ehd.status import (
 if TYPE_CHECKING:
     from exudyn_ehd.joint.static.thrust import ThrustResult
 
-# Of a linear bush, displacement over thickness: above, its displacement is off by more than one per cent.
+# Displacement of a linear bush over its thickness; above it the displacement is off by more than one per cent.
 LARGEST_STRAIN = 0.01
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
@@ -58,7 +58,7 @@ class SteadyResult(Film, FilmPictures):
     pressure, gap : (n, m) arrays
         Pa (gauge) and m.
     unbroken : (n, m) bool array
-        Where the film is not cavitated.
+        True where the film is not cavitated.
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     minimum_gap, peak_pressure, peak_angle : float
@@ -80,20 +80,20 @@ class SteadyResult(Film, FilmPictures):
     fill : (n, m) array or None
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
-        Of the film, K; None for an isothermal bearing.
+        Temperature of the film, K; None for an isothermal bearing.
     walls : Walls or None
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
     bore_displacement : (n, m) array or None
-        Of a flexible bore or a liner, m, positive outward; None for a rigid one.
+        Deflection of a flexible bore or a liner, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
-        Of a flexible bore, m.
+        Coordinates of a flexible bore, m.
     faces : ThrustResult or None
         Films on the end faces, which the other values leave out; None without ``bearing.thrust``.
     bearing : JournalBearing
     motion : (10,) array
-        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
-        rates.
+        Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates
+        follow.
 
     Examples
     --------
@@ -133,14 +133,14 @@ class SteadyResult(Film, FilmPictures):
         return f"<SteadyResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
-        """Which effects matter at this position, are left out, or take time without need; print it for a table.
+        """Find effects at this position that matter, are omitted, or take time without need; print it for a table.
 
         Parameters
         ----------
         liner : ElasticLiner, optional
-            Of which to say whether its elasticity would matter; for bearings without one.
+            Liner whose elasticity is assessed, for bearings without one.
         measure_time : bool
-            Measure the share of the time that every effect takes which is on.
+            Measure the share of computing time of each active effect.
 
         Returns
         -------
@@ -196,7 +196,7 @@ def steady(
     axial_speed : float
         w, m/s.
     axial_position : float
-        Of the journal between the faces of ``bearing.thrust``, m; 0 without them.
+        Position of the journal between the faces of ``bearing.thrust``, m; 0 without them.
 
     Returns
     -------

@@ -101,7 +101,7 @@ def _pull(P, X, p, x, e, B_out):
 
 @njit(cache=True, fastmath=FAST)
 def _stresses(A, At, X, points, law, B_out):
-    """From natural gradients of displacements, and of velocities where the law has a rate, to B, all flat."""
+    """Write B from natural gradients of displacements, and of velocities if the law has a rate; all arrays are flat."""
     for q in range(points):
         p, x = 9 * BLOCK * q, 10 * BLOCK * q
         if law.neo_hooke or law.beta != 0.0:

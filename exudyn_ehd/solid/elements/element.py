@@ -1,4 +1,4 @@
-"""What a kind of element is described by."""
+"""Description of a kind of element."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ class Element:
     rules : dict
         Quadratures of the stiffness by their names; the first is the default.
     exact : Quadrature
-        Of the mass, exact with straight edges.
+        Quadrature of the mass, exact with straight edges.
     sampling : Quadrature
-        Where stresses are most accurate.
+        Points at which stresses are most accurate.
     extrapolation : ndarray, shape (n, q)
-        From values there to values at the nodes.
+        Map from values at these points to values at the nodes.
     """
 
     name: str
@@ -86,12 +86,12 @@ class Element:
         return next(iter(self.rules.values()))
 
     def accepts(self, rule: Quadrature) -> bool:
-        """Whether a quadrature is one of this element's shape."""
+        """Return whether a quadrature is one of this element's shape."""
         volume = float(self.exact.weights.sum())
         return abs(float(np.sum(rule.weights)) - volume) < 1e-6 * volume
 
     def outside(self, natural: np.ndarray) -> np.ndarray:
-        """How far points (p, 3) lie beyond the element, in natural coordinates; negative inside."""
+        """Return the distance of points (p, 3) beyond the element, in natural coordinates; negative inside."""
         if self.nodes.min() < 0.0:
             return np.abs(natural).max(axis=1) - 1.0
         return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)

@@ -43,7 +43,7 @@ class Face:
         return 0.0 if self.corners == 4 else 1.0 / 3.0
 
     def outside(self, natural: np.ndarray) -> np.ndarray:
-        """How far points (n, 2) lie beyond the face, in natural coordinates; negative inside."""
+        """Return the distance of points (n, 2) beyond the face, in natural coordinates; negative inside."""
         if self.corners == 4:
             return np.abs(natural).max(axis=1) - 1.0
         return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)

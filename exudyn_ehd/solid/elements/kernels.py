@@ -26,7 +26,7 @@ FAST = {"contract", "reassoc"}
 
 
 class Law(NamedTuple):
-    """What the kernels take of a material: Lamé's constants [Pa], viscosity time [s], and which law."""
+    """Material data of the kernels: Lamé's constants [Pa], viscosity time [s], and the kind of law."""
 
     lam: float
     mu: float

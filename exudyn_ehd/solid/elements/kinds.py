@@ -1,4 +1,4 @@
-"""Which element a connectivity has."""
+"""Kind of element of a connectivity."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""What a scene writes about an elastic journal: its cylinder, its material and where its body holds it.
+"""Description of an elastic journal by the user: its cylinder, its material and the bands where its body holds it.
 
-The body of the joint's journal moves as a rigid body; what the journal does besides is its deflection. With
-`HeldBands` and `HeldEnds` the body is what holds the pin (a piston with its bosses, a crank with its webs), and the
-pin's bending against it is deflection. With ``held=None`` the journal is the body itself, and nothing holds it: its
-rigid motion under the film's force is the body's, and its deflection is what is left, in the frame of its mean motion,
+The body of the joint's journal moves as a rigid body; the journal's motion relative to it is the deflection. With
+`HeldBands` and `HeldEnds` the body holds the pin (a piston with its bosses, a crank with its webs), and the pin's
+bending against it is deflection. With ``held=None`` the journal is the body itself, and nothing holds it. Its rigid
+motion under the film's force is then the body's. Its deflection is the rest, in the frame of its mean motion,
 
     K u = f - M R (R^T M R)^-1 R^T f,   R^T M u = 0,
 
@@ -79,9 +79,9 @@ class ElasticJournal:
     span : (float, float)
         Axial places of its end faces in the joint frame, about the bearing's mid-plane [m]; the film lies between them.
     held : HeldEnds, HeldBands or None
-        Where its body holds it; None: the journal is the body, and its mean motion is the body's.
+        Bands or ends where its body holds it; None: the journal is the body, and its mean motion is the body's.
     inner_radius : float
-        Of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
+        Inner radius of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
     tolerance : float
         Error of the surface's displacement under sampled films, as in `ModalBush`; 2e-3 to 0.2. Of a pin that bends by
         more than it flattens, over what it deforms locally.
@@ -118,7 +118,7 @@ class ElasticJournal:
 
     @property
     def bands(self) -> tuple[tuple[float, float], ...]:
-        """Where its cylinder is held, [m]."""
+        """Bands in which its cylinder is held, [m]."""
         return self.held.bands if isinstance(self.held, HeldBands) else ()
 
     def require_fit(self, radius: float, length: float, bush: object) -> None:

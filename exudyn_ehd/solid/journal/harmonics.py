@@ -89,7 +89,7 @@ class Cylinder:
         return 3 * self.nodes_r.size * self.nodes_z.size
 
     def stiffness(self, n: int) -> csc_matrix:
-        """Of n waves around [N/m]."""
+        """Return the stiffness matrix for n waves around [N/m]."""
         elements, points = self.radius.shape
         lam, mu = self.lame
         B = np.zeros((elements, points, 6, 9, 3))
@@ -107,7 +107,7 @@ class Cylinder:
         return self._assembled(strains.reshape(whole).transpose(0, 2, 1) @ stress.reshape(whole), n)
 
     def mass(self, n: int) -> csc_matrix:
-        """Of n waves around, for unit density [m^3]."""
+        """Return the mass matrix for n waves around and unit density [m^3]."""
         same = np.einsum("eg,ga,gb->eab", self.volume, self.values, self.values)
         return self._assembled(np.einsum("eab,ij->eaibj", same, np.eye(3)).reshape(-1, 27, 27), n)
 

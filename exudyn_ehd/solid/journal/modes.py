@@ -20,7 +20,7 @@ from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
 from exudyn_ehd.solid.modes import films
 from exudyn_ehd.storage import cached_arrays
 
-# Of the algorithm, as `exudyn_ehd.solid.modes.films.FORMAT`, which counts here too.
+# Version of the algorithm, like `exudyn_ehd.solid.modes.films.FORMAT`, which counts here too.
 FORMAT = 4
 # Elements through the wall and under the film, and waves around of the search; from this tolerance on the second set
 # does. Compliance of a solid pin off by 2e-4 at 8 waves around and 5e-3 at 24, by 6e-3 at 8 of the second set.
@@ -70,7 +70,7 @@ class JournalModes:
         return interpolation(self.edges, z) @ self.profiles.T
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """What unit coordinates open the gap by on the grid theta x z, (len(theta), len(z), k)."""
+        """Return the opening of the gap by unit coordinates on the grid theta x z, (len(theta), len(z), k)."""
         return self.around(theta)[:, None] * self.along(z)
 
 

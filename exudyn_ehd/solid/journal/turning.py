@@ -49,7 +49,7 @@ class FEJournal(FESurface):
     nodes : sequence of int, optional
         Mesh nodes on the journal; by default those on the cylinder around the joint's axis.
     radius_tolerance : float
-        How far a node's radius may be from the bearing's journal radius, over that radius.
+        Largest relative difference of a node's radius from the bearing's journal radius.
     settled : bool
         As in `FEBore`, with a shape that stands under the turning journal. Stiff modes that start undeformed ring.
     exact_jacobian : bool
@@ -92,7 +92,7 @@ class TurningJournal:
     mass: np.ndarray
 
     def require_fit(self, radius: float, length: float, bush: object) -> None:
-        """Nothing: its description did."""
+        """Check nothing: the description of the journal was checked."""
 
     @property
     def count(self) -> int:
@@ -134,12 +134,12 @@ class TurningJournal:
 
     @property
     def waves(self) -> JournalModes:
-        """Of the film."""
+        """Waves of the journal's surface that the film sees."""
         return self._parts[0]
 
     @cached_property
     def _partner(self) -> tuple[np.ndarray, np.ndarray]:
-        """Of every wave the number of its other phase, and its rate per angle from there."""
+        """Number of the other phase of every wave, and the wave's rate per angle from there."""
         n, is_sine = self.waves.waves, self.waves.phases > 0.0
         own = np.arange(n.size)
         for wave in np.unique(n[n > 0.0]):
@@ -163,9 +163,9 @@ class TurningJournal:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """What resists the modes in the film's object: nothing (k,), the body does it itself."""
+        """Stiffness (k,) of the modes in the film's object: zero, since the body has its own."""
         return np.zeros(self.count)
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """What unit modes open the gap by at no angle on the grid theta x z, (len(theta), len(z), k)."""
+        """Return the opening of the gap by unit modes at zero angle, on the grid theta x z, (len(theta), len(z), k)."""
         return self.waves.radial(theta, z) @ self.map(0.0)

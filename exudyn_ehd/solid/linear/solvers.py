@@ -22,7 +22,7 @@ def sparse_factor(A: spmatrix, *, pivoting: float = 0.0) -> SuperLU:
 
 
 class SingleFactor:
-    """The same in single precision, which halves memory and time of substitutions.
+    """Factor of a sparse matrix in single precision, which halves memory and time of substitutions.
 
     Parameters
     ----------

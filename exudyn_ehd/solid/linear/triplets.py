@@ -41,5 +41,5 @@ class Triplets:
 
 
 def same_arrays(first: Sequence[np.ndarray], second: Sequence[np.ndarray]) -> bool:
-    """Whether these are the same arrays, or others with the same content."""
+    """Return whether two sequences hold the same arrays, or arrays of the same content."""
     return len(first) == len(second) and all(a is b or np.array_equal(a, b) for a, b in zip(first, second, strict=True))

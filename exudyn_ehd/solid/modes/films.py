@@ -57,7 +57,7 @@ from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.status import InputError
 
-# Of the choice of modes: raise it with every change of what follows, so that files of older modes are not taken.
+# Version of the choice of modes: raise it with every change of what follows, so that files of older modes are not used.
 FORMAT = 6
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
 # Films of the set and those that measure the error: eccentricity ratios; slopes and waves of the gap (shares of the
@@ -189,7 +189,7 @@ class Answers(NamedTuple):
     loads : ndarray, shape (3 m, c + t)
         Nodal forces of the candidates and of the measuring films.
     seen : ndarray, shape (p, c + t)
-        What the film sees of the displacements under both, as `FilmSurface.weighted`.
+        Displacements under both as the film sees them, by `FilmSurface.weighted`.
     tilted : bool
         With pressures that are odd in z.
     """
@@ -208,13 +208,13 @@ def answers(
     tilted: bool,
     without_rigid: bool = False,
 ) -> Answers:
-    """What a body does under the films; odd pressures come in if it answers even ones by odd displacements.
+    """Return a body's responses to the films; odd pressures are included if even ones displace the body oddly.
 
     Parameters
     ----------
     surface : FilmSurface
     places : ndarray of int
-        Of the coordinates of its faces' nodes in those of the body.
+        Places of the coordinates of its faces' nodes among those of the body.
     solve : callable
         Displacements of the held body under nodal forces, both (size, k).
     size : int

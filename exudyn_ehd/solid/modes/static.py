@@ -69,7 +69,7 @@ class BoreModes:
 
     @property
     def faces(self) -> Surface:
-        """Of the bore."""
+        """Faces of the bore."""
         return self.mesh.bore
 
     def largest_strain(self, coordinates: np.ndarray) -> float:
@@ -90,7 +90,7 @@ class BoreModes:
         return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
 
     def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """The same (p, k) at points (p,) whose ``values`` (p, nodes) of displacements come from those at the nodes."""
+        """Return `radial` (p, k) at points (p,), where ``values`` (p, nodes) maps nodal displacements to the points."""
         H = directed(values, np.stack([np.cos(theta), np.sin(theta)], axis=1))
         bore = self.displacements[:, self.faces.nodes].reshape(self.count, -1)
         return np.ascontiguousarray(H @ bore.T)
@@ -110,7 +110,7 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
     ----------
     bush : ModalBush
     length : float, optional
-        Of the film about the bush's mid-plane [m]; by default as long as the bush's bore.
+        Length of the film about the bush's mid-plane [m]; by default as long as the bush's bore.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
 
 
 def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
-    """Everything that determines the modes."""
+    """Data that determine the modes, for their digest."""
     material, quadrature = bush.material, bush.quadrature
     assert quadrature is not None
     described = (films.FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, length)
