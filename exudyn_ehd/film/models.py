@@ -287,10 +287,10 @@ def check_film(
 def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> list[str]:
     """What of a bearing does not know the closure's rupture line inside the cells of the grid."""
     clips, oil_counts = closure.clips, closure.conserves_mass
-    rigid = clips or oil_counts
+    rigid = clips or oil_counts or isinstance(film, ShortBearing)
     kinds: tuple[type, ...] = (FiniteLength, LongBearing)
     if not oil_counts:
-        kinds += (ShortBearing if clips else ImpedanceMap,)
+        kinds += (ShortBearing,) if clips else (ShortBearing, ImpedanceMap)
     others = {
         f"film={type(film).__name__}(...)": not isinstance(film, kinds),
         "bush=ElasticLiner(...)": rigid and isinstance(bush, ElasticLiner),
@@ -306,11 +306,9 @@ def check_line(film: Film, closure: Closure, bush: object, oil: Lubricant) -> No
     if not others:
         return
     name = type(closure).__name__
-    swift_short = isinstance(film, ShortBearing) and not closure.clips and not closure.conserves_mass
-    same = "; with Gumbel(line_in_cells=True) the film is the same while the journal is aligned" if swift_short else ""
     raise InputError(
         f"{name}.line_in_cells=True does not go with {others[0]} yet; use {name}(), with its line on the grid, or "
-        f"leave the other out{same}."
+        f"leave the other out."
     )
 
 

@@ -28,6 +28,7 @@ def is_plain(parts: FilmParts, effects: Effects) -> bool:
         and type(s) is FilmSolver
         and s.complementary
         and not s.closure.conserves_mass
+        and s.system.column_line is None
         and parts.supply is None
     )
 

@@ -201,6 +201,13 @@ class SwiftStieber(SymmetricClosure):
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
         work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
+        if system.column_line is not None and system.continued is not None:
+            y = system
+            np.copyto(y.linear_pressure, y.pressure)
+            sets = y.fixed, work.active, y.linked
+            y.column_line.extend(
+                (y.kz, y.b), sets, y.cavity_pressure, y.linear_pressure, work, y.continued, y.pressure
+            )
         return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
 
 

@@ -12,7 +12,6 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
 from exudyn_ehd.film.cavitation.line_steps import lacks
-from exudyn_ehd.film.cavitation.system import FilmSystem
 
 
 @njit(cache=True, nogil=True)
@@ -67,7 +66,7 @@ def _reach(linear, fixed, pc, i, j, other):
 
 
 @njit(cache=True, inline="always")
-def _beside(i, linked):
+def beside(i, linked):
     """Columns on either side, -1 where a ring is open."""
     n = linked.size
     prv, nxt = (i - 1 if i > 0 else n - 1), (i + 1 if i + 1 < n else 0)
@@ -82,12 +81,18 @@ def clip_in_cells(linear, fixed, linked, pc, P_out, active_out):
     the cell, ``s = p / (p - p_other)``: its integral there is ``p s / 2`` instead of p / 2. ``linked`` (n,): whether
     columns have a link to the next one.
     """
-    n, m = linear.shape
     clip_pressure(linear, fixed, pc, P_out, active_out)
+    mean_in_cells(linear, fixed, linked, pc, active_out, P_out)
+
+
+@njit(cache=True)
+def mean_in_cells(linear, fixed, linked, pc, active, P_out):
+    """Write the mean of `clip_in_cells` at the ``active`` vertices; ``linear`` may be any film continued beyond them."""
+    n, m = linear.shape
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        prv, nxt = beside(i, linked)
         for j in range(m):
-            if active_out[i, j]:
+            if active[i, j]:
                 reach = _reach(linear, fixed, pc, i, j, prv) + _reach(linear, fixed, pc, i, j, nxt)
                 P_out[i, j] = pc + 0.5 * reach * (linear[i, j] - pc)
 
@@ -101,7 +106,7 @@ def _slopes_of_clip(linear, fixed, linked, pc, active, slopes_out):
     n, m = linear.shape
     slopes_out[:] = 0.0
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        prv, nxt = beside(i, linked)
         for j in range(m):
             if not active[i, j]:
                 continue
@@ -121,7 +126,7 @@ def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
     slopes = np.empty((3, n, m))
     _slopes_of_clip(linear, fixed, linked, pc, active, slopes)
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        prv, nxt = beside(i, linked)
         for j in range(m):
             if not active[i, j]:
                 continue
@@ -135,10 +140,12 @@ def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
                 rows[k, r] *= slopes[0, i, j]
 
 
-def pressures_by_linear(system: FilmSystem, active: np.ndarray) -> csr_matrix:
+def pressures_by_linear(
+    linear: np.ndarray, fixed: np.ndarray, linked: np.ndarray, pc: float, active: np.ndarray
+) -> csr_matrix:
     """Derivatives (n m, n m) of P as `clip_in_cells` leaves it to the linear pressure."""
     slopes, at = np.empty((3, *active.shape)), np.arange(active.size).reshape(active.shape)
-    _slopes_of_clip(system.linear_pressure, system.fixed, system.linked, system.cavity_pressure, active, slopes)
+    _slopes_of_clip(linear, fixed, linked, pc, active, slopes)
     columns = np.stack((at, np.roll(at, 1, axis=0), np.roll(at, -1, axis=0)))
     known = slopes != 0.0
     return csr_matrix(

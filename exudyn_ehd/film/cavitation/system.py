@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.column_line import ColumnLine
 from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, straight
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.grid import FilmGrid
@@ -28,8 +29,13 @@ class FilmSystem:
     pressure : (n, m) array
         In: prescribed values at fixed vertices. Out: the film's pressure.
     linear_pressure : (n, m) array
-        Pressure before clipping, on which the adjoint is received; the same array as ``pressure`` unless the closure
-        clips.
+        Pressure that drives the flows, on which the adjoint is received; the same array as ``pressure`` unless other
+        pressures count in loads: clipped ones, or those up to a line inside the cells.
+    continued : (n, m) array or None
+        ``linear_pressure``, beyond a rupture line with the negative pressures that place it inside the cells of
+        `exudyn_ehd.film.cavitation.linear_film.mean_in_cells`; None where no line lies there.
+    column_line : ColumnLine or None
+        What continues it in a film of Swift and Stieber without pressure flow in theta.
     fx, fz, H, H_t, area : (n, m) arrays
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
     fill, mass_old : (n, m) arrays
@@ -73,10 +79,17 @@ class FilmSystem:
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
         self.line: RuptureLine | None = None
+        self.column_line: ColumnLine | None = None
+        self.continued: np.ndarray | None = None
         self.rupture = RuptureLine(shape)
         self.oil_line: OilLine | None = None
         self.straight = straight(shape) if fills else None
         self.linked = grid.link_x != 0.0
+
+    def know_columns(self, grid: FilmGrid) -> None:
+        """Place the rupture line between the columns of a film without pressure flow in theta."""
+        self.column_line = ColumnLine(grid.z)
+        self.linear_pressure, self.continued = self.pressure.copy(), self.pressure.copy()
 
     def see_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
         """Take over the gap's rate (n, m) and the scaled speeds of a film that conserves mass."""

@@ -74,7 +74,11 @@ class FilmSolver:
         self.oil_line: OilLine | None = None
         if closure.line_in_cells and closure.conserves_mass:
             self.oil_line = self.system.oil_line = OilLine(shape)
-        elif closure.line_in_cells and not closure.clips:
+        elif closure.line_in_cells and closure.clips:
+            self.system.continued = self.system.linear_pressure
+        elif closure.line_in_cells and not circumferential_pressure_flow:
+            self.system.know_columns(grid)
+        elif closure.line_in_cells:
             self.line = self.system.line = self.system.rupture
         self.work, self.flux_effects = Workspace(*shape), flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
@@ -98,6 +102,11 @@ class FilmSolver:
     def pressure(self) -> np.ndarray:
         """Scaled pressure of the last solution (n, m)."""
         return self.system.pressure
+
+    @property
+    def flow_pressure(self) -> np.ndarray:
+        """Scaled pressure of the last solution that drives flows inside the film (n, m)."""
+        return self.system.pressure if self.closure.clips else self.system.linear_pressure
 
     @property
     def fill(self) -> np.ndarray:
@@ -286,15 +295,25 @@ class FilmSolver:
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` with the stored factor for rhs (k, count), in place."""
+        self._couple(rhs.T, True)
         self.closure.adjoint(self._factored, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""
         self.closure.direct(self._factored, rhs)
+        self._couple(rhs[:, None], False)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
+        if self.system.column_line is not None:
+            for tile in rhs:
+                self._couple(tile, True)
         self.closure.adjoint_columns(self._factored, rhs)
+
+    def _couple(self, x: np.ndarray, transposed: bool) -> None:
+        """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
+        if self.system.column_line is not None:
+            self.system.column_line.couple(self.work, self.system.kz, x, transposed)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
@@ -320,6 +339,9 @@ class FilmSolver:
         if fills is not None and self.oil_line is not None:
             w, y = self.work, self.system
             return self.oil_line.balance_gradients(fills, y.coefficients, y.inverse_step, w.order[: w.count])
+        s = self.system
+        if s.column_line is not None and s.continued is not None:
+            return s.column_line.gradients(self.work, s.kz, s.continued - s.cavity_pressure, self.H, self.flux)
         if self.line is None:
             return None
         return self.line.gradients(

@@ -26,6 +26,7 @@ def is_plain(film: SolvedFilm) -> bool:
     return (
         type(s) is FilmSolver
         and not (s.closure.clips or s.closure.conserves_mass)
+        and s.system.column_line is None
         and s.flux is None
         and oil.P_q is None
         and oil.ratio is None
