@@ -134,6 +134,12 @@ class ShortBearing:
     Load too high by 19 % already at L/D = 0.25 and eccentricity ratio 0.8; meant for L/D below 0.25 and moderate
     eccentricity, and for comparison with closed forms. Tilt, squeeze and end pressures are included.
 
+    On the default grid, of an aligned journal in any direction (Swift-Stieber), stiffness and damping are within 0.25 %
+    of the closed form at eccentricity ratios 0.1 to 0.8 and within 0.45 % up to 0.9, where 160 columns have 0.3 %; the
+    load is within 0.2 and 0.4 %. Tilts up to 0.3 of what closes the gap leave 1.5 %. On vertices
+    (`SwiftStieber(line_in_cells=False)`) stiffness is up to 3 % off, damping 8 %, tilted journals 5 %. Where the line
+    crosses many columns, as with larger tilts and with end pressures above the cavity's, errors approach those.
+
     Parameters
     ----------
     n_theta, n_z, stretch

@@ -162,8 +162,8 @@ class SwiftStieber(SymmetricClosure):
     in any direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On the vertices of the
     grid they are up to 13 % off, in two thirds of the time. Loads differ by 0.1 %.
 
-    ``line_in_cells=None`` is inside the cells, but for `ShortBearing`, whose film has no line in theta (see `Gumbel`).
-    On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
+    ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear law. In a `ShortBearing` the line
+    lies between the columns (`exudyn_ehd.film.cavitation.column_line`); for its errors see there. On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
     (`exudyn_ehd.film.solvers.liner.line`), in about twice the time (liner) and 1.7 times (density law) of the line on
     the vertices; where a soft liner is deflected by the pressure of a single cell errors are those of the grid.
 
@@ -175,7 +175,7 @@ class SwiftStieber(SymmetricClosure):
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
     line_in_cells : bool or None
         True: the rupture line lies inside the cells of the grid (`exudyn_ehd.film.cavitation.rupture_line`). False: on
-        its vertices. None: inside the cells where the film knows it, see above; `JournalBearing.closure` tells which.
+        its vertices. None: inside the cells, with the exception above; `JournalBearing.closure` tells which.
 
     Examples
     --------
