@@ -16,10 +16,10 @@ PLAIN = {
     "partly sheared": {"cavitation": ehd.SwiftStieber(cavity_shear=0.3, cavity_pressure=-5e4)},
     "ends": {"end_pressures": (1e5, 3e4)},
     "no squeeze": {"squeeze": False},
-    "short": {"film": ehd.ShortBearing(), "cavitation": ehd.SwiftStieber(line_in_cells=False)},
+    "short": {"film": ehd.ShortBearing()},
+    "short, on vertices": {"film": ehd.ShortBearing(), "cavitation": ehd.SwiftStieber(line_in_cells=False)},
 }
 OTHERS = {
-    "short, line in its cells": {"film": ehd.ShortBearing()},
     "no cavity": {"cavitation": ehd.FullSommerfeld()},
     "Gumbel": {"cavitation": ehd.Gumbel()},
     "mass": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},

@@ -21,7 +21,7 @@ import numpy as np
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.linear_film import clip_in_cells, clip_pressure, solve_linear
+from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
@@ -144,10 +144,9 @@ class Gumbel(SymmetricClosure):
         """Solve on all free vertices, then clip into ``system.pressure``; ``work.active`` marks the unbroken film."""
         outcome = _solve_free(system, work)
         linear, known, pc = system.linear_pressure, system.fixed, system.cavity_pressure
+        clip_pressure(linear, known, pc, system.pressure, work.active)
         if self.line_in_cells:
-            clip_in_cells(linear, known, system.linked, pc, system.pressure, work.active)
-        else:
-            clip_pressure(linear, known, pc, system.pressure, work.active)
+            mean_in_cells(linear, known, system.linked, pc, work.active, system.pressure)
         return outcome
 
 
@@ -162,8 +161,9 @@ class SwiftStieber(SymmetricClosure):
     in any direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On the vertices of the
     grid they are up to 13 % off, in two thirds of the time. Loads differ by 0.1 %.
 
-    ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear law. In a `ShortBearing` the line
-    lies between the columns (`exudyn_ehd.film.cavitation.column_line`); for its errors see there. On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
+    ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear law. The line of a `ShortBearing`
+    lies between its columns; see there for its errors.
+    On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
     (`exudyn_ehd.film.solvers.liner.line`), in about twice the time (liner) and 1.7 times (density law) of the line on
     the vertices; where a soft liner is deflected by the pressure of a single cell errors are those of the grid.
 
@@ -201,13 +201,10 @@ class SwiftStieber(SymmetricClosure):
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
         work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
-        if system.column_line is not None and system.continued is not None:
-            y = system
-            np.copyto(y.linear_pressure, y.pressure)
-            sets = y.fixed, work.active, y.linked
-            y.column_line.extend(
-                (y.kz, y.b), sets, y.cavity_pressure, y.linear_pressure, work, y.continued, y.pressure
-            )
+        if system.column_line is not None:
+            y, sets = system, (system.fixed, work.active)
+            size, pc = work.count, y.cavity_pressure
+            work.count = extend_film(y.column_line, y.b, sets, pc, work.factor, size, y.pressure)
         return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
 
 

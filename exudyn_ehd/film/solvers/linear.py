@@ -74,10 +74,8 @@ class FilmSolver:
         self.oil_line: OilLine | None = None
         if closure.line_in_cells and closure.conserves_mass:
             self.oil_line = self.system.oil_line = OilLine(shape)
-        elif closure.line_in_cells and closure.clips:
-            self.system.continued = self.system.linear_pressure
-        elif closure.line_in_cells and not circumferential_pressure_flow:
-            self.system.know_columns(grid)
+        elif closure.line_in_cells and (closure.clips or not circumferential_pressure_flow):
+            self.system.count_in_cells(grid, closure.clips)
         elif closure.line_in_cells:
             self.line = self.system.line = self.system.rupture
         self.work, self.flux_effects = Workspace(*shape), flux_effects
@@ -102,11 +100,6 @@ class FilmSolver:
     def pressure(self) -> np.ndarray:
         """Scaled pressure of the last solution (n, m)."""
         return self.system.pressure
-
-    @property
-    def flow_pressure(self) -> np.ndarray:
-        """Scaled pressure of the last solution that drives flows inside the film (n, m)."""
-        return self.system.pressure if self.closure.clips else self.system.linear_pressure
 
     @property
     def fill(self) -> np.ndarray:
@@ -287,10 +280,9 @@ class FilmSolver:
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""
-        w = self.work
         self.solve_transposed(rhs)
         fields = np.empty((rhs.shape[0], *self.grid.shape))
-        scatter(rhs, w.order, w.count, fields)
+        scatter(rhs, self.work.order, self.work.count, fields)
         return fields
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
@@ -305,15 +297,14 @@ class FilmSolver:
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
-        if self.system.column_line is not None:
-            for tile in rhs:
-                self._couple(tile, True)
+        for tile in rhs:
+            self._couple(tile, True)
         self.closure.adjoint_columns(self._factored, rhs)
 
     def _couple(self, x: np.ndarray, transposed: bool) -> None:
         """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
         if self.system.column_line is not None:
-            self.system.column_line.couple(self.work, self.system.kz, x, transposed)
+            self.system.column_line.couple(self.work, x, transposed)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
@@ -340,8 +331,8 @@ class FilmSolver:
             w, y = self.work, self.system
             return self.oil_line.balance_gradients(fills, y.coefficients, y.inverse_step, w.order[: w.count])
         s = self.system
-        if s.column_line is not None and s.continued is not None:
-            return s.column_line.gradients(self.work, s.kz, s.continued - s.cavity_pressure, self.H, self.flux)
+        if s.column_line is not None:
+            return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
         if self.line is None:
             return None
         return self.line.gradients(
@@ -372,21 +363,8 @@ class FilmSolver:
         if self.closure.conserves_mass:
             fill, couette = self.carried, (s.fx, s.fz)
         slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
-        link_derivatives(
-            s.linear_pressure,
-            self.H,
-            self.HF,
-            slopes,
-            by_speed,
-            fill,
-            rho,
-            couette,
-            self.vx,
-            self.vz,
-            self.flow_x,
-            self.grid.mesh,
-            self.link_fields,
-        )
+        speeds, out = (self.vx, self.vz, self.flow_x, self.grid.mesh), self.link_fields
+        link_derivatives(s.linear_pressure, self.H, self.HF, slopes, by_speed, fill, rho, couette, *speeds, out)
         if self.grid.cuts is not None:
             flow, P = None if f is None else f.flow, s.linear_pressure
             add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)

@@ -61,7 +61,9 @@ def _errors(made, expected):
 def test_coefficients_against_the_closed_form(make_bearing, count):
     """Any direction, default grid: of second order, where a line on the vertices is of first order."""
     rng = np.random.default_rng(3)
-    cells, vertices = (build_model(make_bearing(0.25, film=ehd.ShortBearing(), cavitation=k)) for k in (ehd.SwiftStieber(), VERTICES))
+    cells, vertices = (
+        build_model(make_bearing(0.25, film=ehd.ShortBearing(), cavitation=k)) for k in (ehd.SwiftStieber(), VERTICES)
+    )
     found = []
     for eccentricity in rng.uniform(0.1, 0.9, count):
         motion, angle, expected = _motion(eccentricity), rng.uniform(0.0, 2.0 * np.pi), _closed_form(eccentricity)

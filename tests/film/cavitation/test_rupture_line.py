@@ -221,7 +221,9 @@ def test_heat_is_the_power_of_the_motion():
 
 def test_what_does_not_know_the_line_is_refused(make_bearing):
     with pytest.raises(ehd.InputError, match="line_in_cells=True does not go with"):
-        make_bearing(1.0, cavitation=LINE, film=ehd.ShortBearing(), lubricant=ehd.Lubricant(viscosity=0.02, shear_law=CARREAU))
+        make_bearing(
+            1.0, cavitation=LINE, film=ehd.ShortBearing(), lubricant=ehd.Lubricant(viscosity=0.02, shear_law=CARREAU)
+        )
     make_bearing(1.0, film=ehd.ShortBearing(), lubricant=ehd.Lubricant(viscosity=0.02, shear_law=CARREAU))
 
 

@@ -18,11 +18,11 @@ PLAIN = {
     "ends": {"end_pressures": (1e5, 3e4)},
     "groove": {"supply": (GROOVE,)},
     "no squeeze": {"squeeze": False},
-    "short": {"film": ehd.ShortBearing(), "cavitation": ehd.SwiftStieber(line_in_cells=False)},
+    "short": {"film": ehd.ShortBearing()},
+    "short, on vertices": {"film": ehd.ShortBearing(), "cavitation": ehd.SwiftStieber(line_in_cells=False)},
     "long": {"film": ehd.LongBearing(), "supply": (GROOVE,)},
 }
 OTHERS = {
-    "short, line in its cells": {"film": ehd.ShortBearing()},
     "Gumbel": {"cavitation": ehd.Gumbel()},
     "mass": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
     "oil": {"lubricant": ehd.Lubricant(viscosity=0.02, pressure_law=ehd.RoelandsPressure(coefficient=2e-8))},
