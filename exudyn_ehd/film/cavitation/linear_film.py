@@ -79,16 +79,6 @@ def clip_pressure(linear, fixed, pc, P_out, active_out):
 
 
 @njit(cache=True, inline="always")
-def _reach(linear, fixed, pc, i, j, other):
-    """Share of the cell from vertex (i, j) to column ``other`` up to where the linear pressure is the cavity's; 1 if it
-    stays above, or is prescribed there."""
-    if other < 0 or fixed[other, j] or linear[other, j] >= pc:
-        return 1.0
-    p = linear[i, j] - pc
-    return p / (p + (pc - linear[other, j]))
-
-
-@njit(cache=True, inline="always")
 def _beside(i, linked):
     """Columns on either side, -1 where a ring is open."""
     n = linked.size
@@ -106,11 +96,15 @@ def mean_in_cells(linear, fixed, linked, pc, active, P_out):
     """
     n, m = linear.shape
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        beside = _beside(i, linked)
         for j in range(m):
-            if active[i, j]:
-                reach = _reach(linear, fixed, pc, i, j, prv) + _reach(linear, fixed, pc, i, j, nxt)
-                P_out[i, j] = pc + 0.5 * reach * (linear[i, j] - pc)
+            u = pc - linear[i, j]
+            if u <= 0.0 or fixed[i, j]:
+                continue
+            for other in beside:
+                if other >= 0 and active[other, j]:
+                    p = linear[other, j] - pc
+                    P_out[other, j] -= 0.5 * p * u / (p + u)
 
 
 @njit(cache=True)
@@ -120,16 +114,19 @@ def _slopes_of_clip(linear, fixed, linked, pc, active, slopes_out):
     Of P as `mean_in_cells` leaves it, ``d(p s) = s (2 - s) dp + s^2 dp_other``; 0 at clipped vertices.
     """
     n, m = linear.shape
-    slopes_out[:] = 0.0
+    slopes_out[0] = active
+    slopes_out[1:] = 0.0
     for i in range(n):
         prv, nxt = _beside(i, linked)
         for j in range(m):
-            if not active[i, j]:
+            u = pc - linear[i, j]
+            if u <= 0.0 or fixed[i, j]:
                 continue
-            for side, other in ((1, prv), (2, nxt)):
-                s = _reach(linear, fixed, pc, i, j, other)
-                slopes_out[0, i, j] += 0.5 * s * (2.0 - s)
-                slopes_out[side, i, j] = 0.5 * s * s if s < 1.0 else 0.0
+            for side, other in ((2, prv), (1, nxt)):
+                if other >= 0 and active[other, j]:
+                    s = (linear[other, j] - pc) / (linear[other, j] - pc + u)
+                    slopes_out[0, other, j] -= 0.5 * (1.0 - s) ** 2
+                    slopes_out[side, other, j] = 0.5 * s * s
 
 
 @njit(cache=True)
@@ -144,7 +141,8 @@ def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
     for i in range(n):
         prv, nxt = _beside(i, linked)
         for j in range(m):
-            if not active[i, j]:
+            whole = slopes[0, i, j] == 1.0 and slopes[1, i, j] == 0.0 and slopes[2, i, j] == 0.0
+            if whole or not active[i, j]:
                 continue
             r = number[i, j]
             for side, other in ((1, prv), (2, nxt)):
