@@ -135,6 +135,12 @@ class ShortBearing:
     Load too high by 19 % already at L/D = 0.25 and eccentricity ratio 0.8; meant for L/D below 0.25 and moderate
     eccentricity, and for comparison with closed forms. Tilt, squeeze and end pressures are included.
 
+    On the default grid, of an aligned journal in any direction (Swift-Stieber), stiffness and damping are within 0.25 %
+    of the closed form at eccentricity ratios 0.1 to 0.8 and within 0.45 % up to 0.9, where 160 columns have 0.3 %; the
+    load is within 0.2 and 0.4 %. Tilts up to 0.3 of what closes the gap leave 1.5 %. On vertices
+    (`SwiftStieber(line_in_cells=False)`) stiffness is up to 3 % off, damping 8 %, tilted journals 5 %. Where the line
+    crosses many columns, as with larger tilts and with end pressures above the cavity's, errors approach those.
+
     Parameters
     ----------
     n_theta, n_z, stretch
@@ -292,13 +298,14 @@ def check_film(
 def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> list[str]:
     """What of a bearing does not know the closure's rupture line inside the cells of the grid."""
     clips, oil_counts = closure.clips, closure.conserves_mass
-    rigid = clips or oil_counts
+    rigid = clips or oil_counts or isinstance(film, ShortBearing)
     kinds: tuple[type, ...] = (FiniteLength, LongBearing)
     if not oil_counts:
-        kinds += (ShortBearing if clips else ImpedanceMap,)
+        kinds += (ShortBearing,) if clips else (ShortBearing, ImpedanceMap)
     others = {
         f"film={type(film).__name__}(...)": not isinstance(film, kinds),
         "bush=ElasticLiner(...)": rigid and isinstance(bush, ElasticLiner),
+        "Lubricant.density_law": isinstance(film, ShortBearing) and not clips and oil.density_law is not None,
         "Lubricant.shear_law": rigid and oil.shear_law is not None,
     }
     return [name for name, there in others.items() if there]
@@ -310,11 +317,9 @@ def check_line(film: Film, closure: Closure, bush: object, oil: Lubricant) -> No
     if not others:
         return
     name = type(closure).__name__
-    swift_short = isinstance(film, ShortBearing) and not closure.clips and not closure.conserves_mass
-    same = "; with Gumbel(line_in_cells=True) the film is the same while the journal is aligned" if swift_short else ""
     raise InputError(
         f"{name}.line_in_cells=True does not go with {others[0]} yet; use {name}(), with its line on the grid, or "
-        f"leave the other out{same}."
+        f"leave the other out."
     )
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.cavitation.linear_film import extend_film
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
@@ -57,8 +58,8 @@ def solve_plain(
         y.fields,
         (g.fixed, work.active),
         y.rupture.block,
-        work.factor,
-        work.unknowns,
+        y.column_line,
+        (work.factor, work.unknowns),
         out,
     )
     if not found and steps == 0:
@@ -93,11 +94,12 @@ def solve_plain(
 
 
 @njit(cache=True, nogil=True)
-def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, factor, x, out):
+def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, columns, work, out):
     """Returns (found, steps, count, width, smallest gap, integrals of the Couette shear, s_theta).
 
     ``kinds``: whether there is a squeeze, whether pressures are those of the film before, and whether the line lies
-    inside the cells; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
+    inside the cells; ``columns``: `ColumnLine` or None; ``out`` (18,): wrench, integrals of the pressure, scaled pose
+    and rates.
     """
     force, shear, radius, half_length, flow_x, cavity_shear = sizes
     squeeze, is_known, in_cells = kinds
@@ -105,7 +107,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
     kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[4]
     H, HF, H_t, P = fields[5], fields[6], fields[7], fields[8]
-    fixed, active = sets
+    (fixed, active), (factor, x) = sets, work
     for q in range(8):
         out[10 + q] = motion[q] * scale[q]
     pose, rate, integrals = out[10:14], out[14:], out[6:10]
@@ -118,6 +120,8 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     set_links(H, HF, H_t, squeeze, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
     forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
     ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, is_known, line, active, factor, x, P)
+    if columns is not None:
+        count = extend_film(columns, b, sets, pc, factor, count, P)
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     ends = end_forces(H, known)

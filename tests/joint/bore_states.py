@@ -31,6 +31,7 @@ OPTIONS = {
     "full": {"cavitation": ehd.FullSommerfeld()},
     "elrod": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
     "elrod in cells": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
+    "short": {"film": ehd.ShortBearing(n_theta=32, n_z=6)},
     "ends": {"end_pressures": (3e5, 1e5)},
     "no squeeze": {"squeeze": False},
     "piezoviscous": {"lubricant": ehd.Lubricant(viscosity=9e-3, pressure_law=ehd.RoelandsPressure(coefficient=1.8e-8))},

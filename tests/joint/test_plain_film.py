@@ -17,6 +17,7 @@ PLAIN = {
     "ends": {"end_pressures": (1e5, 3e4)},
     "no squeeze": {"squeeze": False},
     "short": {"film": ehd.ShortBearing()},
+    "short, on vertices": {"film": ehd.ShortBearing(), "cavitation": ehd.SwiftStieber(line_in_cells=False)},
 }
 OTHERS = {
     "no cavity": {"cavitation": ehd.FullSommerfeld()},

@@ -4,7 +4,7 @@ Module map
 ----------
 closures          what a closure offers; FullSommerfeld, Gumbel, SwiftStieber
 system            one film problem as arrays
-linear_film       the linear film on given vertices; Gümbel's condition
+linear_film       the linear film on given vertices; Gümbel's condition; the rupture line of short bearings
 swift_stieber     Newton's method for films of Swift and Stieber
 line_steps        what one of its steps does
 rupture_line      where the film's edge lies inside a cell, and what it adds to balances and derivatives

@@ -19,7 +19,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.linear_film import clip_in_cells, clip_pressure, solve_linear
+from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
 from exudyn_ehd.film.cavitation.solve import recover, solve_system
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
 from exudyn_ehd.film.cavitation.system import FilmSystem
@@ -120,10 +120,9 @@ class Gumbel:
         """Solve on all free vertices, then clip into ``system.pressure``; ``work.active`` marks the unbroken film."""
         outcome = _solve_free(system, work)
         linear, known, pc = system.linear_pressure, system.fixed, system.cavity_pressure
+        clip_pressure(linear, known, pc, system.pressure, work.active)
         if self.line_in_cells:
-            clip_in_cells(linear, known, system.linked, pc, system.pressure, work.active)
-        else:
-            clip_pressure(linear, known, pc, system.pressure, work.active)
+            mean_in_cells(linear, known, system.linked, pc, work.active, system.pressure)
         return outcome
 
 
@@ -138,7 +137,8 @@ class SwiftStieber:
     in any direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On the vertices of the
     grid they are up to 13 % off, in two thirds of the time. Loads differ by 0.1 %.
 
-    ``line_in_cells=None`` is inside the cells, but for `ShortBearing`, whose film has no line in theta (see `Gumbel`).
+    ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear law. The line of a `ShortBearing`
+    lies between its columns; see there for its errors.
     On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
     (`exudyn_ehd.film.solvers.liner.line`), in about twice the time (liner) and 1.7 times (density law) of the line on
     the vertices; where a soft liner is deflected by the pressure of a single cell errors are those of the grid.
@@ -151,7 +151,7 @@ class SwiftStieber:
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
     line_in_cells : bool or None
         True: the rupture line lies inside the cells of the grid (`exudyn_ehd.film.cavitation.rupture_line`). False: on
-        its vertices. None: inside the cells where the film knows it, see above; `JournalBearing.closure` tells which.
+        its vertices. None: inside the cells, with the exception above; `JournalBearing.closure` tells which.
 
     Examples
     --------
@@ -179,6 +179,10 @@ class SwiftStieber:
         if system.density is not None:
             return _solve_dense(system, work)
         work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
+        if system.column_line is not None:
+            y, sets = system, (system.fixed, work.active)
+            size, pc = work.count, y.cavity_pressure
+            work.count = extend_film(y.column_line, y.b, sets, pc, work.factor, size, y.pressure)
         return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
 
 

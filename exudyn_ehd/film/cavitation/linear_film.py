@@ -1,7 +1,27 @@
-"""Linear film on given vertices, and Gümbel's condition, which cuts it off.
+"""Linear film on given vertices, and pressures that count in loads up to a rupture line inside the cells.
+
+Gümbel's condition cuts the linear film of all vertices off. A film of Swift and Stieber without pressure flow in theta
+(short bearing) ruptures between its columns: every column is a film of its own in z, whose pressure in theta follows
+its source, linearly through the rupture line. So its pressures p go on into a ruptured vertex of the next column as the
+negative one that the lack of oil there would make,
+
+    u = -r / D,    D = k dz_below dz_above / (z_below z_above),
+
+with the vertex's multiplier ``r = A p - b >= 0``, the sum k of its two conductances in z, the lengths of these links,
+and its distances to both ends. D is the stiffness of a column with the same lack of oil per area everywhere, whose
+pressure is a parabola over z. `mean_in_cells` counts pressures up to where p and u meet the cavity's, as it does with
+the linear film of Gümbel's condition, which is the same for an aligned journal. u is zero where a vertex joins the
+film, so that forces are continuous in the motion of a tilted journal too.
+
+For derivatives these u are unknowns behind the film's, with the balances ``D u + r = 0``. p and u are pressures above
+the cavity's.
 
 Symbols: P pressure, pc cavity pressure, scaled.
 """
+
+from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,9 +30,11 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
-from exudyn_ehd.film.banded.workspace import FIRST_ROW
+from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
 from exudyn_ehd.film.cavitation.line_steps import lacks
-from exudyn_ehd.film.cavitation.system import FilmSystem
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.reynolds.links import LinkFlux
 
 
 @njit(cache=True, nogil=True)
@@ -57,16 +79,6 @@ def clip_pressure(linear, fixed, pc, P_out, active_out):
 
 
 @njit(cache=True, inline="always")
-def _reach(linear, fixed, pc, i, j, other):
-    """Share of the cell from vertex (i, j) to column ``other`` up to where the linear pressure is the cavity's; 1 if it
-    stays above, or is prescribed there."""
-    if other < 0 or fixed[other, j] or linear[other, j] >= pc:
-        return 1.0
-    p = linear[i, j] - pc
-    return p / (p + (pc - linear[other, j]))
-
-
-@njit(cache=True, inline="always")
 def _beside(i, linked):
     """Columns on either side, -1 where a ring is open."""
     n = linked.size
@@ -75,45 +87,51 @@ def _beside(i, linked):
 
 
 @njit(cache=True)
-def clip_in_cells(linear, fixed, linked, pc, P_out, active_out):
-    """Gümbel's condition inside the cells: P of a vertex is the mean of the pressure that is left of the linear one.
+def mean_in_cells(linear, fixed, linked, pc, active, P_out):
+    """P of an ``active`` vertex becomes the mean of what is left of the linear pressure inside the cells.
 
     Between a vertex at the pressure p above the cavity's and one below it, the film ends in theta after a share s of
     the cell, ``s = p / (p - p_other)``: its integral there is ``p s / 2`` instead of p / 2. ``linked`` (n,): whether
-    columns have a link to the next one.
+    columns have a link to the next one; ``linear``: of Gümbel's condition, or continued beyond the film.
     """
     n, m = linear.shape
-    clip_pressure(linear, fixed, pc, P_out, active_out)
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        beside = _beside(i, linked)
         for j in range(m):
-            if active_out[i, j]:
-                reach = _reach(linear, fixed, pc, i, j, prv) + _reach(linear, fixed, pc, i, j, nxt)
-                P_out[i, j] = pc + 0.5 * reach * (linear[i, j] - pc)
+            u = pc - linear[i, j]
+            if u <= 0.0 or fixed[i, j]:
+                continue
+            for other in beside:
+                if other >= 0 and active[other, j]:
+                    p = linear[other, j] - pc
+                    P_out[other, j] -= 0.5 * p * u / (p + u)
 
 
 @njit(cache=True)
 def _slopes_of_clip(linear, fixed, linked, pc, active, slopes_out):
     """Derivatives (3, n, m) of P to the linear pressure at the vertex itself, before it and behind it.
 
-    Of P as `clip_in_cells` leaves it, ``d(p s) = s (2 - s) dp + s^2 dp_other``; 0 at clipped vertices.
+    Of P as `mean_in_cells` leaves it, ``d(p s) = s (2 - s) dp + s^2 dp_other``; 0 at clipped vertices.
     """
     n, m = linear.shape
-    slopes_out[:] = 0.0
+    slopes_out[0] = active
+    slopes_out[1:] = 0.0
     for i in range(n):
         prv, nxt = _beside(i, linked)
         for j in range(m):
-            if not active[i, j]:
+            u = pc - linear[i, j]
+            if u <= 0.0 or fixed[i, j]:
                 continue
-            for side, other in ((1, prv), (2, nxt)):
-                s = _reach(linear, fixed, pc, i, j, other)
-                slopes_out[0, i, j] += 0.5 * s * (2.0 - s)
-                slopes_out[side, i, j] = 0.5 * s * s if s < 1.0 else 0.0
+            for side, other in ((2, prv), (1, nxt)):
+                if other >= 0 and active[other, j]:
+                    s = (linear[other, j] - pc) / (linear[other, j] - pc + u)
+                    slopes_out[0, other, j] -= 0.5 * (1.0 - s) ** 2
+                    slopes_out[side, other, j] = 0.5 * s * s
 
 
 @njit(cache=True)
 def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
-    """From weights (k, count) of P as `clip_in_cells` leaves it, none at clipped ones, to those of the linear pressure.
+    """From weights (k, count) of P as `mean_in_cells` leaves it, none at clipped ones, to those of the linear pressure.
 
     The transpose of `pressures_by_linear`.
     """
@@ -123,7 +141,8 @@ def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
     for i in range(n):
         prv, nxt = _beside(i, linked)
         for j in range(m):
-            if not active[i, j]:
+            whole = slopes[0, i, j] == 1.0 and slopes[1, i, j] == 0.0 and slopes[2, i, j] == 0.0
+            if whole or not active[i, j]:
                 continue
             r = number[i, j]
             for side, other in ((1, prv), (2, nxt)):
@@ -135,12 +154,124 @@ def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
                 rows[k, r] *= slopes[0, i, j]
 
 
-def pressures_by_linear(system: FilmSystem, active: np.ndarray) -> csr_matrix:
-    """Derivatives (n m, n m) of P as `clip_in_cells` leaves it to the linear pressure."""
+def pressures_by_linear(
+    linear: np.ndarray, fixed: np.ndarray, linked: np.ndarray, pc: float, active: np.ndarray
+) -> csr_matrix:
+    """Derivatives (n m, n m) of P as `mean_in_cells` leaves it to the linear pressure."""
     slopes, at = np.empty((3, *active.shape)), np.arange(active.size).reshape(active.shape)
-    _slopes_of_clip(system.linear_pressure, system.fixed, system.linked, system.cavity_pressure, active, slopes)
+    _slopes_of_clip(linear, fixed, linked, pc, active, slopes)
     columns = np.stack((at, np.roll(at, 1, axis=0), np.roll(at, -1, axis=0)))
     known = slopes != 0.0
     return csr_matrix(
         (slopes[known], (np.broadcast_to(at, slopes.shape)[known], columns[known])), shape=(at.size, at.size)
     )
+
+
+class ColumnLine(NamedTuple):
+    """Rupture line between the columns of one film.
+
+    Attributes
+    ----------
+    stiffness : (m,) array
+        D over k in every row.
+    linked : (n,) bool array
+        Columns with a link to the next one.
+    kz : (n, m) array
+        The system's.
+    solved, continued : (n, m) arrays
+        Pressures that solve the film; the same, continued into ruptured vertices beside it.
+    """
+
+    stiffness: np.ndarray
+    linked: np.ndarray
+    kz: np.ndarray
+    solved: np.ndarray
+    continued: np.ndarray
+
+    def couple(self, work: Workspace, x: np.ndarray, transposed: bool) -> None:
+        """Couple rows (count, k) of p and u: with ``-dr/dp`` over D, from p to u or ``transposed``."""
+        couple_columns(self, work.active, work.factor, work.count, x, transposed)
+
+    def gradients(self, work: Workspace, pc: float, H: np.ndarray, flux: LinkFlux | None) -> LineGradients:
+        """`LineGradients` of ``D u`` at fixed u, of the last solution."""
+        flow = None if flux is None else (flux.gz, flux.gz_h, flux.gz_v)
+        return LineGradients(*column_gradients(self, work.active, work.factor, work.count, pc, H, flow))
+
+
+def column_line(grid: FilmGrid, kz: np.ndarray) -> ColumnLine:
+    """`ColumnLine` of a film with the conductances kz (n, m) in z."""
+    z, links, stiffness = grid.z, np.diff(grid.z), np.zeros(grid.z.size)
+    stiffness[1:-1] = links[:-1] * links[1:] / ((z[1:-1] - z[0]) * (z[-1] - z[1:-1]))
+    return ColumnLine(stiffness, grid.link_x != 0.0, kz, np.zeros(grid.shape), np.zeros(grid.shape))
+
+
+@njit(cache=True)
+def extend_film(line, b, sets, pc, factor, count, P):
+    """Continue the pressures P (n, m) of a film of ``count`` unknowns; returns the number of all unknowns.
+
+    P becomes what counts in loads. Rows of the factor behind the film's hold D alone.
+
+    Parameters
+    ----------
+    line : `ColumnLine`
+    sets : fixed and active vertices
+    factor : `Workspace.factor`
+    """
+    (stiffness, linked, kz, solved, u), (fixed, active) = line, sets
+    order, _, number, band, inv_diag = factor
+    n, m = P.shape
+    solved[:] = u[:] = P
+    for i in range(n):
+        prv, nxt = _beside(i, linked)
+        for j in range(m):
+            if fixed[i, j] or active[i, j] or not ((prv >= 0 and active[prv, j]) or (nxt >= 0 and active[nxt, j])):
+                continue
+            piled_up = b[i, j] + kz[i, j] * (P[i, j + 1] - pc) + kz[i, j - 1] * (P[i, j - 1] - pc)
+            D = stiffness[j] * (kz[i, j] + kz[i, j - 1])
+            u[i, j] = pc + piled_up / D
+            order[count], number[i, j], inv_diag[count] = i * m + j, count, 1.0 / D
+            band[count] = 0.0
+            band[count, 0] = D
+            count += 1
+    mean_in_cells(u, fixed, linked, pc, active, P)
+    return count
+
+
+@njit(cache=True)
+def couple_columns(line, active, factor, count, x, transposed):
+    """Add ``-dr/dp`` over D times the film's rows of x (count, k) to the others; ``transposed``: the reverse."""
+    (order, _, number, _, inv_diag), free = factor, active.reshape(-1)
+    numbers, flow = number.reshape(-1), line.kz.reshape(-1)
+    for r in range(count):
+        c = order[r]
+        if free[c]:
+            continue
+        for near, k in ((c - 1, flow[c - 1]), (c + 1, flow[c])):
+            if free[near]:
+                a, by = (numbers[near], r) if transposed else (r, numbers[near])
+                for q in range(x.shape[1]):
+                    x[a, q] += k * inv_diag[r] * x[by, q]
+
+
+@njit(cache=True)
+def column_gradients(line, active, factor, count, pc, H, flow):
+    """`ColumnLine.gradients`; ``flow``: conductances of the links in z, their derivatives to gap and speed, or None."""
+    (stiffness, _, kz, _, u), order = line, factor[0]
+    m, found = H.shape[1], 0
+    rows, places, by = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64), np.zeros((8, count))
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        if active[i, j]:
+            continue
+        rows[found], places[found] = r, order[r]
+        for q, low in ((3, j), (4, j - 1)):
+            part = stiffness[j] * (u[i, j] - pc) * kz[i, low]
+            if flow is None:
+                by[q, found] = 3.0 * part / (H[i, low] + H[i, low + 1])
+            else:
+                by[q, found] = 0.5 * part * flow[1][i, low] / flow[0][i, low]
+                by[6, found] += part * flow[2][i, low] / flow[0][i, low]
+            by[2, found] += by[q, found]
+        found += 1
+    return rows[:found], places[:found], by[:, :found].copy()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.linear_film import ColumnLine, column_line
 from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, straight
 from exudyn_ehd.film.cavitation.rupture_line import Line, RuptureLine
 from exudyn_ehd.film.cavitation.states import CLIPPED, OIL
@@ -30,8 +31,15 @@ class FilmSystem:
     pressure : (n, m) array
         In: prescribed values at fixed vertices. Out: the film's pressure.
     linear_pressure : (n, m) array
-        Pressure before clipping, on which the adjoint is received; the same array as ``pressure`` unless the closure
-        clips.
+        Pressure that solves the linear film, on which the adjoint is received; the same array as ``pressure`` unless
+        other pressures count in loads: clipped ones, or those up to a line inside the cells.
+    flow_pressure : (n, m) array
+        Pressure that drives flows inside the film: ``pressure``, or where a line lies between columns the linear one.
+    continued : (n, m) array or None
+        ``linear_pressure``, beyond a rupture line with the negative pressures that place it inside the cells of
+        `exudyn_ehd.film.cavitation.linear_film.mean_in_cells`; None where no line lies there.
+    column_line : ColumnLine or None
+        What continues it in a film of Swift and Stieber without pressure flow in theta.
     fx, fz, H, H_t, area : (n, m) arrays
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
     fill, mass_old : (n, m) arrays
@@ -72,6 +80,7 @@ class FilmSystem:
         self.fixed = grid.fixed
         self.cavity_pressure = 0.0
         self.linear_pressure = np.zeros(shape) if kind == CLIPPED else self.pressure
+        self.flow_pressure = self.pressure
         self.area = grid.area
         self.inverse_step = 0.0
         self.closes, self.turns = False, 0.0
@@ -79,12 +88,23 @@ class FilmSystem:
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
         self.line: RuptureLine | None = None
+        self.column_line: ColumnLine | None = None
+        self.continued: np.ndarray | None = None
         self.rupture = RuptureLine(shape)
         self.oil_line: OilLine | None = None
         self.density: DensityField | None = None
         self.instant = False
         self.straight = straight(shape) if kind == OIL else None
         self.linked = grid.link_x != 0.0
+
+    def count_in_cells(self, grid: FilmGrid, clips: bool) -> None:
+        """Let pressures count in loads up to a line inside the cells: where the film is clipped, or between columns."""
+        if clips:
+            self.continued = self.linear_pressure
+            return
+        self.column_line = line = column_line(grid, self.kz)
+        self.linear_pressure, self.continued = line.solved, line.continued
+        self.flow_pressure = line.solved
 
     def see_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
         """Take over the gap's rate (n, m) and the scaled speeds of a film that conserves mass."""

@@ -17,7 +17,7 @@ def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.n
     that may lie in front of the next vertex: that vertex counts with its linear pressure, and as full.
     """
     if not clips:
-        return s.pressure, active
+        return s.linear_pressure, active
     near, pressed = np.zeros(active.shape, dtype=bool), s.fixed & (s.pressure > s.cavity_pressure)
     for axis, links in enumerate((s.kx > 0.0, s.kz > 0.0)):
         # nothing flows over the last links in z

@@ -79,7 +79,9 @@ class FilmSolver(FilmAnswers):
         self._fills: tuple[LineGradients, LineGradients] | None = None
         if closure.line_in_cells and closure.conserves_mass:
             self.oil_line = self.system.oil_line = OilLine(shape)
-        elif closure.line_in_cells and not closure.clips:
+        elif closure.line_in_cells and (closure.clips or not circumferential_pressure_flow):
+            self.system.count_in_cells(grid, closure.clips)
+        elif closure.line_in_cells:
             self.line = self.system.line = self.system.rupture
         self.work, self.flux_effects = Workspace(*shape), flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
@@ -288,6 +290,27 @@ class FilmSolver(FilmAnswers):
         elif self.line is not None:
             refine_factor(self.system, self.line, self.work)
 
+    def solve_transposed(self, rhs: np.ndarray) -> None:
+        """Solve ``A^T lam = rhs`` for every row of rhs (k, count), in place."""
+        self._couple(rhs.T, True)
+        super().solve_transposed(rhs)
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve ``A du = rhs`` for rhs (count,), in place."""
+        super().direct(rhs)
+        self._couple(rhs[:, None], False)
+
+    def adjoint_columns(self, rhs: np.ndarray) -> None:
+        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
+        for tile in rhs:
+            self._couple(tile, True)
+        super().adjoint_columns(rhs)
+
+    def _couple(self, x: np.ndarray, transposed: bool) -> None:
+        """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
+        if self.system.column_line is not None:
+            self.system.column_line.couple(self.work, x, transposed)
+
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
         by_rate, by_gap = self.storage_weights()
@@ -312,6 +335,9 @@ class FilmSolver(FilmAnswers):
         if fills is not None and self.oil_line is not None:
             w, y = self.work, self.system
             return self.oil_line.balance_gradients(fills, y.coefficients, self.rho, y.inverse_step, w.order[: w.count])
+        s = self.system
+        if s.column_line is not None:
+            return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
         if self.line is None:
             return None
         return self.line.gradients(
@@ -350,21 +376,9 @@ class FilmSolver(FilmAnswers):
         if self.closure.conserves_mass:
             fill, couette = self.carried, (s.fx, s.fz)
         slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
-        link_derivatives(
-            s.linear_pressure,
-            self.H,
-            self.HF,
-            slopes,
-            by_speed,
-            fill,
-            None if self.law is None else self.rho,
-            couette,
-            self.vx,
-            self.vz,
-            self.flow_x,
-            self.grid.mesh,
-            self.link_fields,
-        )
+        rho, speeds = None if self.law is None else self.rho, (self.vx, self.vz, self.flow_x, self.grid.mesh)
+        fields = s.linear_pressure, self.H, self.HF
+        link_derivatives(*fields, slopes, by_speed, fill, rho, couette, *speeds, self.link_fields)
         if self.grid.cuts is not None:
             flow, P = None if f is None else f.flow, s.linear_pressure
             add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)

@@ -271,8 +271,8 @@ class FaceFilm:
         unknown = w.order[: w.count]
         rows = fields.reshape(len(fields), -1)[:, unknown]
         rows *= w.active.reshape(-1)[unknown]
-        if self.closure.clips and self.closure.line_in_cells:
-            rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        if y.continued is not None:
+            rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
         return s.adjoint(rows)
 
     def _to_true_gap(self, sens: Sensitivities) -> None:

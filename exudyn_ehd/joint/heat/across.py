@@ -97,7 +97,7 @@ class PairBetween(Between):
     def _carry(self, field: FluidityField, old: np.ndarray) -> None:
         """Add the heat that flows carry; the limiter takes the start-of-step temperatures ``old`` (4, n, m)."""
         film, flows = self.film, self.flows
-        q, y = film.solver.pressure, film.solver.system
+        q, y = film.solver.system.flow_pressure, film.solver.system
         at, own = at_heights(self.surface), flow_shapes(field.vertices)
         held = self.store if self.step > 0.0 else np.full(q.shape, np.inf)
         limiter = start_heights(old), film.grid.link_z, held
@@ -222,7 +222,7 @@ class CubicTemperature(WalledTemperature):
         """Return the P_1 component of the heat at the vertices, W (n, m); contacts heat evenly over the height."""
         sliding, pressed, both = heat_tilts(self.fluidity.vertices)
         s, flow = film.solver, np.zeros(film.grid.shape)
-        film_heat(self.dropped(film), s.pressure, s.system.kx, s.system.kz, flow)
+        film_heat(self.dropped(film), s.system.flow_pressure, s.system.kx, s.system.kz, flow)
         crossed = crossed_tilt(film.oil.P, s.H, both, (s.vx * s.flow_x, s.vz), film.grid.mesh)
         power = film.parts.flow_scale * film.scales.pressure
         return power * (self.sheared(film) * sliding + flow * pressed + crossed)

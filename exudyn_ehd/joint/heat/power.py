@@ -132,7 +132,7 @@ class OilFlows:
         before = y.mass_old if stepped else fill * s.H - film.step * self.rate
         self.content = np.maximum(before + 0.5 * film.step * s.H_t, 0.0)
         self.x, self.z, balance = np.empty((3, *film.grid.shape))
-        film_flows(s.pressure, carried, y.kx, y.kz, fx, fz, self.x, self.z, balance)
+        film_flows(s.system.flow_pressure, carried, y.kx, y.kz, fx, fz, self.x, self.z, balance)
         if conserves:
             self._void_the_ends(film, stepped)
         balance += s.area * self.rate

@@ -190,9 +190,10 @@ def load_weights(film: SolvedFilm) -> np.ndarray:
 
 def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
     """Derivatives (n m, count) of the pressures, in front of the oil's law, to the unknowns."""
-    w = film.solver.work
-    if _follows_neighbours(film):
-        return pressures_by_linear(film.solver.system, w.active)[:, w.order[: w.count]]
+    w, y = film.solver.work, film.solver.system
+    if y.continued is not None:
+        by_linear = pressures_by_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active)
+        return by_linear[:, w.order[: w.count]]
     return at_unknowns(film, w.active.astype(float))
 
 
@@ -203,12 +204,6 @@ def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:
     return csc_matrix((field.reshape(-1)[places], places, np.arange(w.count + 1)), shape=(field.size, w.count))
 
 
-def _follows_neighbours(film: SolvedFilm) -> bool:
-    """Return whether the pressure of a vertex follows the linear ones of its neighbours too."""
-    closure = film.solver.closure
-    return closure.clips and bool(closure.line_in_cells)
-
-
 def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, int]:
     """Adjoint solutions as tiles: of integrals, if ``whole`` then of the k loads; and the number of integrals."""
     integrals = adjoint_rows(film)
@@ -217,7 +212,7 @@ def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, in
     if whole:
         places = film.solver.work.order[:unknowns]
         bore.fill_rows(places, load_weights(film), count, lam)
-        if _follows_neighbours(film):
+        if film.solver.system.continued is not None:
             rows = np.concatenate(lam[:, :unknowns], axis=1)
             rows[:, count:] = pressures_by_unknowns(film)[places].T @ rows[:, count:]
             lam[:, :unknowns] = rows.reshape(unknowns, -1, TILE).transpose(1, 0, 2)

@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.cavitation.linear_film import column_gradients, couple_columns, rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_weights
 from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
@@ -44,6 +45,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
     _plain_tangent(
         y.fields,
         None if line is None else line.block,
+        y.column_line,
         work.factor,
         (work.count, work.width),
         line is None or line.exact,
@@ -51,8 +53,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         (g.fixed, work.active),
         g.directions,
         g.mesh,
-        (s.vx, s.vz, s.flow_x, s.closure.cavity_shear),
-        s.squeeze,
+        (s.vx, s.vz, s.flow_x, s.closure.cavity_shear, s.squeeze, y.cavity_pressure),
         (w.pose, film.loads.integrals, p.pose_scale),
         (g.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, film.loads.couette),
         out,
@@ -63,22 +64,27 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
-def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, speeds, squeeze, pose, scales, out):
+def _plain_tangent(film, line, between, factor, size, exact, fields, sets, at, mesh, speeds, pose, scales, out):
     """Write the tangent.
 
-    ``film``: ``FilmSystem.fields``; ``exact``: whether the factor is that of the solution.
+    ``film``: ``FilmSystem.fields``; ``line``, ``between``: `RuptureLine.block` and `ColumnLine`, or None;
+    ``exact``: whether the factor is that of the solution.
     """
-    order, _, _, band, inv_diag = factor
+    order, _, number, band, inv_diag = factor
     count, width = size
     kx, kz, b, H, HF, P = film[0], film[1], film[4], film[5], film[6], film[8]
     ones, by_rate, by_gap, weight, link_fields = fields
     fixed, active = sets
     cos_x, sin_x, _, _, z = at
-    vx, vz, flow_x, cavity_shear = speeds
+    vx, vz, flow_x, cavity_shear, squeeze, pc = speeds
     if line is not None and not exact:
         refine_line((kx, kz, b), line, factor, count, width)
     lam = np.empty((4, count))
     load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
+    if between is not None:
+        _, linked, _, P, u = between
+        rows_of_linear(u, fixed, linked, pc, active, number, lam)
+        couple_columns(between, active, factor, count, lam.T, True)
     solve_ldl(band, inv_diag, count, width, lam)
     link_derivatives(P, H, HF, None, None, None, None, None, vx, vz, flow_x, mesh, link_fields)
     columns = np.empty((10, count))
@@ -94,6 +100,8 @@ def _plain_tangent(film, line, factor, size, exact, fields, sets, at, mesh, spee
         line_weights(places, f, k, s, weights)
         line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
         add_line_columns((rows, places, by), at, columns)
+    if between is not None:
+        add_line_columns(column_gradients(between, active, factor, count, pc, H, None), at, columns)
     gradient, field = np.empty((4, 10)), np.empty((1, *H.shape))
     functional_gradients(lam, columns, gradient)
     by_pose, dc = np.zeros((1, 4)), np.zeros(10)

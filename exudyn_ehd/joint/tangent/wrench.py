@@ -214,9 +214,9 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
             extra *= P_q
         if uneven and p.liner is not None:
             extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
-    y, closure = film.solver.system, film.solver.closure
-    if closure.clips and closure.line_in_cells:
-        rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+    y = film.solver.system
+    if y.continued is not None:
+        rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
     if rows.shape[0] > own and p.liner is not None:
         by_pressure = g.weight * p.liner.contact_by_pressure
         load_adjoint_rhs(

@@ -19,6 +19,7 @@ PLAIN = {
     "groove": {"supply": (GROOVE,)},
     "no squeeze": {"squeeze": False},
     "short": {"film": ehd.ShortBearing()},
+    "short, on vertices": {"film": ehd.ShortBearing(), "cavitation": ehd.SwiftStieber(line_in_cells=False)},
     "long": {"film": ehd.LongBearing(), "supply": (GROOVE,)},
 }
 OTHERS = {
