@@ -97,9 +97,9 @@ def factor_film(film, since, kind, oil, curve, in_cells, full, P, fill, factor):
 
 
 @njit(cache=True)
-def _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor, x, full, u, P, fill):
+def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state):
     """`solve_film` with pressures P above the cavity's."""
-    order, _, lower, upper, inv_diag, _ = factor
+    (film, late, b), (u, P, fill), (order, _, lower, upper, inv_diag, _) = links, state, factor
     (known, ready, count, width), (inverse_step, mass_old, _) = start, since
     flat, given = film.late.reshape(-1), late.reshape(-1)
     for c in range(flat.size):
@@ -171,14 +171,13 @@ def _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor,
 
 
 @njit(cache=True, nogil=True)
-def solve_film(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor, x, full, u, P, fill):
-    """Solve from ``full`` and ``u``, in place; returns (found, steps, whether the factor is exact, count, width).
+def solve_film(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state):
+    """Solve from ``full`` and u, in place; returns (found, steps, whether the factor is exact, count, width).
 
     Parameters
     ----------
-    film : Coefficients
-    late, b : (n, m) arrays
-        ``late`` without curves, which ``film`` gets with them; right-hand side of `exudyn_ehd.film.reynolds.links`.
+    links : (Coefficients, (n, m) array, (n, m) array)
+        Coefficients, their ``late`` without curves, right-hand side of `exudyn_ehd.film.reynolds.links`.
     since : (float, (n, m) array, bool)
         1 / time step since the content, 0 of a steady film; that content; whether the step stands for an instant.
     pc : float
@@ -189,17 +188,20 @@ def solve_film(film, late, b, since, pc, kind, oil, curve, in_cells, start, fact
         Density of `exudyn_ehd.film.lubricant.density_field`; None: it does not follow the pressure.
     in_cells : bool
         Whether vertices have curves.
-    start : (whether ``u`` is that of another film, whether ``factor`` is, count, width)
+    start : (whether u is that of another film, whether ``factor`` is, count, width)
     factor : (order, number, lower, upper, inv_diag, slopes)
     x : (n m,) array
         Newton's step.
+    state : (u, P, fill)
+        Unknowns, pressures and fills (n, m).
     """
-    given, known = P.copy(), film.fixed.reshape(-1)
+    P = state[1]
+    given, known = P.copy(), links[0].fixed.reshape(-1)
     pressures, kept = P.reshape(-1), given.reshape(-1)
     # flows follow differences alone: above the cavity's, small pressures keep their digits
     for c in range(known.size):
         pressures[c] = kept[c] - pc
-    found = _newton(film, late, b, since, pc, kind, oil, curve, in_cells, start, factor, x, full, u, P, fill)
+    found = _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state)
     for c in range(known.size):
         pressures[c] = kept[c] if known[c] else pressures[c] + pc
     if oil is not None and found[0]:
@@ -216,9 +218,7 @@ def solve_system(
     """
     oil = work.oil
     ok, steps, oil.exact, work.count, work.width = solve_film(
-        s.coefficients if film is None else film,
-        s.late,
-        s.b,
+        (s.coefficients if film is None else film, s.late, s.b),
         (*((s.inverse_step, s.mass_old) if since is None else since), s.instant),
         _base(s),
         s.kind,
@@ -229,9 +229,7 @@ def solve_system(
         _buffers(work),
         work.unknowns,
         work.active,
-        oil.u,
-        s.linear_pressure,
-        s.fill,
+        (oil.u, s.linear_pressure, s.fill),
     )
     work.known = oil.factored = ok
     return ok, steps

@@ -1,4 +1,4 @@
-"""What the matrix of a film at its solution answers: adjoints and small changes, with the factor at hand."""
+"""Answers of a solved film: adjoints and small changes by its matrix, pressure and viscosity by its oil's law."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import Workspace
+from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 
 
 class FilmAnswers(abc.ABC):
@@ -20,7 +23,14 @@ class FilmAnswers(abc.ABC):
 
     grid: FilmGrid
     work: Workspace
+    system: FilmSystem
+    closure: Closure
     symmetric: bool
+    law: CompressibleLaw | None
+    rho: np.ndarray
+    carried: np.ndarray
+    H_t: np.ndarray
+    pressure_scale: float
 
     @abc.abstractmethod
     def factor_solution(self) -> None:
@@ -38,6 +48,7 @@ class FilmAnswers(abc.ABC):
         """Solve ``A^T lam = rhs`` for every row of rhs (k, count), in place."""
         w = self.work
         self.factor_solution()
+        self._couple(rhs.T, True)
         if self.symmetric:
             solve_ldl(w.band, w.inv_diag, w.count, w.width, rhs)
         else:
@@ -47,6 +58,8 @@ class FilmAnswers(abc.ABC):
         """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
         w = self.work
         self.factor_solution()
+        for tile in rhs:
+            self._couple(tile, True)
         upper, lower = (w.band, w.band) if self.symmetric else self._bands()[::-1]
         solve_in_tiles(upper, lower, w.inv_diag, self.symmetric, w.count, w.width, rhs)
 
@@ -58,6 +71,12 @@ class FilmAnswers(abc.ABC):
             solve_ldl(w.band, w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
         else:
             solve_lu(*self._bands(), w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
+        self._couple(rhs[:, None], False)
+
+    def _couple(self, x: np.ndarray, transposed: bool) -> None:
+        """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
+        if self.system.column_line is not None:
+            self.system.column_line.couple(self.work, x, transposed)
 
     def matrix(self) -> csc_matrix:
         """A (count, count) of a film that is not symmetric."""
@@ -67,6 +86,45 @@ class FilmAnswers(abc.ABC):
         L = diags_array([lower[: count - k, k] for k in bands], offsets=[-k for k in bands], shape=(count, count))
         U = diags_array([upper[: count - k, k] for k in (0, *bands)], offsets=[0, *bands], shape=(count, count))
         return csc_matrix(U + L @ U)
+
+    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of
+        masses if compressible."""
+        if self.law is None:
+            return self.system.fx, self.system.fz, self.H_t
+        fill, rho = self.carried, self.rho
+        flow_x, flow_z = (
+            f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis)) * 0.5 * (rho + np.roll(rho, -1, axis))
+            for axis, f in enumerate((self.system.fx, self.system.fz))
+        )
+        return flow_x, flow_z, rho * self.H_t
+
+    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed
+        pressure.
+
+        False where that has no pressure; there the law goes on in a line.
+        """
+        assert self.law is not None
+        scale = self.pressure_scale
+        inside = self.law.inverse(self.system.pressure * scale, p_out, ratio_out, ratio_P_out)
+        ratio_P_out *= scale
+        # pressures that were cut off inside the cells are others than those that the film was solved for
+        rho = self.law.density.ratio(np.minimum(p_out, self.law.largest_pressure)) if self.closure.clips else self.rho
+        np.divide(ratio_out, rho, out=p_P_out)
+        p_out /= scale
+        return inside
+
+    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure of a compressible film (n, m) and its derivative to the transformed one; False where that has
+        no pressure."""
+        rest = np.empty((2, *p_out.shape))
+        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
+
+    def flow_work(self, P: np.ndarray) -> np.ndarray:
+        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DowsonHigginson.flow_work`."""
+        assert self.law is not None
+        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
 
     def _bands(self) -> tuple[np.ndarray, np.ndarray]:
         w = self.work

@@ -290,27 +290,6 @@ class FilmSolver(FilmAnswers):
         elif self.line is not None:
             refine_factor(self.system, self.line, self.work)
 
-    def solve_transposed(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every row of rhs (k, count), in place."""
-        self._couple(rhs.T, True)
-        super().solve_transposed(rhs)
-
-    def direct(self, rhs: np.ndarray) -> None:
-        """Solve ``A du = rhs`` for rhs (count,), in place."""
-        super().direct(rhs)
-        self._couple(rhs[:, None], False)
-
-    def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
-        for tile in rhs:
-            self._couple(tile, True)
-        super().adjoint_columns(rhs)
-
-    def _couple(self, x: np.ndarray, transposed: bool) -> None:
-        """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
-        if self.system.column_line is not None:
-            self.system.column_line.couple(self.work, x, transposed)
-
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
         by_rate, by_gap = self.storage_weights()
@@ -356,18 +335,6 @@ class FilmSolver(FilmAnswers):
             g, v = (self.H, self.HF), (self.vx, self.vz)
             self._fills = self.oil_line.gradients(g, self.flux, v, self.flow_x, self.squeeze, self.grid.mesh)
         return self._fills
-
-    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of
-        masses if compressible."""
-        if self.law is None:
-            return self.system.fx, self.system.fz, self.H_t
-        fill, rho = self.carried, self.rho
-        flow_x, flow_z = (
-            f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis)) * 0.5 * (rho + np.roll(rho, -1, axis))
-            for axis, f in enumerate((self.system.fx, self.system.fz))
-        )
-        return flow_x, flow_z, rho * self.H_t
 
     def link_derivatives(self) -> np.ndarray:
         """Derivatives (5, n, m) of the links' flows, or mass flows, with respect to their gaps and the speeds, for the
@@ -426,30 +393,3 @@ class FilmSolver(FilmAnswers):
         if ended and self.complementary and not conserves_mass and self.law is None:
             end_films_of_areas(s, self.work.active, self.grid, balance)
         return np.where(self.grid.fixed, balance, 0.0)
-
-    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed
-        pressure.
-
-        False where that has no pressure; there the law goes on in a line.
-        """
-        assert self.law is not None
-        scale = self.pressure_scale
-        inside = self.law.inverse(self.system.pressure * scale, p_out, ratio_out, ratio_P_out)
-        ratio_P_out *= scale
-        # pressures that were cut off inside the cells are others than those that the film was solved for
-        rho = self.law.density.ratio(np.minimum(p_out, self.law.largest_pressure)) if self.closure.clips else self.rho
-        np.divide(ratio_out, rho, out=p_P_out)
-        p_out /= scale
-        return inside
-
-    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure of a compressible film (n, m) and its derivative to the transformed one; False where that has
-        no pressure."""
-        rest = np.empty((2, *p_out.shape))
-        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
-
-    def flow_work(self, P: np.ndarray) -> np.ndarray:
-        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DowsonHigginson.flow_work`."""
-        assert self.law is not None
-        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
