@@ -137,8 +137,8 @@ class SwiftStieber:
     in any direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On the vertices of the
     grid they are up to 13 % off, in two thirds of the time. Loads differ by 0.1 %.
 
-    ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear law. The line of a `ShortBearing`
-    lies between its columns; see there for its errors.
+    ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear or density law. The line of a
+    `ShortBearing` lies between its columns; see there for its errors.
     On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
     (`exudyn_ehd.film.solvers.liner.line`), in about twice the time (liner) and 1.7 times (density law) of the line on
     the vertices; where a soft liner is deflected by the pressure of a single cell errors are those of the grid.

@@ -28,9 +28,13 @@ class FilmAnswers(abc.ABC):
     symmetric: bool
     law: CompressibleLaw | None
     rho: np.ndarray
-    carried: np.ndarray
     H_t: np.ndarray
     pressure_scale: float
+
+    @property
+    @abc.abstractmethod
+    def carried(self) -> np.ndarray:
+        """Fill that the Couette flows of the last solution take along from every vertex (n, m)."""
 
     @abc.abstractmethod
     def factor_solution(self) -> None:
