@@ -90,7 +90,7 @@ class FilmResponse:
         if rho is None or rho_P is None:
             store = np.where(w.active.reshape(-1), 0.0, store)
         else:
-            store = store * np.where(w.active, rho_P, rho).reshape(-1)
+            store = store * np.where(w.active, rho_P * s.fill, rho).reshape(-1)
         if s.oil_line is not None:
             store += (s.area * s.H * s.rho * s.oil_line.rise).reshape(-1)
         if liner is not None:
