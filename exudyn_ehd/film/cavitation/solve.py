@@ -30,6 +30,7 @@ from exudyn_ehd.film.cavitation.states import (
     OIL,
     RUPTURE,
     add_sink,
+    empty_cavity,
     join_states,
     move_states,
     set_states,
@@ -122,6 +123,8 @@ def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full
                 curve.whole[c] *= rho[0, 0]
     if not known:
         start_states(film, pc, curve, full, u)
+    elif kind == RUPTURE:
+        empty_cavity(full, u)
     flat, own, done, last, drift = rest.reshape(-1), False, False, LEFT, 0.0
     for step in range(MOST_STEPS):
         set_states(film, carried, curve, full, u, P, fill)

@@ -49,6 +49,14 @@ def start_states(film, pc, curve, full, u):
 
 
 @njit(cache=True)
+def empty_cavity(full, u):
+    """Unknowns in the cavity of a film of Swift and Stieber are 0, also of vertices that were prescribed before."""
+    sets, x = full.reshape(-1), u.reshape(-1)
+    for c in range(x.size):
+        x[c] = x[c] if sets[c] else 0.0
+
+
+@njit(cache=True)
 def set_states(film, late, curve, full, u, P, fill):
     """Pressures, fills and slopes of the curves from the unknowns.
 

@@ -139,7 +139,7 @@ class FilmSolver(FilmAnswers):
 
     def refresh_fixed(self) -> None:
         """Hand a change of ``grid.fixed`` on to the coarser grids."""
-        if self.closure.conserves_mass:
+        if not self.symmetric:
             self.work.oil.factored = False
         if self.coarse is not None:
             self.coarse.grid.fixed[:] = self.grid.fixed[::2, ::2]

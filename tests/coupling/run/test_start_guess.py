@@ -21,6 +21,8 @@ BEARING = ehd.JournalBearing(
     radial_clearance=25e-6,
     lubricant=ehd.Lubricant(viscosity=0.01),
     film=ehd.ShortBearing(n_theta=64),
+    # a line that jumps from column to column is the harder film
+    cavitation=ehd.SwiftStieber(line_in_cells=False),
 )
 
 

@@ -277,7 +277,10 @@ CASES = [("finite", closure) for closure in IN_CELLS] + [(name, c) for name in (
 def test_films_go_to_those_of_an_incompressible_oil(make_bearing, name, closure):
     """The less compressible an oil is, the less its films differ."""
     rng, film = np.random.default_rng(8), FILMS[name]
-    closure = dataclasses.replace(closure, cavity_pressure=-1e5) if closure.conserves_mass else closure
+    if closure.conserves_mass:
+        closure = dataclasses.replace(closure, cavity_pressure=-1e5)
+    elif name == "short" and isinstance(closure, ehd.SwiftStieber):
+        closure = ehd.SwiftStieber(line_in_cells=False)
     incompressible = build_model(make_bearing(1.0, cavitation=closure, **film))
     differences = np.empty((6, 2))
     for state in differences:
