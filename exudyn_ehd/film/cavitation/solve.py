@@ -59,7 +59,9 @@ EVEN, EVEN_DENSE, BALANCED = 1e-13, 1e-11, 1e-8
 LARGEST_DEFICIT = 1e-6
 # Change of a place on a curve over the place, behind whose step with a factor of its own a second one with it pays.
 WORN = 0.3
-# Change of a density that counts as a change of a place: its law bends so much more than a curve does with its place.
+# Weight of a change of the density against that of a place on a curve. The square of the weighted change bounds what a
+# step leaves of a pressure over the peak: a mineral oil's law bends by 2 b + alpha, over its slope a, and 6 is the root
+# of that. Larger values cost another step.
 BENDS = 6.0
 # Change of a pressure over the peak, or of a fill, that takes digits of small pressures and fills with it: another step
 # with the same factor brings them back.
@@ -148,7 +150,7 @@ def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full
             if of_flows <= (EVEN if oil is None else EVEN_DENSE):
                 sound = settle_states(film, kind, full, P, fill) > -LARGEST_DEFICIT and of_drive <= BALANCED
                 return sound, step, done and own and drift <= LEFT, count, width
-            ready = own and ready | done
+            ready = own if done else ready
         fresh = not ready
         if fresh:
             if oil is not None:
