@@ -23,7 +23,6 @@ from exudyn_ehd.film.models import (
 )
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
 from exudyn_ehd.film.supply.checks import check_depths, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
@@ -330,9 +329,9 @@ class JournalBearing:
 
 _OPTIONS: dict[str, tuple[type, ...]] = {
     "lubricant": (Lubricant,),
-    "film": (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap),
-    "cavitation": (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams),
-    "inlet": (Periodic, MaximumGap),
+    "film": get_args(Film),
+    "cavitation": get_args(Cavitation),
+    "inlet": get_args(Inlet),
     "contact": (RegularisedWall, type(None)),
     "thermal": (LumpedThermal, FilmEnergy, type(None)),
     "asperity": (GreenwoodTripp, type(None)),

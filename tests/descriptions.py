@@ -11,7 +11,7 @@ from exudyn_ehd.bearing import _OPTIONS
 from exudyn_ehd.film.lubricant import lubricant
 from exudyn_ehd.plausible import ARGUMENTS, KINDS
 
-LAWS = {name: lubricant.LAWS[name] for name in ("pressure_law", "shear_law", "density_law")}
+LAWS = {name: lubricant.LAWS[name][:-1] for name in ("pressure_law", "shear_law", "density_law")}
 
 CAVITATION = _OPTIONS["cavitation"]
 

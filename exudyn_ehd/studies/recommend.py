@@ -22,7 +22,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from exudyn_ehd.bearing import Cavitation, JournalBearing, MaximumGap
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
@@ -316,9 +315,9 @@ def _with_line(bearing: JournalBearing) -> Options | None:
 
 def _placed(closure: Cavitation, in_cells: bool) -> Cavitation:
     """A closure with its rupture line inside the cells or on the vertices; one that has none itself."""
-    if isinstance(closure, FullSommerfeld):
+    if math.isinf(closure.cavity_pressure):
         return closure
-    return dataclasses.replace(closure, line_in_cells=in_cells)
+    return dataclasses.replace(closure, line_in_cells=in_cells)  # type: ignore[arg-type]
 
 
 def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]) -> tuple[np.ndarray, float]:

@@ -27,7 +27,7 @@ from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require
 
 # Gauge pressure of the absolute vacuum, Pa, where the air presses most.
 VACUUM = -1.1e5
-Placed = TypeVar("Placed")
+Placed = TypeVar("Placed", bound="Closure")
 
 
 class Closure(Protocol):
@@ -221,8 +221,8 @@ def check_cavity_pressure(name: str, pressure: float) -> None:
 
 def place_line(closure: Placed, in_cells: bool) -> Placed:
     """A closure whose rupture line has a place: ``in_cells`` where it leaves that open."""
-    is_open = isinstance(closure, SwiftStieber) and closure.line_in_cells is None
-    return replace(closure, line_in_cells=in_cells) if is_open else closure  # type: ignore[type-var]
+    open_line = closure.line_in_cells is None
+    return replace(closure, line_in_cells=in_cells) if open_line else closure  # type: ignore[type-var]
 
 
 def _check_closure(closure: Gumbel | SwiftStieber) -> None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
@@ -23,6 +23,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
     BoundPressureLaw,
     HermiteTable,
     hermite_inverse,
+    quintic,
 )
 from exudyn_ehd.status import require_number
 
@@ -33,18 +34,53 @@ AT_THE_END = 1.0 - 1e-9
 SMALLEST_EXPONENT = 1e-30
 
 
+class DensityLaw(Protocol):
+    """Density ratio ``rho / rho_0`` at gauge pressures p, Pa; below ambient pressure it is ``exp(coefficient p)``."""
+
+    @property
+    def coefficient(self) -> float:
+        """Slope of the ratio at ambient pressure, 1/Pa; above 0."""
+
+    def ratio(self, p: np.ndarray) -> np.ndarray:
+        """rho / rho_0."""
+
+    def ratio_slope(self, p: np.ndarray) -> np.ndarray:
+        """d(rho / rho_0)/dp, 1/Pa."""
+
+    def ratio_bend(self, p: np.ndarray) -> np.ndarray:
+        """d2(rho / rho_0)/dp2 for p >= 0, 1/Pa^2."""
+
+    def flow_work(self, p: np.ndarray) -> np.ndarray:
+        """Integral of dp / (rho / rho_0) from ambient pressure, Pa."""
+
+
 class DensityTable(NamedTuple):
-    """What the kernels need of a `CompressibleLaw`: its spline of p(q), range of q and coefficients."""
+    """What the kernels need of a `CompressibleLaw`, whatever its density law.
+
+    Attributes
+    ----------
+    exponent, q, table, bucket, bucket_scale
+        Spline of p(q), as for `hermite_inverse`.
+    ratio : (intervals, 7) array
+        `quintic` spline of rho(q) in the same intervals.
+    lowest, highest : float
+        Range of q, Pa.
+    a : float
+        Slope of the density ratio at ambient pressure, 1/Pa.
+    b : (intervals, 7) array
+        `quintic` spline of rho(p) in equal intervals.
+    """
 
     exponent: float
     q: np.ndarray
     table: np.ndarray
+    ratio: np.ndarray
     bucket: np.ndarray
     bucket_scale: float
     lowest: float
     highest: float
     a: float
-    b: float
+    b: np.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +131,10 @@ class DowsonHigginson:
         dense = self.coefficient / (1.0 + self.saturation * np.maximum(p, 0.0)) ** 2
         return np.where(p >= 0.0, dense, self.coefficient * np.exp(self.coefficient * np.minimum(p, 0.0)))
 
+    def ratio_bend(self, p: np.ndarray) -> np.ndarray:
+        """d2(rho / rho_0)/dp2 for p >= 0, 1/Pa^2."""
+        return -2.0 * self.coefficient * self.saturation / (1.0 + self.saturation * p) ** 3
+
     def flow_work(self, p: np.ndarray) -> np.ndarray:
         """Integral of dp / (rho / rho_0) from ambient pressure, Pa.
 
@@ -105,10 +145,6 @@ class DowsonHigginson:
         above, g = np.maximum(p, 0.0), a + b
         dense = (b * above + a / g * np.log1p(g * above)) / g
         return np.where(p >= 0.0, dense, -np.expm1(-a * np.minimum(p, 0.0)) / a)
-
-    def bound(self, viscosity: BoundPressureLaw | None) -> CompressibleLaw:
-        """The transform for this density and a viscosity's pressure law, None: constant."""
-        return CompressibleLaw(self, viscosity)
 
 
 class DensityField:
@@ -125,7 +161,7 @@ class DensityField:
     def __init__(self, law: CompressibleLaw, shape: tuple[int, int]) -> None:
         self.law, self.scale = law, 1.0
         self.rho, self.rho_P = np.ones((2, *shape))
-        self.known = np.full((6, self.rho.size), np.nan)
+        self.known = np.full((9, self.rho.size), np.nan)
         # whether Newton's steps may cross the end of the law
         self.crosses = False
         # transformed pressure of the cavity when last asked for, Pa, and the density there
@@ -153,29 +189,32 @@ class CompressibleLaw(HermiteTable):
 
     Parameters
     ----------
-    density : DowsonHigginson
+    density : DensityLaw
     viscosity : BoundPressureLaw or None
         None: constant viscosity.
     """
 
-    def __init__(self, density: DowsonHigginson, viscosity: BoundPressureLaw | None) -> None:
+    def __init__(self, density: DensityLaw, viscosity: BoundPressureLaw | None) -> None:
         self.density, self.viscosity = density, viscosity
         exponent = (0.0 if viscosity is None else viscosity.coefficient) - density.coefficient
         super().__init__(
             LARGEST_PRESSURE if viscosity is None else viscosity.largest_pressure, exponent or SMALLEST_EXPONENT
         )
+        p, s, s_q = self.p, self.slope(self.p), self.curvature(self.p)
+        rho, rho_p, rho_pp = density.ratio(p), density.ratio_slope(p), density.ratio_bend(p)
         # Below, q has no p; at its upper end the spline has none either.
         lowest = -np.inf if exponent >= 0.0 else 0.999 / exponent
         self.kernel_table = DensityTable(
             self.alpha,
             self.q,
             self.table,
+            quintic(rho, rho_p * s, rho_pp * s**2 + rho_p * s_q, 1.0 / self.table[:, 0]),
             self.bucket,
             self.bucket_scale,
             lowest,
             self.q[-1] * (1.0 - 1e-12),
             density.coefficient,
-            density.saturation,
+            quintic(rho, rho_p, rho_pp, np.diff(p)),
         )
 
     def _viscosity(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -205,12 +244,17 @@ class CompressibleLaw(HermiteTable):
 
 @njit(cache=True)
 def density_ratio(p, a, b):
-    """rho / rho_0 and its derivative with respect to p."""
-    if p >= 0.0:
-        s = 1.0 / (1.0 + b * p)
-        return 1.0 + a * p * s, a * s * s
-    e = np.exp(a * p)
-    return e, a * e
+    """rho / rho_0 and its derivative with respect to p; a, b: of `DensityTable`."""
+    if not p > 0.0:
+        e = np.exp(a * p)
+        return e, a * e
+    k = int(min(p * b[0, 0], b.shape[0] - 1.0))
+    w, c1, c2, c3, c4, c5, c6 = b[k, 0], b[k, 1], b[k, 2], b[k, 3], b[k, 4], b[k, 5], b[k, 6]
+    t = p * w - k
+    return (
+        c1 + t * (c2 + t * (c3 + t * (c4 + t * (c5 + t * c6)))),
+        w * (c2 + t * (2.0 * c3 + t * (3.0 * c4 + t * (4.0 * c5 + t * 5.0 * c6)))),
+    )
 
 
 @njit(cache=True)

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import get_args, get_type_hints
 
 from exudyn_ehd.film.lubricant.density import DowsonHigginson
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
@@ -33,12 +34,6 @@ from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
 from exudyn_ehd.status import InputError, require_number, require_type
 
-LAWS: dict[str, tuple[type, ...]] = {
-    "pressure_law": (BarusPressure, RoelandsPressure),
-    "temperature_law": (ReynoldsTemperature, VogelTemperature, WaltherTemperature),
-    "shear_law": (CarreauShear,),
-    "density_law": (DowsonHigginson,),
-}
 # kg/(m3 K), ASTM D1250, table 54D
 EXPANSION = 0.6278
 CELSIUS_40 = 313.15
@@ -136,7 +131,7 @@ class Lubricant:
         require_number("Lubricant.specific_heat", self.specific_heat, "J/(kg K)", above=0.0)
         for name, laws in LAWS.items():
             hint = "laws are objects, not strings or classes."
-            require_type(f"Lubricant.{name}", getattr(self, name), *laws, type(None), hint=hint)
+            require_type(f"Lubricant.{name}", getattr(self, name), *laws, hint=hint)
         if self.viscosity is None:
             object.__setattr__(self, "viscosity", self._viscosity_from_law())
         require_number("Lubricant.viscosity", self.viscosity, "Pa s", above=0.0)
@@ -175,6 +170,9 @@ class Lubricant:
         law = self.temperature_law
         ratio = law.viscosity(temperature, self.density) / law.viscosity(self.temperature, self.density)
         return replace(self, temperature=float(temperature), viscosity=float(self.viscosity * ratio))
+
+
+LAWS = {name: get_args(kinds) for name, kinds in get_type_hints(Lubricant).items() if name.endswith("_law")}
 
 
 def oil(name: str, *, temperature: float = CELSIUS_40) -> Lubricant:

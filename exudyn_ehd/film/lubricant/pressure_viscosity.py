@@ -204,7 +204,7 @@ class HermiteTable(abc.ABC):
         self.p = np.linspace(0.0, largest_pressure, TABLE_INTERVALS + 1)
         widths = self._quadrature(self.p[:-1], self.p[1:])
         self.q = np.concatenate(([0.0], np.cumsum(widths)))
-        self.table = self._coefficients(widths)
+        self.table = quintic(self.p, self.slope(self.p), self.curvature(self.p), widths)
         edges = np.linspace(0.0, self.q[-1], TABLE_INTERVALS + 1)
         self.bucket = np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1)
         self.bucket_scale = TABLE_INTERVALS / self.q[-1]
@@ -216,14 +216,6 @@ class HermiteTable(abc.ABC):
     @abc.abstractmethod
     def curvature(self, p: np.ndarray) -> np.ndarray:
         """d2p/dq2 for p >= 0, 1/Pa."""
-
-    def _coefficients(self, h: np.ndarray) -> np.ndarray:
-        """1 / width and the coefficients of p in t = (q - q_k) / width, (intervals, 7)."""
-        r, r_q = self.slope(self.p), self.curvature(self.p)
-        d0, d1, e0, e1 = r[:-1] * h, r[1:] * h, 0.5 * r_q[:-1] * h**2, 0.5 * r_q[1:] * h**2
-        f, g, w = np.diff(self.p) - d0 - e0, d1 - d0 - 2.0 * e0, e1 - e0
-        c3, c4, c5 = 10.0 * f - 4.0 * g + w, -15.0 * f + 7.0 * g - 2.0 * w, 6.0 * f - 3.0 * g + w
-        return np.ascontiguousarray(np.array([1.0 / h, self.p[:-1], d0, e0, c3, c4, c5]).T)
 
     def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         lower, half = np.asarray(lower), np.asarray(0.5 * (upper - lower))
@@ -245,6 +237,18 @@ class HermiteTable(abc.ABC):
                 q, self.alpha, self.q, self.table, self.bucket, self.bucket_scale, p_out, ratio_out, ratio_q_out
             )
         )
+
+
+def quintic(values: np.ndarray, slopes: np.ndarray, bends: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    """1 / width and the coefficients in t = (x - x_k) / width of the quintic Hermite spline, (intervals, 7).
+
+    ``bends``: second derivatives at the nodes, ``widths`` (intervals,) the distances between them.
+    """
+    h = widths
+    d0, d1, e0, e1 = slopes[:-1] * h, slopes[1:] * h, 0.5 * bends[:-1] * h**2, 0.5 * bends[1:] * h**2
+    f, g, w = np.diff(values) - d0 - e0, d1 - d0 - 2.0 * e0, e1 - e0
+    c3, c4, c5 = 10.0 * f - 4.0 * g + w, -15.0 * f + 7.0 * g - 2.0 * w, 6.0 * f - 3.0 * g + w
+    return np.ascontiguousarray(np.array([1.0 / h, values[:-1], d0, e0, c3, c4, c5]).T)
 
 
 class RoelandsTable(HermiteTable):
@@ -354,14 +358,8 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
 
 
 @njit(cache=True, inline="always")
-def hermite_fourth_at(x, alpha, q_table, table, bucket, bucket_scale):
-    """p(q) of `hermite_inverse` and its first four derivatives at one x below the table's end."""
-    if x == 0.0:
-        return 0.0, 1.0, alpha, 2.0 * alpha**2, 6.0 * alpha**3
-    if x < 0.0:
-        r = 1.0 / (1.0 - alpha * x)
-        a = alpha * r
-        return -np.log1p(-alpha * x) / alpha, r, a * r, 2.0 * a**2 * r, 6.0 * a**3 * r
+def interval_at(x, q_table, table, bucket, bucket_scale):
+    """Interval of one x > 0 below the end of the table of `hermite_inverse`, and t there."""
     at = min(int(x * bucket_scale), bucket.size - 2)
     low = bucket[at]
     high = bucket[at + 1] + 1
@@ -371,13 +369,18 @@ def hermite_fourth_at(x, alpha, q_table, table, bucket, bucket_scale):
             low = middle
         else:
             high = middle
+    return low, (x - q_table[low]) * table[low, 0]
+
+
+@njit(cache=True, inline="always")
+def expand(table, low, t):
+    """Coefficients of Taylor's polynomial of fourth degree about t in an interval of a `quintic` spline."""
     c = table[low]
     w = c[0]
-    t = (x - q_table[low]) * w
     return (
         c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * (c[5] + t * c[6])))),
         w * (c[2] + t * (2.0 * c[3] + t * (3.0 * c[4] + t * (4.0 * c[5] + t * 5.0 * c[6])))),
-        w * w * (2.0 * c[3] + t * (6.0 * c[4] + t * (12.0 * c[5] + t * 20.0 * c[6]))),
-        w * w * w * (6.0 * c[4] + t * (24.0 * c[5] + t * 60.0 * c[6])),
-        w * w * w * w * (24.0 * c[5] + t * 120.0 * c[6]),
+        w * w * (c[3] + t * (3.0 * c[4] + t * (6.0 * c[5] + t * 10.0 * c[6]))),
+        w * w * w * (c[4] + t * (4.0 * c[5] + t * 10.0 * c[6])),
+        w * w * w * w * (c[5] + t * 5.0 * c[6]),
     )

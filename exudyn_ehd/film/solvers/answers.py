@@ -126,7 +126,7 @@ class FilmAnswers(abc.ABC):
         return self.viscosity(p_out, rest[0], rest[1], p_P_out)
 
     def flow_work(self, P: np.ndarray) -> np.ndarray:
-        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DowsonHigginson.flow_work`."""
+        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DensityLaw.flow_work`."""
         assert self.law is not None
         return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
 

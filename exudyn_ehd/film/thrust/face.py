@@ -28,7 +28,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import Closure, SwiftStieber
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.loads import end_flows
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
@@ -104,9 +104,9 @@ class FaceFilm:
         squeeze: bool = True,
     ) -> None:
         self.side, self.closure, self.squeeze = side, closure, float(squeeze)
-        if faces.profile is not None and isinstance(closure, SwiftStieber):
+        if faces.profile is not None and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
             # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
-            self.closure = closure = replace(closure, line_in_cells=False)
+            self.closure = closure = replace(closure, line_in_cells=False)  # type: ignore[type-var]
         self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *face_grid(faces))
         self.scales = Scales(viscosity, faces.clearance, a.scale)
         self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)

@@ -23,7 +23,6 @@ from typing import Protocol
 import numpy as np
 
 from exudyn_ehd.bearing import MaximumGap
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD
 from exudyn_ehd.status import FilmError
@@ -64,7 +63,7 @@ def is_central(evaluation: FilmEvaluation) -> bool:
     film, motion = evaluation.film, evaluation.motion
     if film is None or abs(motion[0]) > CENTRE * film.parts.bearing.radial_clearance or evaluation.model.needs_spin:
         return False
-    if isinstance(film.solver.closure, FullSommerfeld) or isinstance(film.parts.bearing.inlet, MaximumGap):
+    if not film.solver.ruptures or isinstance(film.parts.bearing.inlet, MaximumGap):
         return False
     w, source, cavity = film.journal, CENTRE * abs(float(motion[8])), film.scales.cavity
     if np.abs(w.pose).max() > CENTRE or np.abs(w.rate).max() > source:

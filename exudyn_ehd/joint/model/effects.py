@@ -129,4 +129,4 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
 def transform_law(lubricant: Lubricant) -> PressureLaw | None:
     """The law by which pressure becomes the solver's unknown, a `CompressibleLaw` with a density law; None: none."""
     viscosity = None if lubricant.pressure_law is None else lubricant.pressure_law.bound(lubricant.viscosity)
-    return viscosity if lubricant.density_law is None else lubricant.density_law.bound(viscosity)
+    return viscosity if lubricant.density_law is None else CompressibleLaw(lubricant.density_law, viscosity)

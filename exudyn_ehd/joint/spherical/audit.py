@@ -16,7 +16,6 @@ from typing import cast
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.joint.audit.assumptions import INERTIA, SURELY_FINE
 from exudyn_ehd.joint.audit.audit import Audit
@@ -243,7 +242,7 @@ def _oil(case: _BallCase) -> list[Finding]:
 def _cavities(case: _BallCase) -> list[Finding]:
     closure, cavitated, share = case.bearing.cavitation, case.largest("cavitated"), "cavitated share of the socket"
     rows = [finding("squeeze", "v / (v + |e x w| / 2)", case.largest("squeeze_share"), True)]
-    if isinstance(closure, FullSommerfeld):
+    if math.isinf(closure.cavity_pressure):
         advice = "oil does not carry such tension: cavitation=SwiftStieber()."
         what, value = "share of the socket below -1e5 Pa", case.largest("tension")
         return [*rows, finding("cavitation", what, value, False, mattering=advice, switch=swift_stieber)]

@@ -46,7 +46,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
@@ -222,8 +221,7 @@ class SphericalModel:
         """Return whether the last film, at this motion, has no source and may rupture at any."""
         source = CENTRE * self.bearing.radial_clearance * float(np.linalg.norm(motion[SPIN]))
         entrained = motion[VELOCITY] + 0.5 * skew(motion[PLACE]) @ motion[SPIN]
-        ruptures = not isinstance(self.bearing.cavitation, FullSommerfeld) and self._cavity == 0.0
-        return ruptures and float(np.linalg.norm(entrained)) <= source
+        return self._cavity == 0.0 and float(np.linalg.norm(entrained)) <= source
 
     def smallest_gap(self, place: np.ndarray) -> float:
         """Smallest gap (m) of the rigid surfaces for the ball's centre at ``place`` (3,), exact."""

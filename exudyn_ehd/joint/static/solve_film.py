@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber, place_line
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.bearing import Cavitation
+from exudyn_ehd.film.cavitation.closures import Closure, SwiftStieber, place_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
@@ -27,8 +28,6 @@ from exudyn_ehd.status import (
     require_type,
     require_vector,
 )
-
-CLOSURES = (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +199,7 @@ def _any_gap_solver(
 
 def _check_kinds(grid: object, lubricant: Lubricant, cavitation: object, stepped_gap: bool) -> None:
     require_type("solve_film: grid", grid, FilmGrid, hint="make it by bearing_grid or slider_grid.")
-    require_type("solve_film: cavitation", cavitation, *CLOSURES, type(None))
+    require_type("solve_film: cavitation", cavitation, *get_args(Cavitation), type(None))
     require_bool("solve_film: stepped_gap", stepped_gap)
     require_type("solve_film: lubricant", lubricant, Lubricant)
     if lubricant.shear_law is not None:

@@ -6,13 +6,8 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.density_field import (
-    NEAR,
-    WEAK,
-    density_at,
-    density_slope_at,
-    look_up,
-)
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, density_ratio
+from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, look_up
 
 PRESSURES = np.array([0.0, 1e6, 1e8, 5e8, 1e9, 3e9])
 VISCOSITIES = {
@@ -51,7 +46,7 @@ def test_flow_work_is_the_integral():
 @pytest.mark.parametrize("name", list(VISCOSITIES))
 def test_transform_is_the_integral(name):
     density, viscosity = ehd.DowsonHigginson(), VISCOSITIES[name]
-    law = density.bound(viscosity)
+    law = CompressibleLaw(density, viscosity)
 
     def integrand(p):
         return float(density.ratio(p)) / (1.0 if viscosity is None else float(viscosity.ratio(np.asarray(p))))
@@ -66,7 +61,7 @@ def test_transform_is_the_integral(name):
 @pytest.mark.parametrize("name", list(VISCOSITIES))
 def test_inverse_gives_back_pressure_and_viscosity(name):
     viscosity = VISCOSITIES[name]
-    law = ehd.DowsonHigginson().bound(viscosity)
+    law = CompressibleLaw(ehd.DowsonHigginson(), viscosity)
     p = np.linspace(-2e8, 5e8, 29).reshape(1, -1)
     q = law.transform(p)
     found, ratio, ratio_q = np.empty_like(p), np.empty_like(p), np.empty_like(p)
@@ -83,7 +78,7 @@ def test_inverse_gives_back_pressure_and_viscosity(name):
 
 
 def test_no_pressure_beyond_the_range():
-    law = ehd.DowsonHigginson().bound(None)
+    law = CompressibleLaw(ehd.DowsonHigginson(), None)
     out = np.empty((3, 1, 1))
     for q in (law.q[-1], 1.001 * law.q[-1], -1.0 / 0.6e-9):
         assert not law.inverse(np.full((1, 1), q), *out)
@@ -98,45 +93,83 @@ def asked(P, scale, floor, law, known):
 
 
 def test_weak_and_strong_tension():
-    """The exponential's series and the exponential, across the tension where they take turns."""
+    """The exponential from next to no tension on."""
     density = ehd.DowsonHigginson()
-    law = density.bound(None)
-    p = np.array([[-1e-3, -1e5, -0.99 * WEAK / 0.6e-9, 0.0, 1e6]])
-    for strong in (p, np.append(p, [[-1.01 * WEAK / 0.6e-9, -1e8]], axis=1)):
-        rho, rho_P = asked(law.transform(strong), 1.0, -np.inf, law, np.full((6, strong.size), np.nan))
-        np.testing.assert_allclose(rho, density.ratio(strong), rtol=2e-15)
-        np.testing.assert_allclose(rho_P, density.ratio_slope(strong) / density.ratio(strong), rtol=1e-10)
+    law = CompressibleLaw(density, None)
+    p = np.array([[-1e-3, -1e5, -1.65e6, -1e8, 0.0, 1e6]])
+    rho, rho_P = asked(law.transform(p), 1.0, -np.inf, law, np.full((9, p.size), np.nan))
+    np.testing.assert_allclose(rho, density.ratio(p), rtol=2e-15)
+    np.testing.assert_allclose(rho_P, density.ratio_slope(p) / density.ratio(p), rtol=1e-10)
+
+
+class BulkModulus:
+    """``rho_0 (1 + p / K)`` for p >= 0, or ``rho_0 exp(p / K)``: laws that the package does not know."""
+
+    def __init__(self, modulus, straight):
+        self.coefficient, self.straight = 1.0 / modulus, straight
+
+    def ratio(self, p):
+        x = self.coefficient * np.asarray(p)
+        return np.where(self.straight & (x >= 0.0), 1.0 + x, np.exp(x))
+
+    def ratio_slope(self, p):
+        x = self.coefficient * np.asarray(p)
+        return self.coefficient * np.where(self.straight & (x >= 0.0), 1.0, np.exp(x))
+
+    def ratio_bend(self, p):
+        return 0.0 * p if self.straight else self.coefficient**2 * self.ratio(p)
+
+
+LAWS = {"dowson": ehd.DowsonHigginson(), "straight": BulkModulus(2e8, True), "exponential": BulkModulus(2e8, False)}
+
+
+@pytest.mark.parametrize("viscosity", [None, "barus", "roelands"])
+@pytest.mark.parametrize("name", LAWS)
+def test_kernels_know_a_law_by_its_methods_alone(name, viscosity):
+    """Random pressures from tension to 500 MPa; round-off of the splines' slopes is that of p / dp."""
+    density, rng = LAWS[name], np.random.default_rng(3)
+    law = CompressibleLaw(density, None if viscosity is None else VISCOSITIES[viscosity])
+    p = np.append(-(10.0 ** rng.uniform(0.0, 7.5, 50)), 10.0 ** rng.uniform(0.0, np.log10(5e8), 150)).reshape(20, 10)
+    table = law.kernel_table
+    ratio = np.array([density_ratio(x, table.a, table.b) for x in p.ravel()]).reshape(*p.shape, 2)
+    np.testing.assert_allclose(ratio[..., 0], density.ratio(p), rtol=1e-14)
+    np.testing.assert_allclose(ratio[..., 1], density.ratio_slope(p), rtol=1e-10)
+    rho, rho_P = asked(law.transform(p), 1.0, -np.inf, law, np.full((9, p.size), np.nan))
+    found, s, s_q = np.empty((3, *p.shape))
+    assert law.pressure(law.transform(p), found, s, s_q)
+    np.testing.assert_allclose(rho, density.ratio(p), rtol=1e-12)  # that of q, where the oil is thick
+    np.testing.assert_allclose(rho_P, density.ratio_slope(p) * s, rtol=1e-10)
 
 
 def test_density_kernel_equals_its_twin():
     density = ehd.DowsonHigginson()
-    law = density.bound(VISCOSITIES["barus"])
+    law = CompressibleLaw(density, VISCOSITIES["barus"])
     p = np.array([[-2e7, -1e5, 0.0, 3e6, 2e8, 5e8]])
     scale, floor = 1e5, -1.0
     P = law.transform(p) / scale
-    rho, rho_P = asked(P, scale, floor, law, np.full((6, P.size), np.nan))
+    rho, rho_P = asked(P, scale, floor, law, np.full((9, P.size), np.nan))
     kept = np.maximum(p, float(-np.log1p(1e5 * law.alpha) / law.alpha))
     np.testing.assert_allclose(rho, density.ratio(kept), rtol=1e-12)  # the spline's
     assert rho_P[0, 0] == 0.0
     slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * scale
     np.testing.assert_allclose(rho_P[0, 2:], slope[0, 2:], rtol=1e-10)
     beyond = np.full((1, 1), 2.0 * law.q[-1] / scale)
-    rho, rho_P = asked(beyond, scale, floor, law, np.full((6, 1), np.nan))
+    rho, rho_P = asked(beyond, scale, floor, law, np.full((9, 1), np.nan))
     assert rho[0, 0] == pytest.approx(float(density.ratio(law.largest_pressure)), rel=1e-6)  # at the range's end
     assert rho_P[0, 0] == 0.0
 
 
 @pytest.mark.parametrize("viscosity", [None, "barus", "roelands"])
 def test_what_is_known_near_by_serves_to_rounding(viscosity):
-    law = ehd.DowsonHigginson().bound(None if viscosity is None else VISCOSITIES[viscosity])
+    law = CompressibleLaw(ehd.DowsonHigginson(), None if viscosity is None else VISCOSITIES[viscosity])
     q = law.transform(np.array([[-2e7, -5e6, 3e6, 5e7, 2e8, 5e8]]))
-    known = np.full((6, q.size), np.nan)
+    known = np.full((9, q.size), np.nan)
     asked(q, 1.0, -np.inf, law, known)
     at = known[0].copy()
-    moved = q + 0.9 * NEAR * np.abs(known[2] / known[3])
+    moved = q + 0.9 * known[8]
     rho, rho_P = asked(moved, 1.0, -np.inf, law, known)
     np.testing.assert_array_equal(known[0], at)
-    fresh, fresh_P = asked(moved, 1.0, -np.inf, law, np.full((6, q.size), np.nan))
+    fresh, fresh_P = asked(moved, 1.0, -np.inf, law, np.full((9, q.size), np.nan))
     np.testing.assert_allclose(rho, fresh, rtol=1e-14)
     np.testing.assert_allclose(rho_P, fresh_P, rtol=1e-10)
     asked(moved + 2.0 * (moved - q), 1.0, -np.inf, law, known)
@@ -147,18 +180,18 @@ def test_what_is_known_near_by_serves_to_rounding(viscosity):
     ("floor", "beyond"), [(1e6, 9e5), (-np.inf, 1e12)], ids=["below the floor", "beyond the range"]
 )
 def test_cut_pressures_have_a_density(floor, beyond):
-    law, P, known = ehd.DowsonHigginson().bound(None), np.array([[2e6, beyond]]), np.full((6, 2), np.nan)
+    law, P, known = CompressibleLaw(ehd.DowsonHigginson(), None), np.array([[2e6, beyond]]), np.full((9, 2), np.nan)
     rho, rho_P = asked(P, 1.0, floor, law, known)
     assert np.all(rho > 1.0) and rho_P[0, 0] > 0.0 and rho_P[0, 1] == 0.0
 
 
 def test_nothing_is_known_across_ambient_pressure():
     """The law's higher derivatives jump there."""
-    law = ehd.DowsonHigginson().bound(None)
+    law = CompressibleLaw(ehd.DowsonHigginson(), None)
     for start, end in ((1e3, -1e3), (0.0, 1e3), (-1e3, 1e3), (1e3, 0.0)):
-        known = np.full((6, 1), np.nan)
+        known = np.full((9, 1), np.nan)
         for x in (start, end):
-            look_up(np.array([x]), 1.0, -np.inf, np.inf, law.kernel_table, NEAR, known)
+            look_up(np.array([x]), 1.0, -np.inf, np.inf, law.kernel_table, 1.0, known)
             assert known[0, 0] == x
 
 

@@ -5,6 +5,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 
@@ -19,7 +20,7 @@ every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(
 
 
 def on_liner(closure, density=DENSITY):
-    law = None if density is None else density.bound(None)
+    law = None if density is None else CompressibleLaw(density, None)
     return NonlinearFilmSolver(GRID, closure, oil=law, density=law)
 
 
@@ -103,7 +104,7 @@ def test_solution_meets_the_readable_balance(closure, motion):
 
 @every_closure
 def test_stiff_liner_approaches_the_compressible_film_at_first_order(closure):
-    rigid = pressures(solve(CompressibleFilmSolver(GRID, closure, density=DENSITY.bound(None))))
+    rigid = pressures(solve(CompressibleFilmSolver(GRID, closure, density=CompressibleLaw(DENSITY, None))))
     found = [pressures(solve(on_liner(closure), beta)) for beta in (2e-6, 1e-6, 1e-13)]
     first, second, rest = (np.abs(p - rigid).max() / rigid.max() for p in found)
     assert second < 1e-2 and first / second == pytest.approx(2.0, rel=0.02)  # next order
