@@ -245,6 +245,8 @@ class CompressibleLaw(HermiteTable):
 @njit(cache=True)
 def density_ratio(p, a, b):
     """rho / rho_0 and its derivative with respect to p; a, b: of `DensityTable`."""
+    if p == 0.0:
+        return 1.0, a
     if not p > 0.0:
         e = np.exp(a * p)
         return e, a * e
