@@ -128,7 +128,7 @@ EFFECTS = {
         {"thrust": ehd.ThrustFaces(inner_radius=0.026, outer_radius=0.05, clearance=4e-5, n_theta=16, n_r=6)},
     ),
     "mass conservation": (
-        ("film.cavitation.elrod_adams", "film.cavitation.oil_line", "film.cavitation.solve"),
+        ("film.cavitation.oil_line", "film.cavitation.solve"),
         {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
     ),
 }
@@ -141,6 +141,7 @@ SHARED = {
     "banded.lu",
     "banded.lanes",
     "cavitation.closures",
+    "cavitation.elrod_adams",
     "cavitation.linear_film",
     "cavitation.rupture_line",
     "cavitation.swift_stieber",

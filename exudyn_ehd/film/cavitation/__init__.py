@@ -2,7 +2,7 @@
 
 Module map
 ----------
-closures          what a closure offers; FullSommerfeld, Gumbel, SwiftStieber
+closures          what a closure offers, and how its films are found; FullSommerfeld, Gumbel, SwiftStieber
 system            one film problem as arrays
 linear_film       the linear film on given vertices; Gümbel's condition; the rupture line of short bearings
 swift_stieber     Newton's method for films of Swift and Stieber

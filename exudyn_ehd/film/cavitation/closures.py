@@ -21,6 +21,8 @@ import numpy as np
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
 from exudyn_ehd.film.cavitation.solve import recover, solve_system
+from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
+from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
@@ -31,8 +33,7 @@ Placed = TypeVar("Placed", bound="Closure")
 
 
 class Closure(Protocol):
-    """What a cavitation model offers a film solver; the one that conserves mass is
-    `exudyn_ehd.film.cavitation.elrod_adams`."""
+    """What a film solver needs to know of a cavitation model; how its films are found is in `SOLVERS`."""
 
     @property
     def cavity_pressure(self) -> float: ...
@@ -48,8 +49,6 @@ class Closure(Protocol):
 
     @property
     def line_in_cells(self) -> bool | None: ...
-
-    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,10 +71,6 @@ class FullSommerfeld:
     conserves_mass = False
     clips = False
     line_in_cells = False
-
-    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        """Solve on all free vertices."""
-        return _solve_free(system, work)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,15 +110,6 @@ class Gumbel:
 
     def __post_init__(self) -> None:
         _check_closure(self)
-
-    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        """Solve on all free vertices, then clip into ``system.pressure``; ``work.active`` marks the unbroken film."""
-        outcome = _solve_free(system, work)
-        linear, known, pc = system.linear_pressure, system.fixed, system.cavity_pressure
-        clip_pressure(linear, known, pc, system.pressure, work.active)
-        if self.line_in_cells:
-            mean_in_cells(linear, known, system.linked, pc, work.active, system.pressure)
-        return outcome
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,19 +158,6 @@ class SwiftStieber:
     def __post_init__(self) -> None:
         _check_closure(self)
 
-    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        """Newton's method from ``work.active``, or from all free vertices if ``work.warm`` is False."""
-        if not work.warm:
-            np.logical_not(system.fixed, out=work.active)
-        if system.density is not None:
-            return _solve_dense(system, work)
-        work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
-        if system.column_line is not None:
-            y, sets = system, (system.fixed, work.active)
-            size, pc = work.count, y.cavity_pressure
-            work.count = extend_film(y.column_line, y.b, sets, pc, work.factor, size, y.pressure)
-        return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
-
 
 def _solve_free(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """The linear film of all vertices that are not prescribed, into ``system.linear_pressure``."""
@@ -194,6 +167,50 @@ def _solve_free(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     links = system.kx, system.kz, system.b
     ok, work.count, work.width = solve_linear(links, work.active, work.factor, work.unknowns, system.linear_pressure)
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
+
+
+def _solve_clipped(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """`_solve_free`, then clipped into ``system.pressure``; ``work.active`` marks the unbroken film."""
+    outcome = _solve_free(system, work)
+    linear, known, pc = system.linear_pressure, system.fixed, system.cavity_pressure
+    clip_pressure(linear, known, pc, system.pressure, work.active)
+    if system.continued is not None:
+        mean_in_cells(linear, known, system.linked, pc, work.active, system.pressure)
+    return outcome
+
+
+def _solve_complementary(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """Newton's method from ``work.active``, or from all free vertices if ``work.warm`` is False."""
+    if not work.warm:
+        np.logical_not(system.fixed, out=work.active)
+    if system.density is not None:
+        return _solve_dense(system, work)
+    work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
+    if system.column_line is not None:
+        y, sets = system, (system.fixed, work.active)
+        size, pc = work.count, y.cavity_pressure
+        work.count = extend_film(y.column_line, y.b, sets, pc, work.factor, size, y.pressure)
+    return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
+
+
+def _solve_conserving(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """Newton from the last film, or from ``work.active`` alone; cold starts are full."""
+    s, was_warm = system, work.warm
+    if not was_warm:
+        np.logical_not(s.fixed, out=work.active)
+    ok, steps = solve_system(s, work)
+    if not ok and was_warm:
+        # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
+        work.known = False
+        np.logical_not(s.fixed, out=work.active)
+        ok, count = solve_system(s, work)
+        steps += count
+    status = Status.CONVERGED
+    if not ok or (s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)):
+        status, count = recover(s, work)
+        steps += count
+    work.warm = status is Status.CONVERGED
+    return status, steps
 
 
 def _solve_dense(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
@@ -206,6 +223,10 @@ def _solve_dense(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         steps += count
         work.warm = status is Status.CONVERGED
     return status, steps
+
+
+# By the kind of film, which the closure's properties say.
+SOLVERS = {FULL: _solve_free, CLIPPED: _solve_clipped, RUPTURE: _solve_complementary, OIL: _solve_conserving}
 
 
 def check_cavity_pressure(name: str, pressure: float) -> None:

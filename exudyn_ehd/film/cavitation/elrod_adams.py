@@ -20,14 +20,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import check_cavity_pressure
-from exudyn_ehd.film.cavitation.solve import recover, solve_system
-from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
-from exudyn_ehd.film.cavitation.system import FilmSystem
-from exudyn_ehd.status import Status, require_bool
+from exudyn_ehd.status import require_bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,22 +71,3 @@ class ElrodAdams:
     def __post_init__(self) -> None:
         check_cavity_pressure("ElrodAdams", self.cavity_pressure)
         object.__setattr__(self, "line_in_cells", require_bool("ElrodAdams.line_in_cells", self.line_in_cells))
-
-    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-        """Newton from the last film, or from ``work.active`` alone; cold starts are full."""
-        s, was_warm = system, work.warm
-        if not was_warm:
-            np.logical_not(s.fixed, out=work.active)
-        ok, steps = solve_system(s, work)
-        if not ok and was_warm:
-            # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
-            work.known = False
-            np.logical_not(s.fixed, out=work.active)
-            ok, count = solve_system(s, work)
-            steps += count
-        status = Status.CONVERGED
-        if not ok or (s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)):
-            status, count = recover(s, work)
-            steps += count
-        work.warm = status is Status.CONVERGED
-        return status, steps

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.closures import SOLVERS, Closure
 from exudyn_ehd.film.cavitation.line_steps import prolong_set
 from exudyn_ehd.film.cavitation.oil_line import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
@@ -179,12 +179,12 @@ class FilmSolver(FilmAnswers):
         if not was_warm:
             self.forget()
             steps = self._guess_from_coarse()
-        status, fine_steps = self.closure.solve(s, self.work)
+        status, fine_steps = SOLVERS[s.kind](s, self.work)
         if was_warm and status is Status.NOT_CONVERGED and (self.complementary or self.law is not None):
             # a start from another state can mislead where the film itself is benign
             self.forget()
             steps += fine_steps + self._guess_from_coarse()
-            status, fine_steps = self.closure.solve(s, self.work)
+            status, fine_steps = SOLVERS[s.kind](s, self.work)
         return status_of(s, status), steps + fine_steps
 
     def _set_links(self) -> None:
