@@ -214,7 +214,7 @@ class CompressibleLaw(HermiteTable):
             lowest,
             self.q[-1] * (1.0 - 1e-12),
             density.coefficient,
-            quintic(rho, rho_p, rho_pp, np.diff(p)),
+            quintic(rho, rho_p, rho_pp, np.full(p.size - 1, p[1])),
         )
 
     def _viscosity(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
