@@ -234,7 +234,7 @@ class CompressibleLaw(HermiteTable):
     def pressure(self, q: np.ndarray, p_out: np.ndarray, slope_out: np.ndarray, bend_out: np.ndarray) -> bool:
         """p(q) with its first two derivatives for fields (n, m); False where q has no p."""
         table = self.kernel_table
-        inside = bool(np.all(q > table.lowest) and np.all(q < table.highest))
+        inside = bool(q.min() > table.lowest and q.max() < table.highest)
         return inside and super().inverse(q, p_out, slope_out, bend_out)
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
