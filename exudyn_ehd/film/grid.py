@@ -112,7 +112,7 @@ class FilmGrid:
 
     @cached_property
     def flows_along_z(self) -> bool:
-        """Whether there are links in z, through which oil reaches the ends."""
+        """Return whether there are links in z, through which oil reaches the ends."""
         return bool(self.link_z.any())
 
     @cached_property

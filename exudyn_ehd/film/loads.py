@@ -68,7 +68,7 @@ def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
 
 @njit(cache=True, inline="always")
 def ends_cavity(active, fixed, i, end):
-    """Whether the end vertex (i, end) lies beside a cavity: its half control volume then holds what the cavity does."""
+    """Return whether the end vertex (i, end) lies beside a cavity, whose fill its half control volume then has."""
     last = active.shape[1] - 1
     beside = 1 if end == 0 else last - 1
     return last > 1 and fixed[i, end] and not (active[i, beside] or fixed[i, beside])
@@ -214,28 +214,30 @@ def couette_integral_ratio(H, weight, ratio, share, whole):
 
 
 @njit(cache=True, error_model="numpy")
-def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, by_gap, rhs_out):
+def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, rhs_out):
     """Weights of ``sum weight share ratio / H`` at the unknowns, pressures where ``active``, else fills (count,).
 
-    ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio. ``by_gap``: the ratio, its
-    derivative to H and that of H to the pressure, of a gap that follows; else None.
+    ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio.
     """
     w, h, known = weight.reshape(-1), H.reshape(-1), active.reshape(-1)
     p, f = by_pressure.reshape(-1), by_fill.reshape(-1)
     for r in range(count):
         at = order[r]
         rhs_out[r] = w[at] / h[at] * (p[at] if known[at] else f[at])
-    if by_gap is not None:
-        ratio, ratio_h, H_P = by_gap
-        _add_gap_answer(order, count, w, h, known, ratio.reshape(-1), ratio_h.reshape(-1), H_P.reshape(-1), rhs_out)
 
 
 @njit(cache=True, error_model="numpy")
-def _add_gap_answer(order, count, weight, H, known, ratio, ratio_h, H_P, rhs_out):
+def add_shear_by_gap(order, count, weight, H, active, by_gap, rhs_out):
+    """Add to `shear_adjoint_rhs` how ``share ratio / H`` follows a gap that yields to its pressure.
+
+    ``by_gap``: share times ratio, its derivative to H, and that of H to the pressure, (n, m) each.
+    """
+    w, h, known = weight.reshape(-1), H.reshape(-1), active.reshape(-1)
+    ratio, ratio_h, H_P = by_gap[0].reshape(-1), by_gap[1].reshape(-1), by_gap[2].reshape(-1)
     for r in range(count):
         at = order[r]
         if known[at]:
-            rhs_out[r] += weight[at] / H[at] * (ratio_h[at] - ratio[at] / H[at]) * H_P[at]
+            rhs_out[r] += w[at] / h[at] * (ratio_h[at] - ratio[at] / h[at]) * H_P[at]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -293,7 +295,7 @@ def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, full):
 
 @njit(cache=True)
 def _taken(q, carried, rate, full):
-    """What an end's half control volume takes, see `end_flows`."""
+    """Inflow of an end's half control volume, without the axial Couette flow; see `end_flows`."""
     B = carried + rate
     if full or (q > 0.0 and q >= B):
         return q + B

@@ -227,24 +227,24 @@ class LongSolver(FilmSolver):
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
-        """As `FilmSolver.solve`; vz is not used."""
+        """Solve as `FilmSolver.solve`; vz is not used."""
         return super().solve(vx, 0.0, cavity_pressure, mass_old, step)
 
     def link_derivatives(self) -> np.ndarray:
-        """As `FilmSolver.link_derivatives`, with no flow by vz."""
+        """Return `FilmSolver.link_derivatives` with zero derivatives to vz."""
         out = super().link_derivatives()
         out[3] = 0.0
         return out
 
     def line_gradients(self) -> LineGradients | None:
-        """As `FilmSolver.line_gradients`, with no flow by vz."""
+        """Return `FilmSolver.line_gradients` with zero derivatives to vz."""
         out = super().line_gradients()
         if out is not None:
             out.by[7] = 0.0
         return out
 
     def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
-        """As `FilmSolver.fill_gradients`, with no flow by vz."""
+        """Return `FilmSolver.fill_gradients` with zero derivatives to vz."""
         out = super().fill_gradients()
         for line in out or ():
             line.by[7] = 0.0
@@ -297,17 +297,18 @@ def check_film(
 
 
 def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> list[str]:
-    """What of a bearing does not know the closure's rupture line inside the cells of the grid."""
+    """Names of a bearing's options that do not support the closure's rupture line inside the cells of the grid."""
     clips, oil_counts = closure.clips, closure.conserves_mass
-    rigid = clips or oil_counts or isinstance(film, ShortBearing)
+    short = isinstance(film, ShortBearing) and not clips
     kinds: tuple[type, ...] = (FiniteLength, LongBearing)
     if not oil_counts:
         kinds += (ShortBearing,) if clips else (ShortBearing, ImpedanceMap)
     others = {
         f"film={type(film).__name__}(...)": not isinstance(film, kinds),
-        "bush=ElasticLiner(...)": rigid and isinstance(bush, ElasticLiner),
-        "Lubricant.density_law": isinstance(film, ShortBearing) and not clips and oil.density_law is not None,
-        "Lubricant.shear_law": rigid and oil.shear_law is not None,
+        # deflections end with the clipped pressure of a vertex: with the line between them tangents get worse
+        "bush=ElasticLiner(...)": clips and isinstance(bush, ElasticLiner),
+        "Lubricant.density_law": short and oil.density_law is not None,
+        "Lubricant.shear_law": short and oil.shear_law is not None,
     }
     return [name for name, there in others.items() if there]
 

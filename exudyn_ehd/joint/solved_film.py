@@ -41,7 +41,7 @@ MOTION_SIZE = 10
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """What a bearing remembers between accepted steps; absent effects leave None.
+    """State that a bearing keeps between accepted steps; absent effects have None.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class History:
         Scaled oil that the flows have brought there. Flows and mass balance to rounding; mass and content differ by
         what `exudyn_ehd.film.solvers.linear.FilmSolver.keep` says. No film depends on it.
     outflow : (3, n, m) array or None
-        What `exudyn_ehd.film.reynolds.lagging_void` has to know of the step (mass-conserving closures).
+        Fields of `exudyn_ehd.film.reynolds.lagging_void.outflow_of` for the step (mass-conserving closures).
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
@@ -136,7 +136,7 @@ class Evaluations:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FilmParts:
-    """What stays the same from evaluation to evaluation.
+    """Parts of a bearing model that stay the same objects from evaluation to evaluation.
 
     Attributes
     ----------
@@ -208,7 +208,7 @@ class JournalMotion(NamedTuple):
 
 
 class ExtraGap(NamedTuple):
-    """What the gap terms add to the gap (n, m), its slopes along theta and z, and the terms of undeformed surfaces."""
+    """Gap terms (n, m): their sum, its slopes along theta and z, and the single terms of the undeformed surfaces."""
 
     height: np.ndarray
     slope_x: np.ndarray
@@ -252,7 +252,7 @@ class OilFields(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """What a film does to the journal.
+    """Loads of a film on the journal.
 
     wrench : (6,) array, N and Nm, force and moment about O, contacts included
     contact : (6,) array, the friction of the contacts in it
@@ -333,7 +333,7 @@ class SolvedFilm(NamedTuple):
         return csr_matrix((along + across) @ diags(self._pressures().ravel()))
 
     def gather_shear(self, weights: np.ndarray) -> np.ndarray:
-        """The same from the left: sums (n, m) by the unknowns for weights (n, m), each times the oil's ``ratio_g``."""
+        """Transpose of `shear_by_unknowns`: sums (n, m) by the unknowns; weights (2, n, m) include ``ratio_g``."""
         return self._thinning().gather(weights) * self._pressures()
 
     def _thinning(self) -> ShearThinning:

@@ -85,13 +85,11 @@ EFFECTS = {
             "film.solvers.liner.elements",
             "film.solvers.liner.gap_response",
             "film.solvers.liner.continuation",
-            "film.solvers.liner.newton",
-            "film.solvers.compiled",
-            "film.solvers.steps",
+            "film.solvers.liner.steps",
         ),
         {"bush": LINER},
     ),
-    "liner in contact": (("film.solvers.newton", "film.solvers.liner.kernels"), {"bush": LINER, "asperity": ASPERITY}),
+    "liner in contact": (("film.solvers.liner.kernels",), {"bush": LINER, "asperity": ASPERITY}),
     "bush": (
         (
             "joint.bore.shapes",
@@ -118,6 +116,10 @@ EFFECTS = {
     "line on a liner": (
         ("film.solvers.liner.line_kernels", "film.solvers.liner.line"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
+    ),
+    "line of a film that conserves mass on a liner": (
+        ("film.solvers.liner.line",),
+        {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True), "bush": LINER},
     ),
     "holes": (
         ("film.supply.cuts", "film.supply.holes", "film.supply.coverage", "film.supply.recess"),
@@ -274,7 +276,12 @@ def test_a_plain_film_calls_no_effect(closure, monkeypatch):
 
 
 # Kernels that no other test of the default run compiles.
-SLOW = {"line", "line on a liner", "line of a film that conserves mass"}
+SLOW = {
+    "line",
+    "line on a liner",
+    "line of a film that conserves mass",
+    "line of a film that conserves mass on a liner",
+}
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in SLOW)) for n in EFFECTS])

@@ -39,7 +39,7 @@ def number_cells(active, kx, order_out, number_out):
 
 @njit(cache=True)
 def number_along(active, kx, forth, spare, order_out, number_out):
-    """As `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1).
+    """Number the active cells as `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1).
 
     Up to ``spare`` links may be left out of the band: their cells' numbers are further apart than the half-bandwidth.
     """
@@ -101,7 +101,7 @@ def number_along(active, kx, forth, spare, order_out, number_out):
 
 @njit(cache=True)
 def number_with_corners(active, kx, order_out, number_out):
-    """As `number_cells`, for a matrix that also couples a cell with its neighbours across the corners."""
+    """Number the active cells as `number_cells`, for a matrix that also couples neighbours across the corners."""
     n, m = active.shape
     count, width = number_along(active, kx, np.int64(1), _NOWHERE, order_out, number_out)
     for i in range(n):

@@ -31,7 +31,7 @@ def solve_ldl(band, inverse, count, width, x):
 
 @njit(cache=True)
 def solve_ldl_one(band, inverse, count, width, x):
-    """As `solve_ldl` for one right-hand side x (count,), in kernels that need no more."""
+    """Solve ``A x = b`` as `solve_ldl`, for one right-hand side x (count,), in place."""
     _solve_one(band.reshape(-1), band.reshape(-1), band.shape[1], _YES, _YES, inverse, count, width, x)
 
 
@@ -43,7 +43,7 @@ def solve_lu(lower, upper, inverse, count, width, x):
 
 @njit(cache=True)
 def solve_lu_one(lower, upper, inverse, count, width, x):
-    """As `solve_lu` for one right-hand side x (count,), in kernels that need no more."""
+    """Solve ``A x = b`` as `solve_lu`, for one right-hand side x (count,), in place."""
     _solve_one(lower.reshape(-1), upper.reshape(-1), upper.shape[1], _NO, _YES, inverse, count, width, x)
 
 
@@ -103,7 +103,7 @@ def _solve_one(col, row, stride, scale_forth, scale_back, inverse, count, width,
 
 @njit(cache=True, fastmath=_FUSE)
 def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width, x0, x1, x2, x3):
-    """As `_solve_one` for four right-hand sides at once."""
+    """Solve as `_solve_one`, for four right-hand sides at once."""
     step, size, w = _unsigned(stride), _unsigned(count), _unsigned(width)
     along = step - _1
     for r in range(size):

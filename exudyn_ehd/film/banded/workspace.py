@@ -13,16 +13,16 @@ FIRST_ROW = np.int64(0)
 
 
 class OilUnknowns:
-    """Of a mass-conserving film, see `exudyn_ehd.film.cavitation.states`.
+    """Unknowns of the films that `exudyn_ehd.film.cavitation.solve` solves; see `exudyn_ehd.film.cavitation.states`.
 
     Attributes
     ----------
     u : (n, m) array
         The unknowns of the last solution.
     slopes : (5, n m) array
-        Derivatives of flows and storage.
+        Derivatives of the flows over the links (4) and of the storage to the unknowns.
     factored, exact : bool
-        Whether the factor is that of a film on these vertices, and whether of the last solution.
+        Whether the stored factor belongs to a film on these vertices, and whether to the last solution.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -76,12 +76,6 @@ class Workspace:
         return self._new_band()
 
     @cached_property
-    def matrix(self) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
-        """Derivatives, numbers of the vertices and factor (order, unknowns, L, U, 1 / diagonal) of Newton's matrix."""
-        factor = self.order, self.unknowns, self.lower, self.upper, self.inv_diag
-        return np.zeros((5, self.order.size)), self.number, factor
-
-    @cached_property
     def oil(self) -> OilUnknowns:
-        """Of a film that conserves mass."""
+        """Unknowns of a film that Newton's method solves, and their derivatives."""
         return OilUnknowns(*self.shape)

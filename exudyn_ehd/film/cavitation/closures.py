@@ -20,7 +20,8 @@ import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
-from exudyn_ehd.film.cavitation.solve import recover, solve_system
+from exudyn_ehd.film.cavitation.pseudo_time import recover
+from exudyn_ehd.film.cavitation.solve import solve_system
 from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
@@ -33,7 +34,7 @@ Placed = TypeVar("Placed", bound="Closure")
 
 
 class Closure(Protocol):
-    """What a film solver needs to know of a cavitation model; how its films are found is in `SOLVERS`."""
+    """Properties of a cavitation model that a film solver needs; its solution method is in `SOLVERS`."""
 
     @property
     def cavity_pressure(self) -> float: ...
@@ -90,7 +91,7 @@ class Gumbel:
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
     line_in_cells : bool
         True: pressures act up to where the linear one is the cavity's, inside the cells of the grid (order two in
-        stiffness and damping); not with elastic liners and shear laws. False: up to the vertex in front of it.
+        stiffness and damping); not with elastic liners. False: up to the vertex in front of it.
 
     Examples
     --------
@@ -126,8 +127,8 @@ class SwiftStieber:
     ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear or density law. The line of a
     `ShortBearing` lies between its columns; see there for its errors.
     On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
-    (`exudyn_ehd.film.solvers.liner.line`), in about twice the time (liner) and 1.7 times (density law) of the line on
-    the vertices; where a soft liner is deflected by the pressure of a single cell errors are those of the grid.
+    (`exudyn_ehd.film.solvers.liner.line`), in about 1.4 times (liner) and 1.7 times (density law) of the time with it
+    on the vertices; where a soft liner is deflected by the pressure of a single cell errors are those of the grid.
 
     Parameters
     ----------

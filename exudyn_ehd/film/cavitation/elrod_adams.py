@@ -44,7 +44,7 @@ class ElrodAdams:
     cavity_pressure : float
         Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
     line_in_cells : bool
-        True: the film ruptures where it does, inside the cells of the grid; not with elastic liners and shear laws; see
+        True: the film ruptures where it does, inside the cells of the grid; not in a `ShortBearing`; see
         `exudyn_ehd.film.cavitation.oil_line`. False: on their vertices.
 
     Source

@@ -131,9 +131,9 @@ def _slopes_of_clip(linear, fixed, linked, pc, active, slopes_out):
 
 @njit(cache=True)
 def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
-    """From weights (k, count) of P as `mean_in_cells` leaves it, none at clipped ones, to those of the linear pressure.
+    """Convert weights (k, count) of P after `mean_in_cells` to weights of the linear pressure, in place.
 
-    The transpose of `pressures_by_linear`.
+    The transpose of `pressures_by_linear`. Weights at clipped vertices are 0 before.
     """
     n, m = linear.shape
     slopes = np.empty((3, n, m))

@@ -1,31 +1,33 @@
-"""The rupture line of a mass-conserving film inside a cell: pressure and fill of the last full vertex in front of it.
+"""Rupture line of a mass-conserving film inside a cell: pressure and fill of the last full vertex in front of it.
 
-Of a vertex let ``f`` be what wedge and squeeze take away, ``k`` the mean conductance of its two links in theta, and
-``o`` what leaves it with the Couette flows of a full film. The pressure in front of the line is the parabola of
+At a vertex let ``f`` be the flow that wedge and squeeze take away, ``k`` the mean conductance of its two links in
+theta, and ``o`` the outflow by the Couette flows of a full film. The pressure in front of the line is the parabola of
 `exudyn_ehd.film.cavitation.rupture_line`: with the line s cells beyond the vertex, 0 < s < 1, its pressure above the
-cavity's is ``p = f s^2 / (2 k)``. Where the pressure's gradient has vanished, at the line, the oil is carried by the
-surfaces alone. Integrated from there, the flow over the middle of the link is, wherever the line lies on it,
+cavity's is ``p = f s^2 / (2 k)``. At the line the pressure gradient vanishes, and the surfaces alone carry the oil.
+Integrated from there, the flow over the middle of the link is, wherever on the link the line lies,
 
-    o + f (s - 1/2) = o + k p - N,    N = f (1 - s)^2 / 2,
+    o + f (s - 1/2) = o + k p - N,    N = f (1 - s)^2 / 2.
 
-so that the flow ``o + k p`` of the scheme is too large by N. What the balance of the last full vertex is spared, the
-first vertex of the cavity misses. A flow that is smaller by N is one that carries the fill
+So the scheme's flow ``o + k p`` is too large by N: the last full vertex loses N too much, and the first vertex of the
+cavity gets it. A flow that is smaller by N carries the fill
 
     fill = 1 - N / o = 1 - (f / (2 o)) (1 - s)^2,    s = sqrt(2 k p / f),
 
-instead of 1. So the two branches of the plain film, a full fill and the cavity's pressure, meet not in a corner but
-along this curve, vertex by vertex: nothing is added to any balance, and mass is conserved to rounding. A vertex joins
-the film at s = 0, when its oil fills ``1 - f / (2 o)`` of what leaves it, the gap half a cell downstream. With both
-growing along the curve, the matrices stay column diagonally dominant M-matrices, and there is one solution.
+instead of 1. The two branches of the plain film, a full fill and the cavity pressure, thus meet along this curve and
+not in a corner. Nothing is added to any balance, and mass is conserved to round-off. A vertex joins the film at s = 0,
+when its oil fills ``1 - f / (2 o)`` of its outflow, that is of the gap half a cell downstream. Both pressure and fill
+grow along the curve. So the matrices stay column diagonally dominant M-matrices, and there is one solution.
 
-What a vertex holds follows a curve of its own, ``1 - (f / (2 o)) (1 - s / FILLED)^2`` up to s = FILLED and 1 behind:
-the void in front of a line is of second order of the cell. Were it that of the flows, motions that are over before the
-oil moves on by a cell would have to fill it before they meet the film's pressure, as if it ended at the vertex.
+The fill of the vertex itself follows a curve of its own, ``1 - (f / (2 o)) (1 - s / FILLED)^2`` up to s = FILLED and 1
+beyond: the void in front of a line is of second order of the cell. With the curve of the flows, a motion that is over
+before the oil has moved by a cell would have to fill this void before it meets the film's pressure, as if the film
+ended at the vertex.
 
-f is bounded by o, ``f / sqrt(1 + (f / o)^2)`` for it, which changes it in third order of the cell: a film that opens
-without being carried along keeps its line on the grid. There is no line where the wedge builds pressure up (f <= 0),
-in films at rest, without pressure flow in theta, and next to columns with prescribed pressure. Where a film reforms
-in a gap that opens, the first full vertex is on the curve as well: it is full up to half of what one cell opens by.
+f is bounded by o: ``f / sqrt(1 + (f / o)^2)`` replaces it, a change of third order of the cell. So the line stays on
+the grid in a film that opens without being carried along. There is no line where the wedge builds pressure up (f <= 0),
+in films at rest, without pressure flow in theta, and next to columns with prescribed pressure. Where a film reforms in
+a gap that opens, the first full vertex is on the curve as well: it lacks at most half of the oil by which the gap opens
+over one cell.
 """
 
 from __future__ import annotations
@@ -35,31 +37,32 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_gradients
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line, line_gradients
 from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.links import Coefficients, LinkFlux
 
-# s at which a vertex holds all that it can.
+# s from which on a vertex is full.
 FILLED = 0.25
-# Share of what leaves a vertex that its wedge has to be beyond.
+# Smallest f over o at which a vertex has a curve: less is round-off.
 ROUNDING = 1e-13
 
 
 class Curve(NamedTuple):
-    """The curves of a film's vertices as kernels take them, flat (n m,).
+    """Curves of a film's vertices as kernels take them, flat (n m,).
 
     Attributes
     ----------
     f, k, out : arrays
-        Symbols of the module: bounded f, 0 where there can be no line; k; o.
+        Symbols of the module: bounded f, 0 where there is no line; k; o.
     bend : array
         Derivative of the bounded f to f.
     whole, drop : arrays
-        Pressure above the cavity's at s = 1; fill that lacks at s = 0.
+        Pressure above the cavity's at s = 1; missing fill at s = 0.
     s : array
-        1 where there is no line.
+        Distance of the line from the vertex in cells; 1 where there is none.
     slope, rise : arrays
-        Derivatives of what flows carry and of the fill to the pressure along the curve, 0 where there is no line.
+        Derivatives, to the pressure along the curve, of the fill that flows carry and of the vertex' own; 0 where there
+        is no line.
     """
 
     f: np.ndarray
@@ -73,29 +76,45 @@ class Curve(NamedTuple):
     rise: np.ndarray
 
 
-def straight(shape: tuple[int, int]) -> Curve:
-    """No curve at any vertex."""
-    curve = Curve(*np.zeros((9, shape[0] * shape[1])))
-    curve.s[:] = 1.0
-    return curve
+@njit(cache=True)
+def curve_of(f):
+    """Return `Curve` of its fields (9, n m)."""
+    return Curve(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8])
+
+
+def straight(shape: tuple[int, int]) -> np.ndarray:
+    """Return the fields of a `Curve` without a line at any vertex."""
+    fields = np.zeros((9, shape[0] * shape[1]))
+    fields[6] = 1.0
+    return fields
 
 
 class OilLine:
-    """The rupture line of one mass-conserving film.
+    """Rupture line of one mass-conserving film.
 
     Attributes
     ----------
+    block : (9, n m) array
+        Fields of the `Curve`, as kernels take them.
     fields : Curve
+        Views of ``block``.
     s, rise : (n, m) arrays
-        Of ``fields``.
+        Views of ``fields``.
     late : (n, m) array
-        ``late`` of `exudyn_ehd.film.reynolds.links.Coefficients` with what flows carry less than the fill.
+        ``late`` of `exudyn_ehd.film.reynolds.links.Coefficients`, reduced by the difference between the vertices' fill
+        and the one that flows carry.
+    density : float
+        Density in the cavity over that at ambient pressure.
+    lift_by_speed : (m,) array
+        Derivative to vx of the conductance that a liner adds to k.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self.fields = straight(shape)
+        self.block = straight(shape)
+        self.fields = Curve(*self.block)
         self.s, self.rise = self.fields.s.reshape(shape), self.fields.rise.reshape(shape)
         self.late = np.zeros(shape)
+        self.density, self.lift_by_speed = 1.0, np.zeros(shape[1])
 
     def gradients(
         self,
@@ -106,9 +125,11 @@ class OilLine:
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> tuple[LineGradients, LineGradients]:
-        """Derivatives of what flows carry from the vertices at the line, and of their fills, at fixed pressure.
+        """Derivatives, at fixed pressure, of the fills that flows carry from the vertices at the line, and of the
+        vertices' fills.
 
-        For the last solution, to the film's ``gaps`` at vertices and links; ``rows`` are no unknowns here.
+        They are of the last solution, to the film's ``gaps`` at vertices and links; ``rows`` are flat vertices, not
+        unknowns.
         """
         places = np.flatnonzero(self.fields.s < 1.0)
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
@@ -116,31 +137,28 @@ class OilLine:
         for end in (1.0, FILLED):
             by, weights = np.zeros((8, places.size)), np.empty((3, places.size))
             _curve_weights(places, self.fields, end, weights)
+            weights[::2] *= self.density
             line_gradients(places, weights[:2], *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
             _outflow_gradients(places, weights[2], *gaps, slopes, *speeds, mesh, by)
+            by[6] += weights[1] * self.lift_by_speed[places % self.lift_by_speed.size]
             out.append(LineGradients(places, places, by))
         return out[0], out[1]
 
     def balance_gradients(
-        self,
-        fills: tuple[LineGradients, LineGradients],
-        film: Coefficients,
-        rho: np.ndarray,
-        inverse_step: float,
-        unknowns: np.ndarray,
+        self, fills: tuple[LineGradients, LineGradients], film: Coefficients, store: np.ndarray, unknowns: np.ndarray
     ) -> LineGradients:
-        """What the balances of the ``unknowns`` (count,), flat vertices, change by with what `gradients` returns: an
-        entry for every balance and vertex at the line; ``rho`` (n, m): density."""
+        """Derivatives of the balances of the ``unknowns`` (count,), flat vertices, through the fills of `gradients`:
+        one entry for every balance and vertex at the line. ``film`` and ``store``: of `FilmSolver.fill_weights`."""
         carried, full = fills
         rows, places = np.empty((2, 5 * full.places.size), dtype=np.int64)
-        by = np.empty((8, 5 * full.places.size))
-        count = _spread_fills(full.places, carried.by, full.by, film, rho, inverse_step, unknowns, rows, places, by)
+        by = np.empty((len(full.by), 5 * full.places.size))
+        count = _spread_fills(full.places, carried.by, full.by, film, store, unknowns, rows, places, by)
         return LineGradients(rows[:count], places[:count], by[:, :count])
 
 
 @njit(cache=True)
 def curve_terms(film, b, curve):
-    """f, k, o and what follows from them, for `Coefficients` and the right-hand side b (n, m)."""
+    """Set f, k, o and the fields that follow from them, for `Coefficients` and the right-hand side b (n, m)."""
     n, m = b.shape
     along, f_x, f_z = film.kx.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
     rest, known = b.reshape(-1), film.fixed.reshape(-1)
@@ -170,7 +188,7 @@ def curve_terms(film, b, curve):
 
 @njit(cache=True, inline="always")
 def lack(s, end):
-    """What lacks at s of all that lacks at s = 0, and its derivative to s, for a curve that ends at s = ``end``."""
+    """Return the missing fill over that at s = 0, and its derivative to s, for a curve that ends at s = ``end``."""
     if s >= end:
         return 0.0, 0.0
     left = 1.0 - s / end
@@ -179,7 +197,7 @@ def lack(s, end):
 
 @njit(cache=True)
 def _curve_weights(places, curve, end, out):
-    """Derivatives (3, c) of ``1 - drop lack(s, end)`` at ``places`` (c,) to the right-hand side, to k and to o."""
+    """Set derivatives (3, c) of ``1 - drop lack(s, end)`` at ``places`` (c,) to the right-hand side, k and o."""
     for q in range(places.size):
         c = places[q]
         s, f, o = curve.s[c], curve.f[c], curve.out[c]
@@ -195,7 +213,7 @@ def _curve_weights(places, curve, end, out):
 
 @njit(cache=True)
 def _outflow_gradients(places, by_out, H, HF, slopes, vx, vz, mesh, by):
-    """Add what the fills change by with o; parameters as for `rupture_line.line_gradients`."""
+    """Add the derivatives of the fills through o; parameters as for `rupture_line.line_gradients`."""
     mesh = Mesh(*mesh)
     n, m = H.shape
     for q in range(places.size):
@@ -215,10 +233,10 @@ def _outflow_gradients(places, by_out, H, HF, slopes, vx, vz, mesh, by):
 
 @njit(cache=True)
 def add_curve(curve, terms, density, slopes):
-    """Add to the derivatives (5, n m) of flows and storage what the fills at the line follow the pressure by.
+    """Add the derivatives through the fills at the line, which follow the pressure, to ``slopes`` (5, n m).
 
-    ``density`` (n, m), None: 1; ``slopes``: of `exudyn_ehd.film.reynolds.balance.film_slopes`, the line's vertices
-    among the full ones.
+    ``density`` (n, m), None: 1; ``slopes``: of `exudyn_ehd.film.reynolds.balance.film_slopes`, where the line's
+    vertices are among the full ones.
     """
     m, size = terms.kx.shape[1], terms.kx.size
     along, across, area, grow = (
@@ -249,13 +267,12 @@ def add_curve(curve, terms, density, slopes):
 
 
 @njit(cache=True)
-def _spread_fills(fills, by_carried, by_fill, film, density, inverse_step, unknowns, rows, places, by):
-    """`OilLine.balance_gradients` of the vertices ``fills``; returns how many entries there are."""
+def _spread_fills(fills, by_carried, by_fill, film, store, unknowns, rows, places, by):
+    """Set the entries of `OilLine.balance_gradients` for the vertices ``fills``; returns their number."""
     n, m = film.H.shape
     number = np.full(n * m, -1)
     for r in range(unknowns.size):
         number[unknowns[r]] = r
-    rho = density.reshape(-1)
     targets, shares, count = np.empty(5, dtype=np.int64), np.empty(5), 0
     for q in range(fills.size):
         c = fills[q]
@@ -269,25 +286,33 @@ def _spread_fills(fills, by_carried, by_fill, film, density, inverse_step, unkno
         shares[2] = prompt * min(film.fx[prv, j], 0.0)
         shares[3] = -prompt * max(film.fz[i, j], 0.0) if j + 1 < m else 0.0
         shares[4] = prompt * min(film.fz[i, j - 1], 0.0) if j > 0 else 0.0
-        grow = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
-        for e in range(1, 5):
-            shares[e] *= 0.5 * (rho[c] + rho[targets[e]])
-        shares[0], store = -(shares[1] + shares[2] + shares[3] + shares[4]), film.area[i, j] * grow * rho[c]
+        shares[0] = -(shares[1] + shares[2] + shares[3] + shares[4])
         for e in range(5):
             if shares[e] != 0.0 and number[targets[e]] >= 0:
                 rows[count], places[count] = number[targets[e]], c
-                for d in range(8):
-                    by[d, count] = shares[e] * by_carried[d, q] + (store * by_fill[d, q] if e == 0 else 0.0)
+                for d in range(by.shape[0]):
+                    by[d, count] = shares[e] * by_carried[d, q] + (store[i, j] * by_fill[d, q] if e == 0 else 0.0)
                 count += 1
     return count
 
 
-def weigh_flows(lam: np.ndarray, film: Coefficients, rho: np.ndarray) -> np.ndarray:
-    """What adjoints (k, n, m) of the balances make of their derivatives to what flows carry from vertices (k, n, m);
-    ``rho`` (n, m): density."""
+def contract_fills(
+    lam: np.ndarray,
+    fills: tuple[LineGradients, LineGradients],
+    film: Coefficients,
+    store: np.ndarray,
+    fields: tuple[np.ndarray, ...],
+) -> None:
+    """Add the adjoint gradients through the fills of `OilLine.gradients`, as `contract_line` does. ``film`` and
+    ``store``: of `FilmSolver.fill_weights`."""
+    for weighed, line in zip((weigh_flows(lam, film), lam * store), fills, strict=True):
+        contract_line(weighed, line, *fields)
+
+
+def weigh_flows(lam: np.ndarray, film: Coefficients) -> np.ndarray:
+    """Derivatives (k, n, m) of adjoint functionals lam (k, n, m) to the fills that flows carry from vertices."""
     out = np.zeros_like(lam)
     for axis, f in ((1, film.fx), (2, film.fz)):
-        f = f * 0.5 * (rho + np.roll(rho, -1, axis - 1))
         on, back = np.maximum(f, 0.0), np.roll(np.maximum(-f, 0.0), 1, axis - 1)
         out += film.prompt * (on * (lam - np.roll(lam, -1, axis)) + back * (lam - np.roll(lam, 1, axis)))
     return out

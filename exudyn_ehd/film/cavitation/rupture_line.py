@@ -116,7 +116,7 @@ class RuptureLine:
         return LineGradients(rows, places, by)
 
     def weights(self, places: np.ndarray) -> np.ndarray:
-        """What -N changes by at vertices (c,) with their sources b and their mean conductance (2, c)."""
+        """Derivatives (2, c) of -N at vertices (c,) to their right-hand side b and to their mean conductance k."""
         out = np.empty((2, places.size))
         line_weights(places, self.f, self.k, self.s, out)
         return out
@@ -283,7 +283,7 @@ def line_matrices(line: LineGradients, shape: tuple[int, int], count: int) -> tu
 
 
 def to_true_gap(line: LineGradients, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> LineGradients:
-    """From the film's gap to the true one, by what a gap limiter returns (n, m)."""
+    """Convert gradients to the film's gap to gradients to the true gap, with a gap limiter's slopes (n, m)."""
     n, m = slope.shape
     i, j = np.divmod(line.places, m)
     by = line.by.copy()

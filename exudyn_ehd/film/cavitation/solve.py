@@ -1,16 +1,17 @@
 """Semismooth Newton's method for a film in the unknowns of `exudyn_ehd.film.cavitation.states`.
 
-The balance of a vertex is the sum of what its links carry and of what it stores, `exudyn_ehd.film.reynolds.balance`,
-less N of `exudyn_ehd.film.cavitation.rupture_line` where a film of Swift and Stieber ends inside a cell. Unknowns are
-all vertices of a film that conserves its mass or does not rupture, and those of the unbroken film of Swift and Stieber,
-which a vertex leaves at u = 0 and joins where oil piles up. Without a density every matrix is a column diagonally
-dominant M-matrix, whatever the sets, so that the film exists and is unique (see
-`exudyn_ehd.film.cavitation.steady_oil` for the exceptions).
+The mass balance of a vertex is the sum of the flows over its links and of its storage, see
+`exudyn_ehd.film.reynolds.balance`. Where a film of Swift and Stieber ends inside a cell, N of
+`exudyn_ehd.film.cavitation.rupture_line` is subtracted. In a film that conserves its mass or does not rupture, all
+vertices have unknowns. In a film of Swift and Stieber only those of the unbroken film do: a vertex leaves it at u = 0
+and joins it where oil piles up. Unless the density follows the pressure, every matrix is a column diagonally dominant
+M-matrix, whatever the sets. So the film exists and is unique (see `exudyn_ehd.film.cavitation.steady_oil` for the
+exceptions).
 
-The factor of the film before leads the first step: if the film has hardly changed it leads all of them, and how they
-shrink says what is left (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 1996, section IV.8); else it
-foretells the sets, and every further step has a factor of its own. Without curves and densities the balances are linear
-as long as the sets stay: a step with its own factor ends.
+The first step is a chord step with the factor of the previous film. If the film has hardly changed, all steps are chord
+steps, and their contraction rate tells the error (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
+1996, section IV.8). Else the first step predicts the sets, and every further step has a factor of its own. Without
+curves and densities the balances are linear as long as the sets stay: a step with its own factor then is the last.
 """
 
 from __future__ import annotations
@@ -24,53 +25,50 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_one
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_terms
-from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.cavitation.states import (
     FULL,
     OIL,
     RUPTURE,
     add_sink,
-    empty_cavity,
     join_states,
     move_states,
+    place_states,
     set_states,
     settle_states,
     start_states,
     take_sink,
 )
-from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row, imbalance
+from exudyn_ehd.film.cavitation.steady_oil import imbalance
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, know_at
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
 from exudyn_ehd.film.reynolds.lagging_void import hold_back
 from exudyn_ehd.film.reynolds.links import Coefficients
-from exudyn_ehd.status import Status
 
 MOST_STEPS = 60
-# What a step with an older factor may leave of a film, and a step whose own factor leaves its square.
+# Largest estimated error after a chord step, over the peak pressure; and largest change of u on a curve, and weighted
+# change of the density, in a last step with its own factor, whose error is of the order of its square.
 LEFT, SETTLED = 1e-13, 1e-8
-# Share that steps with an older factor have to shrink to, for another one: more takes longer than a factor of its own.
+# Largest contraction rate at which chord steps continue: at larger ones a factor of its own is faster.
 REUSABLE = 0.01
-# Balance of a vertex over the largest flow: more is no rounding, which a density near the end of its law has more of.
-# Over the largest flow that drives the film: more is that of a singular matrix.
-EVEN, EVEN_DENSE, BALANCED = 1e-13, 1e-11, 1e-8
-# Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
-# such film exists.
+# Largest residual of a vertex that counts as round-off, over the largest flow; the second one for a density, as
+# round-off grows near the end of its law. Over the largest flow that drives the film; the second one where no pressure
+# moves by more than its round-off: larger residuals come from a singular matrix.
+EVEN, EVEN_DENSE, BALANCED, BALANCED_AT_REST = 1e-13, 1e-11, 1e-8, 1e-6
+# Largest negative fill that counts as round-off in a dry cavity. Larger ones come from rates that last in a film
+# without history: no such film exists.
 LARGEST_DEFICIT = 1e-6
-# Change of a place on a curve over the place, behind whose step with a factor of its own a second one with it pays.
+# Largest change of u on a curve over u, in a step with its own factor, after which a chord step with that factor pays.
 WORN = 0.3
-# Weight of a change of the density against that of a place on a curve. The square of the weighted change bounds what a
-# step leaves of a pressure over the peak: a mineral oil's law bends by 2 b + alpha, over its slope a, and 6 is the root
-# of that. Larger values cost another step.
+# Weight of a relative change of the density against a change of u on a curve. The square of the weighted change bounds
+# the error of a pressure over the peak after a step: that of a mineral oil is (2 b + alpha) / a, about 6^2, times the
+# square of the density's change. Larger values cost another step.
 BENDS = 6.0
-# Change of a pressure over the peak, or of a fill, that takes digits of small pressures and fills with it: another step
-# with the same factor brings them back.
+# Largest change of a pressure over the peak, or of a fill, in a last step. Larger ones lose digits of small pressures
+# and fills, which a chord step brings back.
 FAR = 10.0
-# Compressibility of an oil, over its own, that films do not feel.
-SOFTEST = 1e-9
-# Storages in pseudo time over the largest flow into a vertex by the smallest vertex: of the first one, and of the last
-# one from which a film without storage is tried.
-FIRST_RATE, LAST_RATE = 0.01, 1e-7
+# Outcomes of `look`.
+GOES_ON, FOUND, LOST = 0, 1, 2
 
 
 @njit(cache=True)
@@ -92,7 +90,7 @@ def _factor(film, terms, kind, oil, curve, in_cells, full, fill, factor):
 
 @njit(cache=True, nogil=True)
 def factor_film(film, since, kind, oil, curve, in_cells, full, P, fill, factor):
-    """Factor of a solved film's matrix; returns (ok, count, width). Parameters as for `solve_film`."""
+    """Factor the matrix of a solved film; returns (ok, count, width). Parameters as for `solve_film`."""
     if oil is not None:
         scale, floor, law, known, _, rho_P, _ = oil
         density_slope_at(P, scale, floor, law, known, rho_P)
@@ -100,8 +98,79 @@ def factor_film(film, since, kind, oil, curve, in_cells, full, P, fill, factor):
 
 
 @njit(cache=True)
+def look(terms, late, kind, curve, even, is_last, full, state, rest, progress):
+    """Add vertices at which oil piles up to the film, and judge the residual; returns (outcome, progress).
+
+    Parameters
+    ----------
+    terms : `FilmTerms`
+    late : (n, m) array
+        ``late`` of the terms without curves.
+    kind, curve, full, state
+        As for `solve_film`, pressures above the cavity's.
+    even : float
+        Largest residual of a film that is found, over the largest flow.
+    is_last : bool
+        Whether no step is left. The residual then decides: pressures of a film at rest are round-off and never
+        converge.
+    rest : (n, m) array
+        Mass balances, less N.
+    progress : tuple
+        Whether the factor serves for another step; whether it is that of a film on the way here; whether the last step
+        converged; sum of the third value of `move_states` since that factor; largest change in the last step, of
+        pressures over the peak, of u on curves or of fills.
+    """
+    (ready, own, done, drift, last), (u, P, fill) = progress, state
+    if kind == RUPTURE and join_states(terms, curve, rest, full, u) > 0:
+        done = ready = False
+        set_states(terms, late, curve, full, u, P, fill)
+    outcome = GOES_ON
+    if done or is_last:
+        of_drive, of_flows = imbalance(terms, P, rest, full, kind == RUPTURE)
+        # where a pressure's last digit changes the balances by more, the residual can't be smaller
+        rests = done and last <= LEFT
+        if of_flows <= even or rests:
+            least = settle_states(terms, kind, full, P, fill)
+            sound = least > -LARGEST_DEFICIT and of_drive <= (BALANCED_AT_REST if rests else BALANCED)
+            outcome = FOUND if sound else LOST
+        elif is_last:
+            outcome = LOST
+        ready = own if done else ready
+    return outcome, (ready, own, done, drift, last)
+
+
+@njit(cache=True)
+def take_step(kind, bends, curve, factor, size, is_first, fresh, x, full, state, rest, progress):
+    """Take Newton's step; returns (whether it is finite, number of vertices that change their side, progress).
+
+    Parameters
+    ----------
+    bends : that of `move_states`
+    factor : (order, lower, upper, inv_diag)
+    size : (count, width)
+    is_first, fresh : bool
+        Whether it is the first step of the film, and whether the factor is that of the present state.
+    """
+    (order, lower, upper, inv_diag), (count, width), flat = factor, size, rest.reshape(-1)
+    _, own, _, drift, last = progress
+    for r in range(count):
+        x[r] = -flat[order[r]]
+    if count > 0:
+        solve_lu_one(dense_band(lower, count, width), dense_band(upper, count, width), inv_diag, count, width, x)
+    changes, moved, bent, worn = move_states(kind, bends, curve, order, count, x, full, state[0], state[1])
+    if fresh:
+        own, drift = True, 0.0
+        done, ready = changes == 0 and bent <= SETTLED and moved <= FAR, changes == 0 and worn <= WORN
+    else:
+        # the contraction rate is unknown after the first step
+        done = changes == 0 and moved * moved <= LEFT * last
+        ready = changes == 0 and moved <= REUSABLE * (1.0 if is_first else last)
+    return moved < 1e300, changes, (ready, own, done, drift + bent, moved)
+
+
+@njit(cache=True)
 def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state):
-    """`solve_film` with pressures P above the cavity's."""
+    """Solve as `solve_film`, with pressures P above the cavity's."""
     (film, late, b), (u, P, fill), (order, _, lower, upper, inv_diag, _) = links, state, factor
     (known, ready, count, width), (inverse_step, mass_old, _) = start, since
     flat, given = film.late.reshape(-1), late.reshape(-1)
@@ -113,10 +182,10 @@ def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full
     curve.s[:] = 1.0
     curve.slope[:] = 0.0
     curve.rise[:] = 0.0
-    absolute, density = rest, (0.0, rest, np.inf, rest, 1.0)
+    absolute, bends = rest, (0.0, rest, np.inf, rest, 1.0)
     if oil is not None:
         scale, floor, law, at, rho, rho_P, crosses = oil
-        absolute, density = rest.copy(), (BENDS, rho_P, np.inf if crosses else law.highest / scale - pc, at, scale)
+        absolute, bends = rest.copy(), (BENDS, rho_P, np.inf if crosses else law.highest / scale - pc, at, scale)
     if in_cells and kind == OIL:
         curve_terms(film, b, curve)
         if oil is not None:
@@ -125,11 +194,11 @@ def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full
                 curve.whole[c] *= rho[0, 0]
     if not known:
         start_states(film, pc, curve, full, u)
-    elif kind == RUPTURE:
-        empty_cavity(full, u)
-    flat, own, done, last, drift = rest.reshape(-1), False, False, LEFT, 0.0
+    else:
+        place_states(curve, full, P, fill, u)
+    progress, band = (ready, False, False, 0.0, LEFT), (order, lower, upper, inv_diag)
+    set_states(terms, carried, curve, full, u, P, fill)
     for step in range(MOST_STEPS):
-        set_states(film, carried, curve, full, u, P, fill)
         if oil is None:
             film_balance(P, fill, None, terms, rest)
         else:
@@ -138,65 +207,59 @@ def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full
                 shifted[c] = above[c] + pc
             density_at(absolute, scale, floor, law, at, rho)
             film_balance(P, fill, rho, terms, rest)
-        if kind == RUPTURE:
-            if join_states(film, curve, rest, full, u) > 0:
-                done = ready = False
-                set_states(film, carried, curve, full, u, P, fill)
-            if in_cells:
-                take_sink(curve, rest)
-        # pressures of a film at rest are rounding, and never settle
-        if done or step + 1 == MOST_STEPS:
-            of_drive, of_flows = imbalance(film, terms, P, rest, full, kind == RUPTURE)
-            if of_flows <= (EVEN if oil is None else EVEN_DENSE):
-                sound = settle_states(film, kind, full, P, fill) > -LARGEST_DEFICIT and of_drive <= BALANCED
-                return sound, step, done and own and drift <= LEFT, count, width
-            ready = own if done else ready
-        fresh = not ready
+        if kind == RUPTURE and in_cells:
+            take_sink(curve, rest)
+        even, is_last = EVEN if oil is None else EVEN_DENSE, step + 1 == MOST_STEPS
+        outcome, progress = look(terms, carried, kind, curve, even, is_last, full, state, rest, progress)
+        if outcome != GOES_ON:
+            return outcome == FOUND, step, is_exact(progress), count, width
+        fresh = not progress[0]
         if fresh:
             if oil is not None:
                 density_slope_at(absolute, scale, floor, law, at, rho_P)
             ok, count, width = _factor(film, terms, kind, oil, curve, in_cells, full, fill, factor)
             if not ok:
                 return False, step + 1, False, count, width
-            own, drift = True, 0.0
-        for r in range(count):
-            x[r] = -flat[order[r]]
-        solve_lu_one(dense_band(lower, count, width), dense_band(upper, count, width), inv_diag, count, width, x)
-        changes, moved, bent, worn = move_states(kind, density, curve, order, count, x, full, u, P)
-        if not moved < 1e300:
+        ok, _, progress = take_step(
+            kind, bends, curve, band, (count, width), step == 0, fresh, x, full, state, rest, progress
+        )
+        if not ok:
             return False, step + 1, False, count, width
-        if fresh:
-            done, ready = changes == 0 and bent <= SETTLED and moved <= FAR, changes == 0 and worn <= WORN
-        else:
-            # nobody knows how the first step's successors will shrink
-            done = changes == 0 and moved * moved <= LEFT * last
-            ready = changes == 0 and moved <= REUSABLE * (last if step > 0 else 1.0)
-        drift, last = drift + bent, moved
+        set_states(terms, carried, curve, full, u, P, fill)
     return False, MOST_STEPS, False, count, width
+
+
+@njit(cache=True)
+def is_exact(progress):
+    """Return whether the factor at the end is that of the solved film."""
+    _, own, done, drift, _ = progress
+    return done and own and drift <= LEFT
 
 
 @njit(cache=True, nogil=True)
 def solve_film(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state):
-    """Solve from ``full`` and u, in place; returns (found, steps, whether the factor is exact, count, width).
+    """Solve for u, pressures and fills, in place; returns (found, steps, whether the factor is exact, count, width).
 
     Parameters
     ----------
     links : (Coefficients, (n, m) array, (n, m) array)
         Coefficients, their ``late`` without curves, right-hand side of `exudyn_ehd.film.reynolds.links`.
     since : (float, (n, m) array, bool)
-        1 / time step since the content, 0 of a steady film; that content; whether the step stands for an instant.
+        1 / time step, 1/s, 0 of a steady film; content at its start; whether the step stands for an instant.
     pc : float
-        The cavity's pressure, 0 without one.
+        Scaled cavity pressure, 0 without one.
     kind : int
         FULL, CLIPPED, RUPTURE or OIL of `states`.
     oil : (scale, floor, law, known, rho, rho_P, crosses) or None
         Density of `exudyn_ehd.film.lubricant.density_field`; None: it does not follow the pressure.
     in_cells : bool
         Whether vertices have curves.
-    start : (whether u is that of another film, whether ``factor`` is, count, width)
+    start : (whether P and fill are a warm start, else ``full`` alone is used; whether ``factor`` serves; count; width)
     factor : (order, number, lower, upper, inv_diag, slopes)
     x : (n m,) array
-        Newton's step.
+        Buffer of Newton's step.
+    full : (n, m) bool array
+        Active set, in and out.
     state : (u, P, fill)
         Unknowns, pressures and fills (n, m).
     """
@@ -217,15 +280,15 @@ def solve_film(links, since, pc, kind, oil, curve, in_cells, start, factor, x, f
 def solve_system(
     s: FilmSystem, work: Workspace, film: Coefficients | None = None, since: tuple[float, np.ndarray] | None = None
 ) -> tuple[bool, int]:
-    """`solve_film` of a system, from its last film if ``work.known``, else from ``work.active``: (found, steps).
+    """Solve a system by `solve_film`, from its last film if ``work.known``, else from ``work.active``: (found, steps).
 
-    ``film``, ``since``: other coefficients and history than the system's.
+    ``film``, ``since``: coefficients and history that replace the system's.
     """
     oil = work.oil
     ok, steps, oil.exact, work.count, work.width = solve_film(
         (s.coefficients if film is None else film, s.late, s.b),
         (*((s.inverse_step, s.mass_old) if since is None else since), s.instant),
-        _base(s),
+        base_of(s),
         s.kind,
         None if s.density is None else s.density.fields(s.floor),
         s.curve,
@@ -241,7 +304,7 @@ def solve_system(
 
 
 def factor_solution(s: FilmSystem, work: Workspace) -> None:
-    """Make the factor that of the last solution."""
+    """Make the factor in the workspace that of the last solution."""
     oil = work.oil
     if not oil.exact:
         oil.exact, work.count, work.width = factor_film(
@@ -258,70 +321,10 @@ def factor_solution(s: FilmSystem, work: Workspace) -> None:
         )
 
 
-def _base(s: FilmSystem) -> float:
-    """The cavity's scaled pressure, 0 of a film without cavitation."""
+def base_of(s: FilmSystem) -> float:
+    """Return the scaled cavity pressure, 0 for a film without cavitation."""
     return s.cavity_pressure if s.kind != FULL else 0.0
 
 
 def _buffers(work: Workspace) -> tuple[np.ndarray, ...]:
     return work.order, work.number, work.lower, work.upper, work.inv_diag, work.oil.slopes
-
-
-def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """The film that Newton's method does not find from a full one, in pseudo time.
-
-    Where the density follows the pressure it starts from the film of an oil that is next to incompressible; if no
-    pressure of the law's range carries that one, the film has NO_PRESSURE.
-    """
-    density, steps = s.density, 0
-    if density is not None:
-        work.known = False
-        if s.kind != RUPTURE or not work.warm:
-            np.logical_not(s.fixed, out=work.active)
-        scale, density.scale = density.scale, SOFTEST * density.scale
-        ok, steps = solve_system(s, work)
-        density.scale = scale
-        beyond = ok and density.is_exhausted(s.linear_pressure)
-        for crosses in (True, False) if ok else ():
-            # a film beyond the end of the law bounces there for ever, unless its steps stop
-            work.known, density.crosses = True, crosses
-            ok, count = solve_system(s, work)
-            steps += count
-            if ok:
-                break
-        density.crosses = False
-        if ok or beyond or density.is_exhausted(s.linear_pressure):
-            return (Status.CONVERGED if ok else Status.NO_PRESSURE), steps
-    status, count = follow(s, work)
-    return status, steps + count
-
-
-def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Follow the film in pseudo time from a full one; NO_OIL if rows run dry on the way."""
-    largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
-    largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - _base(s)), initial=0.0))
-    rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
-    mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
-    work.known = runs_dry = False
-    np.logical_not(s.fixed, out=work.active)
-
-    def attempt(extra: float) -> tuple[bool, int]:
-        nonlocal runs_dry
-        inverse = s.inverse_step + extra
-        blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
-        film = s.coefficients
-        if s.inverse_step == 0.0 < extra:
-            # the gap's rate goes on: extra (fill H - mass) + fill dH/dt
-            film = film._replace(H=s.H + s.H_t / extra)
-        ok, steps = solve_system(s, work, film, (inverse, blend))
-        if ok:
-            np.multiply(s.fill, s.H, out=mass)
-            if s.density is not None:
-                np.multiply(mass, s.density.rho, out=mass)
-            runs_dry = has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)
-        return ok, steps
-
-    ok, steps = pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE, least=LAST_RATE)
-    if ok:
-        return Status.CONVERGED, steps
-    return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps

@@ -1,22 +1,22 @@
 """One unknown u per vertex: pressure and film fraction of a film, with their derivatives.
 
-Where ``u >= 0`` the vertex is full, where ``u <= 0`` it is in the cavity; both sides meet at u = 0. With the pressure P
-above the cavity's and the curve of `exudyn_ehd.film.cavitation.oil_line` that a vertex may have (``whole``, ``drop``;
-both 0 without),
+A vertex is full where ``u >= 0`` and cavitated where ``u <= 0``; both sides meet at u = 0. P is the pressure above the
+cavity's; ``whole`` and ``drop`` describe the curve of `exudyn_ehd.film.cavitation.oil_line` that a vertex may have, and
+are 0 without one:
 
     full, without curve     P = u,                  flows carry 1,
     on the curve, u < 1     P = whole u^2,          flows carry 1 - drop (1 - u)^2,
     behind it, u >= 1       P = whole (2 u - 1),    flows carry 1,
     in the cavity           P = 0,                  flows carry 1 - drop + u.
 
-The vertex holds as much, but on its curve ``1 - drop (1 - u / FILLED)^2`` up to u = FILLED, and 1 behind. All of them
-rise with u and have continuous derivatives but at u = 0. Newton's matrix is that of
-`exudyn_ehd.film.reynolds.balance` in P at full vertices and in the fill at others, and its steps become those of u by
-dP/du: a scaling of columns.
+The vertex has the fill that its flows carry, except on its curve: there it has ``1 - drop (1 - u / FILLED)^2`` up to
+u = FILLED, and 1 beyond. All of them rise with u, with continuous derivatives except at u = 0. Newton's matrix is that
+of `exudyn_ehd.film.reynolds.balance` in P at full vertices and in the fill at others. Dividing its steps by dP/du, a
+scaling of columns, gives the steps of u.
 
-A film of Swift and Stieber has drop = 0, and leaves ``N = f (1 - u)^2 / 2`` of
-`exudyn_ehd.film.cavitation.rupture_line` in the balance of a vertex on its curve; in its cavity nothing is unknown. A
-film that does not rupture has P = u everywhere.
+A film of Swift and Stieber has drop = 0. At a vertex on its curve, ``N = f (1 - u)^2 / 2`` of
+`exudyn_ehd.film.cavitation.rupture_line` is left in the balance; its cavitated vertices have no unknown. A film that
+does not rupture has P = u everywhere.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.oil_line import FILLED, lack
 
-# Least u on a curve, where dP/du vanishes: below, a vertex is one of the cavity for all that can be told.
+# Smallest u on a curve, as dP/du vanishes at 0: below, a vertex can't be told from one in the cavity.
 LEAST = 1e-8
-# Pressures over the peak, and fills, by which a vertex may lie on the other side: some thousand roundings.
+# Pressure over the peak, and fill, by which a vertex may violate its bound: some thousand units of round-off.
 ROUNDING = 1e-12
 
 
@@ -40,7 +40,7 @@ FULL, CLIPPED, RUPTURE, OIL = 0, 1, 2, 3
 
 @njit(cache=True)
 def start_states(film, pc, curve, full, u):
-    """From the sets alone: fully developed curves, no gauge pressure elsewhere, cavities at the kink."""
+    """Set u of a cold start: fully developed curves, no gauge pressure at other full vertices, u = 0 in cavities."""
     known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)
     for c in range(x.size):
         x[c] = 0.0
@@ -49,19 +49,11 @@ def start_states(film, pc, curve, full, u):
 
 
 @njit(cache=True)
-def empty_cavity(full, u):
-    """Unknowns in the cavity of a film of Swift and Stieber are 0, also of vertices that were prescribed before."""
-    sets, x = full.reshape(-1), u.reshape(-1)
-    for c in range(x.size):
-        x[c] = x[c] if sets[c] else 0.0
-
-
-@njit(cache=True)
 def set_states(film, late, curve, full, u, P, fill):
-    """Pressures, fills and slopes of the curves from the unknowns.
+    """Set pressures, fills and slopes of the curves from u.
 
-    ``late`` is that of `exudyn_ehd.film.reynolds.lagging_void`; ``film.late`` gets what curves carry less than the
-    fill.
+    ``late`` is that of `exudyn_ehd.film.reynolds.lagging_void`. On curves ``film.late`` is smaller by ``prompt`` times
+    the difference between the fill that a vertex has and the one that its flows carry.
     """
     known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)
     pressures, fills = P.reshape(-1), fill.reshape(-1)
@@ -90,11 +82,23 @@ def set_states(film, late, curve, full, u, P, fill):
 
 
 @njit(cache=True)
-def join_states(film, curve, rest, full, u):
-    """Vertices of a film of Swift and Stieber at which oil piles up join it; returns how many do.
+def place_states(curve, full, P, fill, u):
+    """Set u from pressures above the cavity's at ``full`` vertices, from fills at others."""
+    sets, x, pressures, fills = full.reshape(-1), u.reshape(-1), P.reshape(-1), fill.reshape(-1)
+    for c in range(x.size):
+        whole = curve.whole[c]
+        p = max(pressures[c], 0.0) / whole if whole > 0.0 else pressures[c]
+        if whole > 0.0:
+            p = np.sqrt(p) if p < 1.0 else 0.5 * (p + 1.0)
+        x[c] = p if sets[c] else min(fills[c] - 1.0 + curve.drop[c], 0.0)
 
-    At the line they meet their own balances between given neighbours: ``g u^2 / 2 + u = e``. ``rest`` (n, m): what
-    leaves them less what comes in, without N.
+
+@njit(cache=True)
+def join_states(film, curve, rest, full, u):
+    """Add the vertices at which oil piles up to a film of Swift and Stieber; returns their number.
+
+    At the line their own balances between given neighbours are solved: ``g u^2 / 2 + u = e``. ``rest`` (n, m): outflow
+    minus inflow, less N of vertices in the film.
     """
     known, sets, x, leaves, joined = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1), rest.reshape(-1), 0
     along, across, m = film.kx.reshape(-1), film.kz.reshape(-1), u.shape[1]
@@ -105,14 +109,17 @@ def join_states(film, curve, rest, full, u):
         joined += 1
         sets[c], x[c] = True, 0.0
         if f > 0.0:
-            e, g = 0.5 - leaves[c] / f, (along[c - m] + along[c] + across[c - 1] + across[c]) / curve.k[c] - 1.0
+            # a liner adds to k alone
+            g = max((along[c - m] + along[c] + across[c - 1] + across[c]) / curve.k[c], 2.0) - 1.0
+            e = 0.5 - leaves[c] / f
             x[c] = min(2.0 * e / (1.0 + np.sqrt(1.0 + 2.0 * g * e)), 1.0)
+            leaves[c] -= 0.5 * f * (1.0 - max(x[c], LEAST)) ** 2
     return joined
 
 
 @njit(cache=True)
 def take_sink(curve, rest):
-    """Take N of `exudyn_ehd.film.cavitation.rupture_line` off the balances (n, m)."""
+    """Subtract N of `exudyn_ehd.film.cavitation.rupture_line` from the balances (n, m)."""
     balance = rest.reshape(-1)
     for c in range(balance.size):
         balance[c] -= 0.5 * curve.f[c] * (1.0 - curve.s[c]) ** 2
@@ -120,30 +127,31 @@ def take_sink(curve, rest):
 
 @njit(cache=True)
 def add_sink(curve, slopes):
-    """Add what N changes by with the pressures to the derivatives (5, n m) of flows and storage."""
+    """Add -dN/dp to the derivatives (5, n m) of flows and storage."""
     for c in range(curve.s.size):
         slopes[4, c] += curve.k[c] * (1.0 - curve.s[c]) / curve.s[c]
 
 
 @njit(cache=True)
-def move_states(kind, density, curve, order, count, dx, full, u, P):
+def move_states(kind, bends, curve, order, count, dx, full, u, P):
     """Take Newton's step dx (count,), of pressures where ``full``, else of fills.
 
-    A vertex that crosses u = 0, or the end of its oil's law, stops there and changes its side. As p grows exponentially
-    with P, a step x that raises P goes where the tangent of p(P) leads p, ``(1 - exp(-k x)) / k`` with k = p'' / p'.
-    ``density``: (weight of its changes as those of a place, its slopes (n, m), pressure where its law ends, what
-    `exudyn_ehd.film.lubricant.density_field` knows of the law, Pa per unit of P).
+    A vertex that crosses u = 0, or the end of its oil's law, stops there and changes its side. p grows exponentially
+    with P. A step x that raises P goes where the tangent of p(P) leads p: to ``(1 - exp(-k x)) / k`` with k = p'' / p'.
+    ``bends``: (weight of a relative change of density or gap against a change of u on a curve; these relative changes
+    (n, m) per unit of P; P at which the oil's law ends; fields whose third and fourth are p' and p'' of the law; Pa per
+    unit of P).
 
-    Returns how many vertices stop, the largest change of a pressure over the peak, of a place on a curve, of a fill,
-    that of a place on a curve alone, and the same over the place.
+    Returns the number of vertices that stop, and three largest changes: of a pressure over the peak, of u on a curve or
+    of a fill; of u on a curve or, weighted, of density or gap; of u on a curve over u, or of density or gap.
     """
     sets, x, pressures, peak, last_peak = full.reshape(-1), u.reshape(-1), P.reshape(-1), 0.0, 0.0
-    (weight, _, end, law, scale), rho_P = density, density[1].reshape(-1)
+    (weight, _, end, law, scale), steep = bends, bends[1].reshape(-1)
     for r in range(count):
         if sets[order[r]]:
             before = pressures[order[r]]
             after = before + dx[r]
-            # what is cut off may lie far below what stays
+            # clipped pressures may lie far below the others
             peak = max(peak, after if kind == CLIPPED else abs(after))
             last_peak = max(last_peak, abs(before))
     changes, moved, bent, worn, per_peak = 0, 0.0, 0.0, 0.0, 1.0 / max(peak, ROUNDING * last_peak, 1e-300)
@@ -151,7 +159,8 @@ def move_states(kind, density, curve, order, count, dx, full, u, P):
         c = order[r]
         whole, old, change = curve.whole[c], x[c], dx[r]
         if weight > 0.0 and sets[c]:
-            bent, at = max(bent, weight * abs(rho_P[c] * change)), pressures[c]
+            bent, at = max(bent, weight * abs(steep[c] * change)), pressures[c]
+            worn = max(worn, abs(steep[c] * change))
             thickens = scale * law[3, c] / law[2, c] * change
             if law[3, c] > 0.0 and thickens > 0.0 and at < end < np.inf:
                 change *= -np.expm1(-min(thickens, LARGEST_THICKENING)) / thickens
@@ -184,7 +193,7 @@ def move_states(kind, density, curve, order, count, dx, full, u, P):
 
 @njit(cache=True)
 def settle_states(film, kind, full, P, fill):
-    """Take back what lies on the other side by rounding; returns the least fill before."""
+    """Clip round-off of pressures and fills beyond their bounds; returns the smallest fill before."""
     known, sets, pressures, fills = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1), fill.reshape(-1)
     least = 1.0
     for c in range(sets.size):

@@ -50,7 +50,7 @@ def has_unfed_row(P, H, fixed, turns, pc):
 
 
 @njit(cache=True)
-def imbalance(film, terms, P, balance, full, ruptures):
+def imbalance(terms, P, balance, full, ruptures):
     """Return the largest balance (n, m) of an unknown vertex over the largest flow that drives the film, and over the
     largest flow that it has; P (n, m) above the cavity's.
 
@@ -60,12 +60,12 @@ def imbalance(film, terms, P, balance, full, ruptures):
     n, m = P.shape
     for i in range(n):
         for j in range(m):
-            flows = abs(film.fx[i, j]) + abs(film.fz[i, j])
-            flows += film.area[i, j] * (abs(terms.grow[i, j]) + abs(terms.kept[i, j]))
-            conductance = max(film.kx[i, j], max(film.kz[i, j], film.kz[i, j - 1] if j > 0 else 0.0))
+            flows = abs(terms.fx[i, j]) + abs(terms.fz[i, j])
+            flows += terms.area[i, j] * (abs(terms.grow[i, j]) + abs(terms.kept[i, j]))
+            conductance = max(terms.kx[i, j], max(terms.kz[i, j], terms.kz[i, j - 1] if j > 0 else 0.0))
             pressed = conductance * abs(P[i, j])
             most = max(most, flows + pressed)
-            if film.fixed[i, j]:
+            if terms.fixed[i, j]:
                 flows += pressed
             elif full[i, j] or not ruptures:
                 worst = max(worst, abs(balance[i, j]) if np.isfinite(balance[i, j]) else np.inf)

@@ -94,7 +94,7 @@ class FilmSystem:
         self.oil_line: OilLine | None = None
         self.density: DensityField | None = None
         self.instant = False
-        self.straight = straight(shape) if kind == OIL else None
+        self.straight = Curve(*straight(shape)) if kind == OIL else None
         self.linked = grid.link_x != 0.0
 
     def count_in_cells(self, grid: FilmGrid, clips: bool) -> None:
@@ -113,15 +113,15 @@ class FilmSystem:
 
     @property
     def curve(self) -> Curve | None:
-        """Where the edge lies of a film that `exudyn_ehd.film.cavitation.solve` solves."""
+        """Curves of the vertices for `exudyn_ehd.film.cavitation.solve`; None of a film that it does not solve."""
         return self.straight if self.oil_line is None else self.oil_line.fields
 
     def take_density(self, density: DensityField) -> None:
-        """From now on the density follows the pressure."""
+        """Let the density follow the pressure in all later solutions."""
         self.density, shape = density, self.H.shape
         if self.kind == OIL:
             return
-        self.fill, self.mass_old, curve = np.ones(shape), np.ones(shape), straight(shape)
+        self.fill, self.mass_old, curve = np.ones(shape), np.ones(shape), Curve(*straight(shape))
         if self.line is not None:
             line = Line(*self.line.block)
             curve = curve._replace(f=line.f, k=line.k, whole=line.whole, s=line.s)
@@ -129,7 +129,7 @@ class FilmSystem:
 
     @property
     def in_cells(self) -> bool:
-        """Whether the film may end inside its cells."""
+        """Return whether the film may end inside its cells."""
         return self.oil_line is not None or self.line is not None
 
     @property

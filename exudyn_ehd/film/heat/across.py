@@ -72,7 +72,7 @@ def on_links(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def flow_factors(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What fluidities multiply conductance, carrier and shear stress by, (n, m) each."""
+    """Factors (n, m) of conductance, carrier and shear stress for the fluidities (n, m, 4) at Lobatto's points."""
     J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)
     return 12.0 * (J2 - J1 * J1 / J0), 2.0 * (1.0 - J1 / J0), 1.0 / J0
 

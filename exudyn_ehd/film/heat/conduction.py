@@ -211,7 +211,7 @@ class Passage:
         self.transfer = self.to[0] + self.to[1]
 
     def gain(self, at: list[np.ndarray]) -> np.ndarray:
-        """What both sides give at their temperatures to a film of none (n, m), W."""
+        """Heat (n, m) from both sides at the temperatures ``at`` into a film of temperature 0, W."""
         return sum((self.by[0][k] + self.by[1][k]) * at[k] for k in (0, 1))
 
     def heat(self, T: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:

@@ -119,7 +119,7 @@ def content_rate(
 
 
 def outside_flows(qz: np.ndarray, balance: np.ndarray, fixed: np.ndarray, unbroken: np.ndarray) -> np.ndarray:
-    """What enters at fixed vertices (n, m): their balance; next to a ruptured film only the flow over the end's link.
+    """Inflow at fixed vertices (n, m): their balance, or beside a ruptured film only the flow over the end's link.
 
     ``qz`` and ``balance`` (n, m): over the links in z, and what leaves or is stored, as of `film_flows`. ``unbroken``
     (n, m) is all True for cavitation models that conserve mass.

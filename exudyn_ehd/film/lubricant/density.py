@@ -55,7 +55,7 @@ class DensityLaw(Protocol):
 
 
 class DensityTable(NamedTuple):
-    """What the kernels need of a `CompressibleLaw`, whatever its density law.
+    """Splines of a `CompressibleLaw` for the kernels, in one form for every density law.
 
     Attributes
     ----------
@@ -168,7 +168,7 @@ class DensityField:
         self._cavity = math.nan, 1.0
 
     def is_exhausted(self, P: np.ndarray) -> bool:
-        """Whether scaled transformed pressures (n, m) reach the end of the law's range."""
+        """Return whether scaled transformed pressures (n, m) reach the end of the law's range."""
         return bool(P.max() * self.scale >= AT_THE_END * self.law.kernel_table.highest)
 
     def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray, bool]:

@@ -148,7 +148,7 @@ class Lubricant:
         return float(self.temperature_law.viscosity(self.temperature, self.density))
 
     def at(self, temperature: float) -> Lubricant:
-        """The same lubricant at another temperature.
+        """Return the same lubricant at another temperature.
 
         Parameters
         ----------

@@ -179,7 +179,8 @@ class ShearThinning(FluxEffect):
         return exact
 
     def response(self) -> tuple[np.ndarray, ...]:
-        """What Newton's matrix needs of the last call of `apply`, as `exudyn_ehd.film.banded.assemble.add_corners`."""
+        """Fields of the last call of `apply` for Newton's matrix, as `add_tangents` and `add_corners` of
+        `exudyn_ehd.film.banded.assemble` take them."""
         along, across = self.found[:, 3].copy(), self.found[:, 4].copy()
         across[0] *= self.lengths[0][:, None]
         across[1] *= self.lengths[1]

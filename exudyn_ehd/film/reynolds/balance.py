@@ -65,7 +65,7 @@ def film_terms(film, since):
 
 @njit(cache=True)
 def oil_links(film, full):
-    """Whether vertices are linked in theta (not zero), are unknown, and are full or prescribed, (n, m) each.
+    """Return links in theta (0: none), unknown vertices, and vertices that are full or prescribed, (n, m) each.
 
     Oil also links columns that exchange no pressure flow (short bearings).
     """

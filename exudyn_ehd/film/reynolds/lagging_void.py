@@ -42,7 +42,7 @@ def _leaves(fx, fz, i, j):
 
 @njit(cache=True)
 def outflow_of(fx, fz, H, H_t, area, fill):
-    """What the next step has to know, (3, n, m): fill, rate of the gap over the gap, and share of a full film that its
+    """Fields (3, n, m) that the next step needs: fill; rate of the gap over the gap, 1/s; share of a full film that its
     Couette flows take along, 1/s."""
     n, m = fill.shape
     out = np.empty((3, n, m))

@@ -26,16 +26,8 @@ from exudyn_ehd.film.grid import Mesh
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-class FilmState(NamedTuple):
-    """A film as unknowns, (n, m) each: scaled pressure, film fraction, and where the pressure is the unknown."""
-
-    P: np.ndarray
-    fill: np.ndarray
-    full: np.ndarray
-
-
 class Coefficients(NamedTuple):
-    """What the balance of the vertices is made of, (n, m) each: symbols of this module, areas, prescribed vertices, and
+    """Coefficients of the vertices' balances, (n, m) each: symbols of this module, areas, prescribed vertices, and
     ``prompt`` and ``late`` of `exudyn_ehd.film.reynolds.lagging_void`."""
 
     kx: np.ndarray
@@ -134,7 +126,7 @@ class FluxEffect(Protocol):
         """Change conductances and carriers for the links' gaps (n, m) and scaled speeds, with their derivatives."""
 
     def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
-        """The same from scratch, as the first effect, for the gaps H (n, m) at the vertices.
+        """Overwrite ``flux`` with a plain film of the gaps H (n, m) at the vertices, changed by this effect.
 
         Sets the links' gap in z.
         """

@@ -43,7 +43,7 @@ ROUNDING = 0.04
 
 
 class _Transition:
-    """Where a film becomes turbulent."""
+    """Base of the turbulence laws: Reynolds numbers between which a film changes from laminar to turbulent."""
 
     onset: float | None
     full: float | None
@@ -217,7 +217,7 @@ class TurbulentFlow(FluxEffect):
 
 @njit(cache=True)
 def excess(Re, power, transition):
-    """What a law adds to the laminar value 1 at a Reynolds number above the onset, and the derivative to it."""
+    """Return the excess of a law over the laminar value 1 at a Reynolds number above the onset, and its derivative."""
     onset, full = transition
     s = min((Re - onset) / (full - onset), 1.0)
     w, w_R = s * s * s * (10.0 - s * (15.0 - 6.0 * s)), 30.0 * s * s * (1.0 - s) * (1.0 - s) / (full - onset)

@@ -1,7 +1,7 @@
-"""From the balances to the motion of a rigid journal, and from the load integrals to its wrench.
+"""Derivatives of the balances and of the wrench to the motion of a rigid journal.
 
-An adjoint functional has the gradient ``-lam . dr``: the same as `exudyn_ehd.film.reynolds.link_derivatives` and
-`exudyn_ehd.film.reynolds.gap.contract_pose` give one after the other, without the fields, which elastic bores want.
+The gradient of an adjoint functional is ``-lam . dr``. `exudyn_ehd.film.reynolds.link_derivatives` followed by
+`exudyn_ehd.film.reynolds.gap.contract_pose` gives the same through fields (n, m), which elastic bores need.
 """
 
 import numpy as np

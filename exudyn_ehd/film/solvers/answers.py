@@ -12,10 +12,14 @@ from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.oil_line import contract_fills
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
+from exudyn_ehd.film.reynolds.links import Coefficients
 
 
 class FilmAnswers(abc.ABC):
@@ -39,6 +43,33 @@ class FilmAnswers(abc.ABC):
     @abc.abstractmethod
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
+
+    @abc.abstractmethod
+    def line_gradients(self) -> LineGradients | None:
+        """Derivatives of the balances through the rupture line inside its cells; None where it has no share."""
+
+    @abc.abstractmethod
+    def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
+        """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their
+        fills; None without."""
+
+    def with_line(self, lam: np.ndarray, *fields: np.ndarray) -> Sensitivities:
+        """Gradients ``fields`` of the functionals lam (k, n, m) with what the rupture line inside its cells adds."""
+        fills = self.fill_gradients()
+        if fills is None:
+            contract_line(lam, self.line_gradients(), *fields)
+        else:
+            contract_fills(lam, fills, *self.fill_weights(), fields)
+        return Sensitivities(*fields)
+
+    def fill_weights(self) -> tuple[Coefficients, np.ndarray]:
+        """Coefficients with the Couette flows of a full film, and its storage (n, m), of masses if compressible."""
+        s, rho = self.system, self.rho
+        film, store = s.coefficients, s.area * (s.inverse_step * s.H if s.inverse_step > 0.0 else s.H_t)
+        if self.law is None:
+            return film, store
+        fx, fz = (0.5 * f * (rho + np.roll(rho, -1, axis)) for axis, f in enumerate((film.fx, film.fz)))
+        return film._replace(fx=fx, fz=fz), store * rho
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""

@@ -10,8 +10,8 @@ import numpy as np
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import SOLVERS, Closure
 from exudyn_ehd.film.cavitation.line_steps import prolong_set
-from exudyn_ehd.film.cavitation.oil_line import OilLine, weigh_flows
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
+from exudyn_ehd.film.cavitation.oil_line import OilLine
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine
 from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.steady_oil import status_of
@@ -217,19 +217,20 @@ class FilmSolver(FilmAnswers):
         return (abs(self.vx) + abs(self.vz) + float(np.abs(self.H_t).max()) or 1.0) / INSTANT
 
     def keep(self, void: np.ndarray, step: float) -> np.ndarray:
-        """What the content (n, m) at the start of a step is taken as, for the gaps and rates now stored: ``mass_old``.
+        """Content (n, m) at the start of a step, for the gaps and rates now stored: ``mass_old`` of `solve`.
 
-        ``void`` (n, m) is what the gap had of it more than oil. The gap is taken back along its rate, not to what it
-        was: the storage of a vertex is then
+        ``void`` (n, m): gap minus oil at that time. The gap at that time is not the old one: it is extrapolated back
+        with the present rate. The storage of a vertex is then
 
             (fill H - kept) / h = dH/dt - (void - void_old) / h,
 
-        a difference of the void (its flows: `lag`), while a full film is squeezed by its rate as under closures
-        without a memory. The difference quotient of the gap would be the mean of the rates at both ends of a step under
-        Newmark's formulas: rates that alternate from step to step are not felt by it, and not damped. What ``kept``
-        differs by from the content that was, ``H - h dH/dt - H_old``, is the same for full and for cavitated vertices
-        and adds up over the steps to what rates and gap differ by: with rates that follow the gap it telescopes to
-        ``-h (dH/dt at the end - at the start) / 2``, bounded over any number of steps and vanishing with h.
+        a difference of the void (its flows: `lag`), while a full film is squeezed by its rate as under closures without
+        a memory. The difference quotient of the gap would be the mean of the rates at both ends of a step under
+        Newmark's formulas: rates that alternate from step to step would not act on it and would not be damped. The
+        difference of ``kept`` from the old content, ``H - h dH/dt - H_old``, is the same for full and for cavitated
+        vertices. Summed over the steps it is the difference between integrated rates and gap: with rates that follow
+        the gap it telescopes to ``-h (dH/dt at the end - at the start) / 2``, bounded over any number of steps and
+        vanishing with h.
         """
         before, slope = self._gap_before(step)
         kept = before - void
@@ -255,7 +256,7 @@ class FilmSolver(FilmAnswers):
             self.lagging = False
 
     def outflow(self) -> np.ndarray:
-        """What `exudyn_ehd.film.reynolds.lagging_void` keeps of the last solution (3, n, m).
+        """Fields (3, n, m) of the last solution that `exudyn_ehd.film.reynolds.lagging_void` needs in the next step.
 
         Flows from the line inside its cells follow the pressure, whatever a vertex holds: it counts as full.
         """
@@ -296,24 +297,16 @@ class FilmSolver(FilmAnswers):
         cell, face, speed = contract_links(lam, self.link_derivatives())
         cell -= lam * by_gap
         rate = -lam * by_rate
-        fills, s = self.fill_gradients(), self.system
-        if fills is None:
-            contract_line(lam, self.line_gradients(), cell, face, rate, speed)
-        else:
-            store = s.area * self.rho * (s.inverse_step * s.H if s.inverse_step > 0.0 else s.H_t)
-            for weighed, line in zip((weigh_flows(lam, s.coefficients, self.rho), lam * store), fills, strict=True):
-                contract_line(weighed, line, cell, face, rate, speed)
-        return Sensitivities(cell, face, rate, speed)
+        return self.with_line(lam, cell, face, rate, speed)
 
     def line_gradients(self) -> LineGradients | None:
-        """What the rupture line inside its cells adds to the derivatives of the balances; None where it has no share.
+        """Contribution of the rupture line inside the cells to the derivatives of the balances; None without one.
 
         For the last solution, at fixed pressure.
         """
         fills = self.fill_gradients()
         if fills is not None and self.oil_line is not None:
-            w, y = self.work, self.system
-            return self.oil_line.balance_gradients(fills, y.coefficients, self.rho, y.inverse_step, w.order[: w.count])
+            return self.oil_line.balance_gradients(fills, *self.fill_weights(), self.work.order[: self.work.count])
         s = self.system
         if s.column_line is not None:
             return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
@@ -344,10 +337,10 @@ class FilmSolver(FilmAnswers):
             fill, couette = self.carried, (s.fx, s.fz)
         slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
         rho, speeds = None if self.law is None else self.rho, (self.vx, self.vz, self.flow_x, self.grid.mesh)
-        fields = s.linear_pressure, self.H, self.HF
-        link_derivatives(*fields, slopes, by_speed, fill, rho, couette, *speeds, self.link_fields)
+        P = s.linear_pressure
+        link_derivatives(P, self.H, self.HF, slopes, by_speed, fill, rho, couette, *speeds, self.link_fields)
         if self.grid.cuts is not None:
-            flow, P = None if f is None else f.flow, s.linear_pressure
+            flow = None if f is None else f.flow
             add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)
         return self.link_fields
 

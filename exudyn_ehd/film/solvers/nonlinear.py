@@ -1,50 +1,47 @@
-"""Film on an elastic liner, alone or with contact, mass-conserving cavitation,
-laws of the oil, density or flow factors.
+"""Film on an elastic liner, alone or with contact, mass-conserving cavitation, oil laws, density or flow factors.
 
-The liner is a layer of Winkler elements: each deflects in proportion to the
-pressure on it, that of the film and of the contact,
+The liner is a layer of Winkler elements. Each deflects in proportion to the pressure of the film and of the contact,
 
-    G = G_rigid + D,    D = beta (p + P_c(G)),
+    G = G_rigid + D,    D = beta (p + P_c(G)).
 
-with the true gap G, whose contact pressure P_c falls with it. The relation has one root G(p), which rises with p:
+The contact pressure P_c falls with the true gap G. So the relation has one root G(p), which rises with p:
 
-    dG/dp = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1],
+    dG/dp = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1].
 
-so that the effective compliance beta T is bounded by the liner's, and nearly none where the contact is stiff against
-it. However deep the undeformed surfaces overlap, the liner takes it up; at the ends and in grooves, whose pressure is
-prescribed, by the contact alone. The film sees ``H = lim(G)``, the gap limiter of wall or rough surfaces, on links
-``lim`` of the true gap with the mean deflection of both ends. Where the pressure falls steeply, the gap falls with it:
-the conductance of a link is the mean of H^3 over the linear course of the deflection between its ends,
+The effective compliance beta T is at most that of the liner, and nearly 0 where the contact is stiff against it. The
+liner takes up any overlap of the undeformed surfaces; at the ends and in grooves, whose pressure is prescribed, it does
+so by the contact alone. The film sees ``H = lim(G)``, with the gap limiter of a wall or of rough surfaces; on links
+``lim`` is taken of the true gap with the mean deflection of both ends. Where the pressure falls steeply, so does the
+gap. The conductance of a link is therefore the mean of H^3 over the linear course of the deflection between its ends,
 
     g = H (H^2 + d^2),    d half the difference of E = lim(G) - lim(G_rigid) between the ends,
 
-exact for a rigid gap that is constant along the link; flow factors, shear thinning and temperature multiply it as they
-are at the mean gap.
+exact for a rigid gap that is constant along the link. Flow factors, shear thinning and temperature multiply it by their
+values at the mean gap.
 
-In motion the liner's rate takes part in the squeeze, ``dH/dt = lim'(G) (rigid rate + (D - D_old) / dt)``, backward
+In motion the squeeze contains the liner's rate, ``dH/dt = lim'(G) (rigid rate + (D - D_old) / dt)``. This is backward
 Euler with the deflection at the start of the step from the history: a soft liner feeds and drains the film as it
 deflects. Without a history (a prescribed position) the deflection is steady.
 
-A viscosity or a density that follows the pressure. The film's unknown is the transformed pressure P of
-`exudyn_ehd.film.lubricant.pressure_viscosity` or `exudyn_ehd.film.lubricant.density`, in which its pressure flow is
-that of a constant viscosity and density; the elements feel the pressure p(P) itself. Since p grows exponentially with
-P, a Newton step that raises the pressure goes where the tangent of p(P) leads the pressure, which is less far than its
-P would take it; one that lowers it goes where P leads: in either case the shorter way, and to second order the same.
-Thick oil lifts the liner: where a rigid bore has no film any more the gap opens. What would need an oil that is solid
-ends with NO_PRESSURE. Couette flows and storage carry the density as in `exudyn_ehd.film.solvers.compressible`.
+A viscosity or a density may follow the pressure. The film's unknown is then the transformed pressure P of
+`exudyn_ehd.film.lubricant.pressure_viscosity` or `exudyn_ehd.film.lubricant.density`, in which the pressure flow is
+that of a constant viscosity and density. The elements have the pressure p(P) itself, which grows exponentially with P.
+A Newton step that raises the pressure goes to the pressure that the tangent of p(P) predicts, which is less than its P
+would give; one that lowers it goes to its P. Either is the shorter way, and both agree to second order. Thick oil lifts
+the liner: the gap opens where a rigid bore has no film any more. A film that would need solid oil ends with
+NO_PRESSURE. Couette flows and storage contain the density as in `exudyn_ehd.film.solvers.compressible`.
 
-`ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.elrod_adams` with the content ``rho fill H(P)``: at full
-vertices the unknown pressure takes part in the storage through liner and density, at cavitated ones the unknown is the
-fill and the element rests under the cavity's pressure. `SwiftStieber` always has a film as long as the cavity's
-pressure leaves a gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a
-solution (Ph. Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear pressure below the
-cavity's, but the liner deflects under the clipped one; no theorem says that such a film exists, and of extreme steady
-ones some are not found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut
-(NO_FILM).
+`ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.elrod_adams` with the content ``rho fill H(P)``. At full
+vertices the storage depends on the unknown pressure through liner and density; at cavitated ones the unknown is the
+fill, and the element has the cavity pressure. `SwiftStieber` always has a film as long as the cavity pressure leaves a
+gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a solution (Ph.
+Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear pressure below the cavity pressure, but
+the liner deflects under the clipped one. No theorem says that such a film exists, and some extreme steady ones are not
+found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
 
-Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess; should it fail,
-pseudo time leads to the film (`exudyn_ehd.film.solvers.liner.continuation`). A line inside the cells is sought from the
-film on the vertices, in the same two ways.
+Newton's method (`exudyn_ehd.film.solvers.liner.steps`) starts from the last film, else from a dry guess. If it fails,
+pseudo-transient continuation follows (`exudyn_ehd.film.solvers.liner.continuation`). The rupture line inside the cells
+is that of `exudyn_ehd.film.solvers.liner.line`.
 """
 
 from __future__ import annotations
@@ -52,34 +49,35 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, contract_line
+from exudyn_ehd.film.cavitation.linear_film import mean_in_cells
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
-from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
+from exudyn_ehd.film.reynolds.links import Coefficients, FluxEffect, add_squeeze, link_flux, right_hand_side
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
-from exudyn_ehd.film.solvers.liner.newton import solve
+from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter, LandContact
 from exudyn_ehd.status import Status
 
-# Share of an oil's largest pressure at which a film that was not found is on its way beyond.
+# Share of an oil's largest pressure above which a film that is not found gets NO_PRESSURE.
 NEARLY_SOLID = 0.9
 
 
 class NonlinearFilmSolver(FilmSolver):
-    """`FilmSolver` on an elastic liner, alone or with contact, laws of the oil, flow factors; or between rigid surfaces
-    (beta 0) where the oil thins.
+    """`FilmSolver` on an elastic liner, alone or with contact, oil laws and flow factors; or between rigid surfaces
+    (beta 0) with an oil that thins by shear.
 
-    The caller writes gaps and rate of the undeformed surfaces, ``solve`` leaves
-    those that the film sees in ``H``, ``HF`` and ``H_t``.
+    The caller writes gaps and rate of the undeformed surfaces; ``solve`` replaces ``H``, ``HF`` and ``H_t`` by those
+    that the film sees.
 
     Parameters
     ----------
@@ -95,7 +93,7 @@ class NonlinearFilmSolver(FilmSolver):
     delta_old : (n, m) array or None
         Scaled deflection at the start of the step, set by the caller before ``solve``; None: steady.
     law : CompressibleLaw or None
-        Of a compressible film, whose flows are mass flows over the density at ambient pressure.
+        Law of a compressible film, whose flows are mass flows over the density at ambient pressure.
     """
 
     plain_links = False
@@ -122,7 +120,7 @@ class NonlinearFilmSolver(FilmSolver):
         self.rho, self.rho_P = self.ones if e.rho is None else e.rho, e.rho_P
         s = self.system
         s.kx, s.kz, s.fx, s.fz = e.terms[:4]
-        self.line, s.line = e.line, None
+        self.line, s.line = (e.line if isinstance(e.line, FilmLine) else None), None
         if flux_effects:
             self.flux = link_flux(self.HF, flux_effects)
             e.links = self.flux
@@ -156,7 +154,7 @@ class NonlinearFilmSolver(FilmSolver):
 
     @property
     def limited(self) -> bool:
-        """Whether the film sees another gap than the surfaces have."""
+        """Return whether the film's gap differs from that of the surfaces."""
         return self.elements.limiter is not None and not self.elements.apart
 
     @property
@@ -166,7 +164,7 @@ class NonlinearFilmSolver(FilmSolver):
 
     @property
     def true_link(self) -> np.ndarray:
-        """The same on the links i -> i+1 (n, m)."""
+        """Gap of the deformed surfaces on the links i -> i+1 (n, m)."""
         e = self.elements
         return e.rigid[1] + 0.5 * (e.gaps.D + np.roll(e.gaps.D, -1, axis=0))
 
@@ -205,14 +203,14 @@ class NonlinearFilmSolver(FilmSolver):
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
-        """Solve for the undeformed gaps now stored; parameters as for
-        `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
+        """Solve for the undeformed gaps now stored; parameters as for `FilmSolver.solve`, ``mass_old`` is the old rho
+        fill H."""
         s, g, e = self.system, self.grid, self.elements
         e.scale = self.pressure_scale
-        self.vx, self.vz, s.cavity_pressure = vx, vz, cavity_pressure
+        self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz, cavity_pressure, None
         e.take_rigid(self.squeeze)
         if vx == vz == 0.0 and not e.rigid[2].any():
-            # a film at rest starts from nothing, not from what is left of the last one
+            # a film at rest makes a cold start, not one from the remains of the last film
             self.work.warm = False
         self._set_times(mass_old, step)
         P = s.linear_pressure
@@ -224,7 +222,7 @@ class NonlinearFilmSolver(FilmSolver):
         if e.contact is None and not ends_open(e.rigid, P if e.oil is None else e.load.p, e.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
-        ok, steps = solve(e) if self.work.warm else (False, 0)
+        ok, steps = e.solve() if self.work.warm else (False, 0)
         if not ok:
             ok, more = self._start(mass_old, step)
             steps += more
@@ -236,12 +234,12 @@ class NonlinearFilmSolver(FilmSolver):
             return self._failure(), steps
         self._finish()
         if e.limiter is not None and e.contact is None and not e.true_gap.min() > 0.0:
-            # the film between rough surfaces stays open where nothing holds them apart
+            # the limiter keeps the film open although nothing holds the surfaces apart
             return Status.NO_FILM, steps
         return status_of(self.system, Status.CONVERGED), steps
 
     def _start(self, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
-        """Newton's method from no other film: (found, steps)."""
+        """Cold start of Newton's method; returns (found, steps)."""
         return cold_start(self.elements)
 
     def _failure(self) -> Status:
@@ -266,7 +264,7 @@ class NonlinearFilmSolver(FilmSolver):
         return before, slope
 
     def _set_times(self, mass_old: np.ndarray | None, step: float) -> None:
-        """Which rates take part, and over which time."""
+        """Set the rates of the storage, and the state at the start of the step."""
         e = self.elements
         inverse = 1.0 / step if step > 0.0 else self._inverse_instant()
         moving = self.delta_old is not None and self.squeeze
@@ -288,11 +286,11 @@ class NonlinearFilmSolver(FilmSolver):
         self.work.warm = self.work.warm and not self.system.closes
 
     def refresh_fixed(self) -> None:
-        """Other prescribed vertices and cuts: the last factor is of no use."""
+        """Take over changed prescribed vertices and cuts, which invalidates the last factor."""
         self.elements.cut_links()
 
     def _finish(self) -> None:
-        """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""
+        """Set the fields of a solution: rupture line, clipped pressure, gap derivatives, rates, right-hand side."""
         g, s, e = self.grid, self.system, self.elements
         e.settle_line()
         self._clip()
@@ -311,7 +309,7 @@ class NonlinearFilmSolver(FilmSolver):
 
     @property
     def terms(self) -> FilmTerms:
-        """Coefficients of the balances."""
+        """Coefficients of the mass balances."""
         return super().terms if self.law is None else self.elements.terms
 
     def factor_solution(self) -> None:
@@ -322,11 +320,13 @@ class NonlinearFilmSolver(FilmSolver):
             e.exact = True
 
     def _clip(self) -> None:
-        """Pressures and vertices in the film, of a closure that clips them or that never ruptures."""
+        """Set pressures and active set of a closure that clips, or the active set of one that never ruptures."""
         s, fixed, P = self.system, self.grid.fixed, self.system.linear_pressure
         if self.closure.clips:
             np.copyto(s.pressure, np.where(fixed, P, np.maximum(P, s.cavity_pressure)))
             np.logical_and(~fixed, s.cavity_pressure <= P, out=self.work.active)
+            if self.closure.line_in_cells:
+                mean_in_cells(P, fixed, s.linked, s.cavity_pressure, self.work.active, s.pressure)
         elif not self.ruptures:
             np.logical_not(fixed, out=self.work.active)
 
@@ -357,5 +357,13 @@ class NonlinearFilmSolver(FilmSolver):
         turning = np.sum(along * by_v[0] + across * by_v[1], axis=(1, 2))
         speed = np.stack((turning, np.sum(across * by_v[2], axis=(1, 2))), axis=1)
         cell, rate = own + other - lam * by_gap, e.deflection_weights(lam)
-        contract_line(lam, self.line_gradients(), cell, face, rate, speed)
-        return Sensitivities(cell, face, rate, speed)
+        return self.with_line(lam, cell, face, rate, speed)
+
+    def fill_weights(self) -> tuple[Coefficients, np.ndarray]:
+        """Return `FilmSolver.fill_weights`, with the density."""
+        film, e = self.system.coefficients, self.elements
+        store = e.terms.area * e.terms.grow
+        if e.rho is None:
+            return film, store
+        fx, fz = (f * 0.5 * (e.rho + np.roll(e.rho, -1, axis)) for axis, f in enumerate((film.fx, film.fz)))
+        return film._replace(fx=fx, fz=fz), store * e.rho

@@ -128,7 +128,7 @@ class ClassicSolver(FilmSolver):
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
-        """As `FilmSolver.solve`; the second value counts sweeps."""
+        """Solve as `FilmSolver.solve`; the second returned value is the number of sweeps."""
         g, s, w = self.grid, self.system, self.work
         self.vx, self.vz = vx, vz
         s.cavity_pressure = cavity_pressure

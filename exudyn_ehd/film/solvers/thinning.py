@@ -15,7 +15,6 @@ from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner.newton import solve
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.status import Status
 
@@ -64,17 +63,16 @@ class ThinningFilmSolver(NonlinearFilmSolver):
         self._set_times(mass_old, step)
         ok, more = False, 0
         if status is Status.CONVERGED:
-            if e.fills:
-                np.logical_or(self.work.active, self.grid.fixed, out=e.u.full)
             self.work.warm = True
-            ok, more = solve(e)
+            e.see_cavity()
+            ok, more = e.solve()
         if not ok:
             steps += more
             ok, more = super()._start(mass_old, step)
         return ok, steps + more
 
     def refresh_fixed(self) -> None:
-        """As `FilmSolver.refresh_fixed`."""
+        """Take over changed prescribed vertices and cuts, on the coarser grid too."""
         super().refresh_fixed()
         FilmSolver.refresh_fixed(self)
 
@@ -83,5 +81,5 @@ class ThinningFilmSolver(NonlinearFilmSolver):
         return self.thins.response()
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """As `FilmSolver.sensitivities`."""
+        """Gradients as of `FilmSolver.sensitivities`."""
         return FilmSolver.sensitivities(self, lam)

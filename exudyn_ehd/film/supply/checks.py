@@ -1,4 +1,4 @@
-"""What a bearing refuses of supply areas: places outside, sizes that its grid has no column for, no film beside."""
+"""Checks of a bearing's supply areas: places outside, sizes for which the grid has no column, no film beside them."""
 
 from __future__ import annotations
 

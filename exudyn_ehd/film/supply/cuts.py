@@ -152,7 +152,7 @@ class SupplyMap:
             P[mask] = value
 
     def flows(self, inflow: np.ndarray) -> np.ndarray:
-        """What every area feeds into the film, in the unit of ``inflow`` (n, m)."""
+        """Flow from every area into the film (areas,), in the unit of ``inflow`` (n, m)."""
         return np.array([float(np.sum(inflow[area])) for area in self.parted()])
 
     def parted(self) -> list[np.ndarray]:

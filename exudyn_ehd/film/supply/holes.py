@@ -53,7 +53,7 @@ class Circle(NamedTuple):
     depths: np.ndarray
 
     def factors(self, strength: float) -> np.ndarray:
-        """What the links conduct over what they would from vertex to vertex, (q,)."""
+        """Conductances (q,) of the links over those of links from vertex to vertex."""
         return (1.0 + (strength - 1.0) * self.depths) / self.lengths
 
 

@@ -58,8 +58,8 @@ def supply_rows(
 def meeting_rows(
     supply: Sequence[SupplyArea], radius: float, length: float, n_z: int, stretch: float, columns: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """As `supply_rows`, with two rows about every edge of a groove along the axis or a pocket, and an odd number of
-    rows within a hole, whose control volumes are as wide as it; as before where other rows are in the way."""
+    """Return `supply_rows` with two rows about every edge of a groove along the axis or a pocket, and an odd number of
+    rows within a hole, whose control volumes are as wide as it; unchanged where other rows are in the way."""
     found = supply_rows(supply, radius, length, n_z, stretch)
     if found is None or all(isinstance(area, CircumferentialGroove) for area in supply):
         return found

@@ -1,4 +1,4 @@
-"""What surfaces that touch offer a film: a pressure of their own, and the gap that the film sees.
+"""Protocols of contacts, which press where surfaces touch, and of limiters of the gap that the film sees.
 
 Fields are (n, m) arrays on the film grid; gaps are divided by the clearance, contact pressures in Pa.
 """

@@ -35,7 +35,7 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 @njit(cache=True, fastmath=_FAST)
 def link_excess(carriers, H, HF, gap, link):
-    """What the carriers of the links in theta and in z have more than the true gap, (2, n, m).
+    """Carriers minus true gaps (2, n, m), of the links in theta and in z.
 
     ``carriers``: cx and cz, or None, where they are the film's gap. ``gap``, ``link``: the true gap at the vertices and
     on the links i -> i+1.

@@ -145,7 +145,7 @@ def _rough_carrier(gap, inverse_sigma, table, share, c_out, c_h_out):
 
 @njit(cache=True)
 def _aligned(gap):
-    """Whether there is one gap per column, as with an aligned journal."""
+    """Return whether there is one gap per column, as with an aligned journal."""
     n, m = gap.shape
     for i in range(n):
         differing = 0

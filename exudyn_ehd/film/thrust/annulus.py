@@ -191,7 +191,7 @@ def _exact_load(r: np.ndarray, s: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 
 class AnnularFlow(FluxEffect):
-    """What the links of an annulus with a profile carry.
+    """Flux effect of an annulus with a profile on the carriers and conductances of its links.
 
     Couette flows around it have the weight r^2. A column between two gaps, h + e_1 over the share s_1 of its width and
     h + e_2 over the rest s_2, with the mean h, conducts along the radius

@@ -157,12 +157,12 @@ class FaceFilm:
 
     @property
     def pressure(self) -> np.ndarray:
-        """Of the last solution (n, m), Pa."""
+        """Pressure of the last solution (n, m), Pa."""
         return self.solver.pressure * self.scales.pressure
 
     @property
     def gap(self) -> np.ndarray:
-        """That the film of the last solution has (n, m), m."""
+        """Film gap of the last solution (n, m), m."""
         return self.solver.H * self.scales.c
 
     def _set_gap(self, motion: np.ndarray) -> float:
@@ -276,7 +276,7 @@ class FaceFilm:
         return s.adjoint(rows)
 
     def _to_true_gap(self, sens: Sensitivities) -> None:
-        """From the film's gap and weighed rate to those of the surfaces, in place."""
+        """Convert sensitivities to the film's gap and weighed rate to those to the surfaces' gap and rate, in place."""
         sens.rate *= self.annulus.square
         if self.limited:
             sens.cell[:] = sens.cell * self.slope + sens.rate * self.bend

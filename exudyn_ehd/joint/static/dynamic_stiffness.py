@@ -82,29 +82,27 @@ class FilmResponse:
         s, w, liner = film.solver, film.solver.work, film.parts.liner
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
-        store, rows, followed = (s.area * s.H).reshape(-1), adjoint_rows(film), np.ones(order.size)
+        rows, followed = adjoint_rows(film), np.ones(order.size)
         rho = rho_P = None
         self.matrix = s.matrix()
         if s.law is not None:
             rho, rho_P = s.rho, s.rho_P
-        if rho is None or rho_P is None:
-            store = np.where(w.active.reshape(-1), 0.0, store)
-        else:
-            store = store * np.where(w.active, rho_P * s.fill, rho).reshape(-1)
+        density, denser = (1.0, 0.0) if rho is None or rho_P is None else (rho, rho_P)
+        whole = s.area * s.H * density
+        rises = s.area * s.fill * s.H * denser
         if s.oil_line is not None:
-            store += (s.area * s.H * s.rho * s.oil_line.rise).reshape(-1)
+            rises += whole * s.oil_line.rise
         if liner is not None:
-            rise = s.area * s.fill * liner.gap_slopes.H_P * (1.0 if rho is None else rho)
-            store += np.where(w.active, rise, 0.0).reshape(-1)
+            rises += s.area * s.fill * liner.gap_slopes.H_P * density
             followed = 1.0 + liner.gap_slopes.D_r.reshape(-1)[order]
             rows = -liner_weights(film)[:2] @ rows / film.scales.force
-        self.store = diags_array(store[order])
+        self.store = diags_array(np.where(w.active, rises, whole).reshape(-1)[order])
         self.rows = rows[:2].T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count))
         fills, self.contents = true_fills(film), None
         if fills is not None:
-            self.contents = weigh_fills(fills, s.area * s.H * s.rho, number)
+            self.contents = weigh_fills(fills, whole, number)
             by_fill = line_by_motion(film, self.contents, w.count) * scale
         # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
         self.by_pose, self.by_rate = by_motion[:2].copy(), by_motion[4:6]
@@ -124,14 +122,14 @@ class FilmResponse:
         return self.rest[0] + pose + 1j * frequency * (self.rest[1] + rate)
 
     def _gradients(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
-        """What the film's pressure gives to stiffness and damping at a frequency (2, 2), complex."""
+        """Contributions of the film's pressure to stiffness and damping at a frequency, rad/s, (2, 2) each, complex."""
         lam = splu(csc_matrix(self.matrix + 1j * frequency * self.store)).solve(self.rows, trans="T")
         pose, rate = self.by_pose + 1j * frequency * self.by_content, self.by_rate + 1j * frequency * self.by_sway
         return (pose @ lam).T, (rate @ lam).T
 
 
 class FilmOnBoreResponse(FilmResponse):
-    """The same on a flexible bore or journal, whose coordinates q are motions as the journal's are.
+    """Dynamic stiffness of a film on a flexible bore or journal, whose coordinates q are motions like the journal's.
 
     Parameters
     ----------
@@ -202,7 +200,7 @@ def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[f
     """
 
     def both(ratio: float) -> float:
-        """Of one sign while neither eigenvalue of Z becomes real."""
+        """Product of the imaginary parts of Z's eigenvalues: it changes sign where one of them is real."""
         return float(np.prod(np.linalg.eigvals(stiffness(ratio * omega)).imag))
 
     ratios = np.geomspace(SLOWEST, FASTEST, STEPS)

@@ -37,14 +37,8 @@ from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap, pulls_unevenly
-from exudyn_ehd.joint.tangent.line import true_fills, true_line, weigh_fills
-from exudyn_ehd.joint.tangent.wrench import (
-    adjoint_rows,
-    gap_derivatives,
-    shear_needs_adjoint,
-    shear_of_fills,
-    wrench_tangent,
-)
+from exudyn_ehd.joint.tangent.line import shear_of_fills, true_fills, true_line, weigh_fills
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, gap_derivatives, shear_needs_adjoint, wrench_tangent
 
 # Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
 _WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])

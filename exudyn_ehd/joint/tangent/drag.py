@@ -15,7 +15,7 @@ from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
 
 
 def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
-    """Whether a pressure gradient pulls the surfaces of this film by other than half of it on the true gap."""
+    """Return whether a pressure gradient pulls either surface by other than half its force on the true gap."""
     return parts.uneven_drag or limited is not None or (parts.liner is not None and parts.liner.limited)
 
 

@@ -1,7 +1,7 @@
-"""From derivatives to the film's gap to those to the true one.
+"""Conversion of derivatives to the film's gap to derivatives to the true gap.
 
-Of a rupture line inside the cells: what its place changes in balances and sums over the film; of fields of
-sensitivities: the motion of a rigid journal.
+For a rupture line inside the cells, the change of balances and of sums over the film with its position; for fields of
+sensitivities, the derivatives to the motion of a rigid journal.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import numpy as np
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, add_line_columns, to_true_gap
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
+from exudyn_ehd.film.solvers.edge_flows import at_beside_ends
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
 
@@ -26,9 +27,9 @@ def true_fills(film: SolvedFilm) -> LineGradients | None:
 
 
 def weigh_fills(fills: LineGradients, weights: np.ndarray, rows: np.ndarray | None = None) -> LineGradients:
-    """What the fills are weighed to, by ``weights`` (n, m), at fixed pressure.
+    """Gradients of the fills' sums with ``weights`` (n, m), at fixed pressure.
 
-    ``rows`` (n m,): where each vertex counts, None: all in one sum.
+    ``rows`` (n m,): row to which every vertex contributes; None: one sum over all.
     """
     places = fills.places
     at = np.zeros_like(places) if rows is None else rows[places]
@@ -60,3 +61,18 @@ def add_by_motion(film: SolvedFilm, sens: Sensitivities, gradient: np.ndarray) -
     contract_pose(sens.face, p.directions.cos_f, p.directions.sin_f, z, pose)
     contract_pose(sens.rate, p.directions.cos_x, p.directions.sin_x, z, rates)
     gradient += np.concatenate((pose, rates, sens.speed), axis=1)
+
+
+def shear_of_fills(film: SolvedFilm) -> np.ndarray:
+    """Couette shear (n, m) that comes with the fill of every vertex."""
+    return ratio_of(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film)
+
+
+def shear_of_ends(film: SolvedFilm) -> np.ndarray:
+    """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
+    return at_beside_ends(film.solver.system, ratio_of(film) * film.grid.shear_weight / film.solver.H)
+
+
+def ratio_of(film: SolvedFilm) -> np.ndarray:
+    """Viscosity ratio (n, m) that shear sees."""
+    return film.solver.ones if film.oil.ratio is None else film.oil.ratio

@@ -37,8 +37,8 @@ from exudyn_ehd.joint.tangent.bore import (
     wrench_rows,
     wrench_weights,
 )
-from exudyn_ehd.joint.tangent.line import line_by_motion, true_fills
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, ratio_of, wrench_tangent
+from exudyn_ehd.joint.tangent.line import line_by_motion, ratio_of, true_fills
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, wrench_tangent
 
 
 class BoreForces:

@@ -22,7 +22,7 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
 
 def is_plain(film: SolvedFilm) -> bool:
-    """Whether `plain_tangent` is this film's."""
+    """Return whether `plain_tangent` holds for this film."""
     s, p, oil = film.solver, film.parts, film.oil
     return (
         type(s) is FilmSolver

@@ -12,6 +12,7 @@ import numpy as np
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import (
+    add_shear_by_gap,
     couette_gradient,
     couette_gradient_ratio,
     load_adjoint_rhs,
@@ -21,12 +22,20 @@ from exudyn_ehd.film.loads import (
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
-from exudyn_ehd.film.solvers.edge_flows import at_beside_ends
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import chain_links, contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection, pulls_unevenly
-from exudyn_ehd.joint.tangent.line import add_by_motion, line_by_motion, true_fills, true_line, weigh_fills
+from exudyn_ehd.joint.tangent.line import (
+    add_by_motion,
+    line_by_motion,
+    ratio_of,
+    shear_of_ends,
+    shear_of_fills,
+    true_fills,
+    true_line,
+    weigh_fills,
+)
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
 _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
@@ -157,14 +166,14 @@ def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow
 
 
 def shear_needs_adjoint(film: SolvedFilm) -> bool:
-    """Whether fill or pressure enter the Couette shear."""
+    """Return whether fill or pressure enter the Couette shear."""
     s, oil = film.solver, film.oil
     by_pressure = oil.ratio_q is not None or oil.ratio_g is not None
     return s.closure.conserves_mass or by_pressure or film.parts.liner is not None
 
 
 def has_extra_rows(film: SolvedFilm) -> bool:
-    """Whether `adjoint_rows` has two rows for the slopes of gap terms and for uneven drag."""
+    """Return whether `adjoint_rows` has two rows for the slopes of gap terms and for uneven drag."""
     return film.extra is not None or pulls_unevenly(film.parts, film.limited)
 
 
@@ -174,7 +183,7 @@ def shape_rows(film: SolvedFilm) -> int:
 
 
 def _pressed_contact(film: SolvedFilm) -> bool:
-    """Whether a contact acts on a liner, and so depends on the film's pressure."""
+    """Return whether a contact acts on a liner, and so depends on the film's pressure."""
     return film.parts.liner is not None and film.pressing is not None
 
 
@@ -207,16 +216,18 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
             extra[:] = 0.0
         else:
             slope_adjoint_rhs(w.order, w.count, g.weight, w.active, film.extra.slope_x, film.extra.slope_z, extra)
-        uneven = pulls_unevenly(p, film.limited)
-        if uneven:
+        if pulls_unevenly(p, film.limited):
             add_drag_rows(film, extra)
         if P_q is not None:
             extra *= P_q
-        if uneven and p.liner is not None:
-            extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     y = film.solver.system
     if y.continued is not None:
         rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+    # what follows the pressure of a vertex itself
+    if shear_needs_adjoint(film):
+        _add_shear_of_vertices(film, rows[4])
+    if p.liner is not None and has_extra_rows(film) and pulls_unevenly(p, film.limited):
+        rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     if rows.shape[0] > own and p.liner is not None:
         by_pressure = g.weight * p.liner.contact_by_pressure
         load_adjoint_rhs(
@@ -229,38 +240,29 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
 def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     """Weights of the Couette integral at the unknowns.
 
-    Through pressure where they are pressures, through fill elsewhere.
+    Through the oil's pressure where they are pressures, through fill elsewhere.
     """
-    p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
-    ratio = ratio_of(film)
-    by_pressure, by_gap = s.nothing if oil.ratio_q is None else oil.ratio_q, None
-    if p.liner is not None:
-        by_gap = ratio, s.nothing if oil.ratio_h is None else oil.ratio_h, p.liner.gap_slopes.H_P
+    s, g, w, oil = film.solver, film.grid, film.solver.work, film.oil
+    ratio, by_pressure = ratio_of(film), s.nothing if oil.ratio_q is None else oil.ratio_q
     by_fill = ratio if s.closure.conserves_mass else s.nothing
     if s.oil_line is not None:
         # at the line the fill follows the pressure
         by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
-    shear_adjoint_rhs(w.order, w.count, g.shear_weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
+    shear_adjoint_rhs(w.order, w.count, g.shear_weight, s.H, w.active, by_pressure, by_fill, row)
+
+
+def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
+    """Add to `_shear_row` what follows the liner's deflection, the pressure's gradients, and fills beside the ends."""
+    p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
+    if p.liner is not None:
+        share, ratio_h = film.share(), s.nothing if oil.ratio_h is None else oil.ratio_h
+        by_gap = share * ratio_of(film), share * ratio_h, p.liner.gap_slopes.H_P
+        add_shear_by_gap(w.order, w.count, g.shear_weight, s.H, w.active, by_gap, row)
     if oil.ratio_g is not None:
         row += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H).reshape(-1)[w.order[: w.count]]
     if s.closure.conserves_mass:
         rise = 0.0 if s.oil_line is None else s.oil_line.rise
         row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
-
-
-def shear_of_fills(film: SolvedFilm) -> np.ndarray:
-    """Couette shear (n, m) that comes with the fill of every vertex."""
-    return ratio_of(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film)
-
-
-def shear_of_ends(film: SolvedFilm) -> np.ndarray:
-    """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
-    return at_beside_ends(film.solver.system, ratio_of(film) * film.grid.shear_weight / film.solver.H)
-
-
-def ratio_of(film: SolvedFilm) -> np.ndarray:
-    """Viscosity ratio (n, m) that shear sees."""
-    return film.solver.ones if film.oil.ratio is None else film.oil.ratio
 
 
 def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:

@@ -13,6 +13,7 @@ from tests.reference import short_bearing
 C, R = 25e-6, 0.025
 CELLS = ehd.Gumbel(line_in_cells=True)
 BELOW = ehd.Gumbel(cavity_pressure=-3e4, cavity_shear=0.3, line_in_cells=True)
+THIN = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7)
 OPTIONS = {
     "ends": {"end_pressures": (1e5, 3e4)},
     "short": {"film": ehd.ShortBearing(n_theta=48, n_z=8)},
@@ -31,6 +32,7 @@ OPTIONS = {
         )
     },
     "rough": {"roughness": ehd.PatirCheng(composite_roughness=2e-6, journal_share=0.9)},
+    "thin": {"lubricant": ehd.Lubricant(viscosity=0.02, shear_law=THIN)},
     "groove": {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.3, length=0.03, pressure=2e5),)},
 }
 
@@ -52,7 +54,8 @@ def test_tangent_is_the_derivative(make_bearing, name):
         tangent, numeric = model.evaluate(motion).tangent() * scale, np.empty((6, 10))
         for k in range(10):
             step = 1e-5 * scale[k] * np.eye(10)[k]
-            numeric[:, k] = (probe.evaluate(motion + step).wrench - probe.evaluate(motion - step).wrench) / 2e-5
+            w = [probe.evaluate(motion + at * step).wrench for at in (-2, -1, 1, 2)]
+            numeric[:, k] = (8.0 * (w[2] - w[1]) - (w[3] - w[0])) / 12e-5
         rows = np.abs(tangent).max(axis=1)
         rows[rows < 1e-9 * rows.max()] = np.inf
         assert (np.abs(tangent - numeric) / rows[:, None]).max() < 1e-7
@@ -77,13 +80,30 @@ def test_short_bearing_against_its_closed_form(eccentricity, measured):
     assert errors[ehd.Gumbel(), 96] > 5.0 * errors[CELLS, 96]
 
 
+@pytest.mark.slow
+def test_stiffness_of_thinning_oil_is_of_second_order(measured):
+    """Against 1152 columns, for any place of the line in its cell; clipped vertices are of the first order."""
+    errors = {}
+    for a in np.random.default_rng(5).uniform(-0.4, 0.4, 4):
+        motion, found = np.zeros(10), {}
+        motion[:2], motion[8] = 0.7 * C * np.array([np.cos(a), np.sin(a)]), 200.0
+        for n, closure in ((1152, CELLS), (48, CELLS), (96, CELLS), (192, CELLS), (96, ehd.Gumbel())):
+            bearing = ehd.JournalBearing(
+                journal_radius=R, length=0.05, radial_clearance=C, film=ehd.FiniteLength(n_theta=n, n_z=8),
+                cavitation=closure, **OPTIONS["thin"],
+            )  # fmt: skip
+            found[n, closure] = build_model(bearing).evaluate(motion).tangent()[:2, [0, 1, 4, 5]]
+        fine = found.pop((1152, CELLS))
+        for at, value in found.items():
+            off = max(np.abs(value - fine)[:, k].max() / np.abs(fine[:, k]).max() for k in ([0, 1], [2, 3]))
+            errors[at] = max(errors.get(at, 0.0), off)
+    measured("96 columns", errors[96, CELLS], 0.01)
+    assert errors[48, CELLS] > 8.0 * errors[192, CELLS]
+    assert errors[96, ehd.Gumbel()] > 5.0 * errors[96, CELLS]
+
+
 @pytest.mark.parametrize(
-    "options",
-    (
-        {"film": ehd.ClassicSOR()},
-        {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)},
-        {"lubricant": ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7))},
-    ),
+    "options", ({"film": ehd.ClassicSOR()}, {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)})
 )
 def test_what_does_not_know_the_line_is_refused(make_bearing, options):
     with pytest.raises(ehd.InputError, match=r"Gumbel\.line_in_cells=True does not go with"):

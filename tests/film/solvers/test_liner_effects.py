@@ -16,7 +16,6 @@ from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import film_slopes
-from exudyn_ehd.film.reynolds.links import FilmState
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import Rates
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
@@ -255,19 +254,19 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     e.take_rigid(True)
     e.deflection_old[:] = 0.1 * rng.random(SMALL.shape)
     e.rates = Rates(mass=2.0 if closure.conserves_mass else 0.0, liner=3.0, pseudo=0.5, own=1.0)
-    P, fill, full = e.u
+    P, fill, full = e.P, e.fill, np.ones(SMALL.shape, dtype=np.bool_)
     P[:] = 1.0 + rng.normal(size=SMALL.shape)
     if closure.conserves_mass:
         full[:] = SMALL.fixed | (rng.random(SMALL.shape) < 0.6)
         fill[~full] = rng.random(SMALL.shape)[~full]
-    e.balance(e.u)
+    e.balance()
     e.gradients()
     lower, upper = (np.zeros((P.size, 2 * SMALL.z.size + 6)) for _ in range(2))
-    slopes = e.matrix[0]
+    slopes = w.oil.slopes
     thin = None if e.thin is None else e.thin.response()
     numbering = number_cells if thin is None else number_with_corners
     count, width = numbering(~SMALL.fixed, e.metric[0], w.order, w.number)
-    sides = e.sides(e.u)
+    sides = (P, fill, full) if e.fills else (P, None, None)
     film_slopes(*sides[1:], None, None, e.terms, slopes)
     if thin is not None:
         add_tangents(thin[0], e.terms.kx, e.terms.kz, sides[2], slopes)
@@ -285,9 +284,11 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     for k in range(count):
         sides = []
         for sign in (1.0, -1.0):
-            moved = FilmState(P.copy(), fill.copy(), full)
-            (moved.P if full.ravel()[at[k]] else moved.fill).ravel()[at[k]] += sign * h
-            e.balance(moved)
+            moved = P if full.ravel()[at[k]] else fill
+            before = moved.copy()
+            moved.ravel()[at[k]] += sign * h
+            e.balance()
+            moved[:] = before
             sides.append(e.residual.ravel()[at].copy())
         B[:, k] = (sides[0] - sides[1]) / (2.0 * h)
     # differences of smooth functions; the wall's curvature over its onset of a tenth makes them good to 1e-7
@@ -295,8 +296,8 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
 
 
 @every_closure
-def test_the_driver_compiled_as_a_whole_finds_the_same_film(closure):
-    """`compiled.solve` and `newton` by turns on one film: 1e-11 of the peak, steady and with the liner's rate."""
+def test_steps_compiled_as_a_whole_find_the_same_film(closure):
+    """`solve_plain` and balances by turns with `proceed`: 1e-11 of the peak, steady and with the liner's rate."""
     if closure.conserves_mass:
         return
     for eps, rate, step in ((0.6, 10.0, 0.0), (0.95, -4.0, 1e-3)):

@@ -1,15 +1,15 @@
-"""A film on an elastic liner, whose gap yields to its pressure.
+"""Film on an elastic liner, whose gap follows the pressure.
 
 Module map
 ----------
-elements      Winkler elements: pressure on them, deflection
-gap_response  derivatives of flows over gaps that follow the pressure
-kernels       balance as kernels
-film          the film on them: gaps, links, balance, derivatives
-line          its edge inside the cells
-line_kernels  the same in steps of Newton's method
-balance       the film as Newton's method sees it
-newton        the driver of Newton's method
-continuation  dry guess and pseudo time
-parts         contact, gap limiter and oil, as the elements take them
+elements      Winkler elements: pressure on them, deflection, gaps, derivatives
+gap_response  derivatives of the links' flows over gaps that follow the pressure
+kernels       mass balances as kernels
+film          film on the elements: gaps, links, mass balances, derivatives
+line          rupture line inside the cells
+line_kernels  kernels of the rupture line
+steps         Newton steps, from one residual to the next
+balance       Newton's method: a film as `steps` takes it
+continuation  dry guess and pseudo-transient continuation
+parts         contact, gap limiter and oil laws of a film
 """

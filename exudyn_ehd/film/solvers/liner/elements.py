@@ -1,11 +1,10 @@
-"""Winkler elements of an elastic liner: pressure on them, deflection, the gap
-that the film sees, and derivatives; see `exudyn_ehd.film.solvers.nonlinear`.
+"""Winkler elements of an elastic liner: pressure on them, deflection, the gap that the film sees, and derivatives.
 
-Symbols, all scaled: P unknown of the film, p the pressure on the elements (P itself, or p(P) of
-an oil whose viscosity or density follows its pressure), pc cavity pressure in P, beta compliance;
-G true gap, H the gap that the film sees, HF that on the links i -> i+1, D deflection, E = H -
-(film gap of the undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to
-the undeformed gap. ``rigid`` (3, n, m): gap, gap on links and rate of the undeformed surfaces.
+The equations are in `exudyn_ehd.film.solvers.nonlinear`. Symbols, all scaled: P unknown of the film; p pressure on the
+elements, P itself or p(P) of an oil whose viscosity or density follows its pressure; pc cavity pressure in P; beta
+compliance; G true gap; H gap that the film sees, HF that on the links i -> i+1; D deflection; E = H - (film gap of the
+undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to the undeformed gap. ``rigid``
+(3, n, m): gap, gap on links and rate of the undeformed surfaces.
 """
 
 from __future__ import annotations
@@ -19,8 +18,8 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class Gaps(NamedTuple):
-    """What the film sees, (n, m) each: gaps at vertices and links, deflection,
-    what it adds to the film gap, dH/dt without storage."""
+    """Gaps of a film and its deflection, (n, m) each: H, HF, D and E of the module; ``rate`` is dH/dt, without the
+    deflection's rate while a mass-conserving film is solved, whose storage contains it."""
 
     H: np.ndarray
     HF: np.ndarray
@@ -34,8 +33,8 @@ class GapSlopes(NamedTuple):
 
     Attributes
     ----------
-    H_P, D_P : to the unknown pressure
-    H_r, D_r, E_r : to the undeformed gap at fixed unknown
+    H_P, D_P : of H and D to the unknown pressure
+    H_r, D_r, E_r : of H, D and E to the undeformed gap at fixed unknown
     link : of HF to the true gap on the link
     rate_P, rate_r, rate_t : of dH/dt to the unknown, the undeformed gap and the undeformed rate
     """
@@ -56,9 +55,9 @@ class Load(NamedTuple):
 
     Attributes
     ----------
-    drive : the unknown, where a film clips no less than pc
-    p, slope, bend : pressure there with its first two derivatives to the unknown;
-        1 and 0 for an oil of constant viscosity
+    drive : unknown P, at least pc at free vertices if the closure clips
+    p, slope, bend : pressure at ``drive`` with its first two derivatives to the unknown;
+        ``drive``, 1 and 0 for an oil of constant viscosity
     """
 
     drive: np.ndarray
@@ -67,31 +66,31 @@ class Load(NamedTuple):
     bend: np.ndarray
 
 
-# Kernels that are called from Python take these as one array, (fields, n, m): a
-# tuple of arrays takes as long to hand over as they to compute.
+# Kernels that are called from Python take these as one array, (fields, n, m):
+# handing over a tuple of arrays takes as long as the computation.
 
 
 @njit(cache=True)
 def gaps_of(f):
-    """`Gaps` of their fields."""
+    """Return `Gaps` of an array of fields (5, ...)."""
     return Gaps(f[0], f[1], f[2], f[3], f[4])
 
 
 @njit(cache=True)
 def slopes_of(f):
-    """`GapSlopes` of their fields."""
+    """Return `GapSlopes` of an array of fields (9, ...)."""
     return GapSlopes(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8])
 
 
 @njit(cache=True)
 def load_of(f):
-    """`Load` of its fields."""
+    """Return `Load` of an array of fields (4, ...)."""
     return Load(f[0], f[1], f[2], f[3])
 
 
 class Rates(NamedTuple):
-    """Rates of the storage, 1/s: of the mass, of the liner, of pseudo time; and
-    whether the gap's own rate takes part (1 or 0)."""
+    """Inverse time steps of the storage, 1/s, 0 if absent: of the mass, of the liner's deflection, of pseudo time.
+    ``own`` is 1 if the gap's own rate takes part, else 0."""
 
     mass: float
     liner: float
@@ -101,7 +100,7 @@ class Rates(NamedTuple):
 
 @njit(cache=True, fastmath=_FAST)
 def drive_elements(P, fixed, pc, clips, load_fields):
-    """What drives the elements, as it is for an oil of constant viscosity."""
+    """Set ``drive`` of `Load`, and p as for an oil of constant viscosity."""
     load = load_of(load_fields)
     x, prescribed, drive, p = P.reshape(-1), fixed.reshape(-1), load.drive.reshape(-1), load.p.reshape(-1)
     for c in range(x.size):
@@ -112,8 +111,8 @@ def drive_elements(P, fixed, pc, clips, load_fields):
 
 @njit(cache=True, fastmath=_FAST)
 def scale_load(load_fields, scale):
-    """Pressures (Pa) and their derivatives as an oil gives them, to the film's
-    scale; returns the largest pressure, Pa."""
+    """Scale pressures (Pa) and second derivatives (1/Pa) of an oil's law to the film's unit of pressure, in place;
+    returns the largest pressure, Pa."""
     load = load_of(load_fields)
     p, bend = load.p.reshape(-1), load.bend.reshape(-1)
     largest = -np.inf
@@ -127,7 +126,7 @@ def scale_load(load_fields, scale):
 # Loops with one result each, which the compiler vectorises.
 @njit(cache=True, fastmath={"reassoc", "contract", "nsz", "arcp", "nnan"})
 def _smallest(x):
-    """Smallest of numbers; what is none shows in the balances."""
+    """Return the smallest of numbers; nan is not detected here, but in the residual."""
     smallest = np.inf
     for c in range(x.size):
         smallest = min(smallest, x[c])
@@ -136,7 +135,7 @@ def _smallest(x):
 
 @njit(cache=True, fastmath=_FAST)
 def press_elements(rigid, load_fields, beta, G_out):
-    """Gap under the film's pressure alone; returns the smallest."""
+    """Set the gap under the film's pressure alone, without contact; returns the smallest."""
     gap, p, out = rigid[0].reshape(-1), load_of(load_fields).p.reshape(-1), G_out.reshape(-1)
     for c in range(out.size):
         out[c] = gap[c] + beta * p[c]
@@ -157,8 +156,8 @@ def _mean_gap(link, D_a, D_b, out):
 
 @njit(cache=True, fastmath=_FAST)
 def move_elements(rigid, G, delta_old, inverse, gap_fields):
-    """Deflections, gaps and rate of the deformed surfaces before a limiter
-    changes them; returns the smallest gap of a link."""
+    """Set deflections, gaps and rate of the deformed surfaces, before a limiter changes them; returns the smallest gap
+    on a link."""
     m = G.shape[1]
     gaps = gaps_of(gap_fields)
     g, gap, D, H, HF = G.reshape(-1), rigid[0].reshape(-1), gaps.D.reshape(-1), gaps.H.reshape(-1), gaps.HF.reshape(-1)
@@ -175,8 +174,8 @@ def move_elements(rigid, G, delta_old, inverse, gap_fields):
 
 @njit(cache=True)
 def deflect(P, fixed, pc, clips, load_fields, rigid, beta, G, delta_old, inverse, gap_fields):
-    """Elements that the film alone presses, with oil of constant viscosity;
-    returns the smallest gaps of a vertex and of a link."""
+    """Set load and gaps of elements without contact, for an oil of constant viscosity; returns the smallest gaps at a
+    vertex and on a link."""
     drive_elements(P, fixed, pc, clips, load_fields)
     smallest = press_elements(rigid, load_fields, beta, G)
     return smallest, move_elements(rigid, G, delta_old, inverse, gap_fields)
@@ -184,9 +183,9 @@ def deflect(P, fixed, pc, clips, load_fields, rigid, beta, G, delta_old, inverse
 
 @njit(cache=True, fastmath=_FAST)
 def set_storage(gaps, load, P, fills, known, rates, beta, film):
-    """E of the elements, and what vertices store: ``grow`` and ``kept`` of `balance.FilmTerms`.
+    """Set E of the elements, and the storage of the vertices: ``grow`` and ``kept`` of `balance.FilmTerms`.
 
-    ``known`` (3, n, m): film gap of the undeformed surfaces, old mass, and what pseudo time holds on to.
+    ``known`` (3, n, m): film gap of the undeformed surfaces, old mass, and old quantity that pseudo time stores.
     """
     H, E, rate, undeformed = gaps.H.reshape(-1), gaps.E.reshape(-1), gaps.rate.reshape(-1), known[0].reshape(-1)
     grow, kept, old, slow = film.grow.reshape(-1), film.kept.reshape(-1), known[1].reshape(-1), known[2].reshape(-1)
@@ -208,10 +207,10 @@ def set_storage(gaps, load, P, fills, known, rates, beta, film):
 
 @njit(cache=True, fastmath=_FAST)
 def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
-    """Derivatives of gaps and rate, for a slope of the film gap (``rate_t``) and of its links that are known already.
+    """Set `GapSlopes`, but ``rate_t`` (slope of the film gap) and ``link``, which are inputs.
 
-    ``contact_G`` is d(contact pressure)/dG over the film's scale, ``bend`` the
-    film gap's second derivative times the gap's rate.
+    ``contact_G``: d(contact pressure)/dG over the film's scale; ``bend``: second derivative of the film gap times the
+    gap's rate.
     """
     load, out = load_of(load_fields), slopes_of(slope_fields)
     size = P.size
@@ -231,26 +230,6 @@ def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
     _turn(turned, s, inverse, D_r, 1.0, out.rate_r.reshape(-1))
 
 
-@njit(cache=True, fastmath=_FAST)
-def plain_slopes(P, load_fields, beta, inverse, slope_fields):
-    """`element_slopes` of elements that the film alone presses, with oil of
-    constant viscosity: what does not stay the same."""
-    load, out = load_of(load_fields), slopes_of(slope_fields)
-    x, drive, D_P, H_P, rate_P = (
-        P.reshape(-1),
-        load.drive.reshape(-1),
-        out.D_P.reshape(-1),
-        out.H_P.reshape(-1),
-        out.rate_P.reshape(-1),
-    )
-    for c in range(D_P.size):
-        D_P[c] = beta if x[c] == drive[c] else 0.0
-    for c in range(H_P.size):
-        H_P[c] = D_P[c]
-    for c in range(rate_P.size):
-        rate_P[c] = inverse * D_P[c]
-
-
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def _follow(stiff, beta, out):
     for c in range(out.size):
@@ -266,25 +245,25 @@ def _yield(x, drive, steep, follow, beta, out):
 
 @njit(cache=True, fastmath=_FAST)
 def combine(a, by_a, b, by_b, out):
-    """Sum of fields (k,) times factors."""
+    """Set ``out = by_a a + by_b b`` for fields (k,)."""
     for c in range(out.size):
         out[c] = by_a * a[c] + by_b * b[c]
 
 
 @njit(cache=True, fastmath=_FAST)
 def _turn(turned, s, inverse, yields, own, out):
-    """Derivative of the rate to a change that deflects by ``yields``;
-    ``own`` = 1: of the undeformed gap, which turns the film gap itself."""
+    """Set the derivative of dH/dt to a quantity with the derivative ``yields`` of D; ``own``: 1 for the undeformed gap,
+    else 0."""
     for c in range(out.size):
         out[c] = (turned[c] + s[c] * inverse) * yields[c] + own * turned[c]
 
 
 @njit(cache=True, fastmath=_FAST)
 def bend_links(gaps, film):
-    """Conductances of links with another deflection at either end: their mean over the linear course of the gap.
+    """Correct conductances of links for different deflections at their ends: mean over the linear course of the gap.
 
-    ``H^3 + H d^2 = H^3 (1 + (d / H)^2)`` of a plain film, d half the difference
-    of E; what multiplies a plain film's is taken at the mean gap.
+    ``H^3 + H d^2 = H^3 (1 + (d / H)^2)`` of a plain film, d half the difference of E. Flux effects keep their values at
+    the mean gap.
     """
     m = gaps.H.shape[1]
     H, HF, E = gaps.H.reshape(-1), gaps.HF.reshape(-1), gaps.E.reshape(-1)
@@ -313,11 +292,10 @@ def _plain(h_a, h_b, conducts, linked, v, k, f):
 
 @njit(cache=True)
 def plain_links(gap_fields, metric, vx, vz, terms):
-    """Conductances and Couette fluxes (rows 0 to 3 of ``terms``, see
-    `balance.terms_of`) of a film without effects, unbent.
+    """Set conductances and Couette fluxes (rows 0 to 3 of ``terms``, see `balance.terms_of`) of a film without flux
+    effects, before `bend_links`.
 
-    ``metric`` (4, n, m): of the conductances in theta and in z, and widths that
-    Couette flows in theta and in z pass through.
+    ``metric`` (4, n, m): of the conductances in theta and in z, and widths of the Couette flows in theta and in z.
     """
     H, HF = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1)
     by, out = metric.reshape(4, -1), terms.reshape(terms.shape[0], -1)
@@ -327,14 +305,14 @@ def plain_links(gap_fields, metric, vx, vz, terms):
 
 @njit(cache=True)
 def smallest_of(gap_fields):
-    """Smallest gap that the film sees."""
+    """Return the smallest gap that the film sees, at vertices and on links."""
     gaps = gaps_of(gap_fields)
     return min(_smallest(gaps.H.reshape(-1)), _smallest(gaps.HF.reshape(-1)))
 
 
 @njit(cache=True)
 def ends_open(rigid, p, beta, fixed):
-    """Whether the gap is open where the pressure is prescribed, which is beyond the liner's reach."""
+    """Return whether the gap is open at vertices and links of prescribed pressure, where the deflection is given."""
     n, m = p.shape
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0

@@ -1,5 +1,5 @@
-"""Film on the Winkler elements of a liner, with contact, laws of the oil,
-flow factors and density; see `exudyn_ehd.film.solvers.nonlinear`."""
+"""Film on the Winkler elements of a liner, with contact, oil laws, flow factors and density; the equations are in
+`exudyn_ehd.film.solvers.nonlinear`."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.oil_line import straight
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.balance import FilmTerms, violation
-from exudyn_ehd.film.reynolds.links import FilmState, LinkFlux
+from exudyn_ehd.film.reynolds.balance import FilmTerms
+from exudyn_ehd.film.reynolds.links import LinkFlux
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import (
     Gaps,
@@ -18,30 +19,28 @@ from exudyn_ehd.film.solvers.liner.elements import (
     Rates,
     deflect,
     drive_elements,
-    element_slopes,
     move_elements,
     plain_links,
     press_elements,
     scale_load,
     smallest_of,
 )
-from exudyn_ehd.film.solvers.liner.gap_response import link_gradients, speed_gradients
-from exudyn_ehd.film.solvers.liner.kernels import density_of_load, liner_residual, plain_residual
-from exudyn_ehd.film.solvers.liner.line import FilmLine
-from exudyn_ehd.film.solvers.liner.line_kernels import meet_line
+from exudyn_ehd.film.solvers.liner.gap_response import speed_gradients
+from exudyn_ehd.film.solvers.liner.kernels import density_of_load, liner_residual
+from exudyn_ehd.film.solvers.liner.line import FilmLine, OilFilmLine
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.surfaces.contact import Contact
 
 
 class LinerFilm:
-    """Film on Winkler elements: gaps and links for its unknowns, its balance and derivatives.
+    """Film on Winkler elements: gaps, links, mass balances and derivatives for given unknowns.
 
     Parameters
     ----------
     film : FilmSolver
         Its gaps, links and factor are this film's own.
     set_links : callable
-        Conductances and Couette fluxes of the film in its present gaps.
+        Sets conductances and Couette fluxes for the present gaps.
     parts : LinerParts
     """
 
@@ -50,7 +49,7 @@ class LinerFilm:
         self.contact, self.limiter, self.oil, self.density = contact, limiter, oil, density = parts
         # coefficients of links that effects change
         self.links: LinkFlux | None = None
-        # the one among them that follows the pressure
+        # the flux effect that follows the pressure
         self.thin = next((e for e in film.flux_effects if isinstance(e, ShearThinning)), None)
         if self.thin is not None:
             self.thin.place(film.grid, film.flow_x)
@@ -60,8 +59,8 @@ class LinerFilm:
         s, g, closure = film.system, film.grid, film.closure
         shape = g.shape
         self.clips = closure.clips
-        # whether vertices may be cavitated; a film that keeps its mass starts cold from one that ruptures without
-        self.fills = closure.conserves_mass
+        # whether vertices may be cavitated
+        self.fills = self.conserves_mass = closure.conserves_mass
         self.beta, self.scale = 0.0, 1.0
         self.rates = Rates(0.0, 0.0, 0.0, 1.0)
         self.deflection_old = np.zeros(shape)
@@ -71,7 +70,7 @@ class LinerFilm:
         self.rigid_film, self.mass_old, self.pseudo_old = self.known
         self.true_gap, self.pressed = np.ones(shape), np.ones(shape)
         self.contact_pressure, self.contact_G, self.bend = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        # whether contact_pressure, contact_G, bend and gap_slopes are those of surfaces apart
+        # whether contact_pressure, contact_G, bend and gap_slopes have their values for surfaces apart
         self.apart = True
         self.gap_fields, self.slope_fields, self.load_fields = (np.zeros((k, *shape)) for k in (5, 9, 4))
         self.gaps, self.gap_slopes = Gaps(*self.gap_fields), GapSlopes(*self.slope_fields)
@@ -95,24 +94,24 @@ class LinerFilm:
         self.cut_links()
         self.residual = np.zeros(shape)
         self.by = np.zeros((4, film.work.order.size))
-        fill = s.fill if closure.conserves_mass else np.ones(shape)
-        self.u = FilmState(s.linear_pressure, fill, np.ones(shape, dtype=np.bool_))
-        self.known_slopes = False
-        # whether only the liner depends on the film; with effects on the links it does not stay so
-        # the film's edge inside its cells, and the same while it takes part
-        self.line = FilmLine(shape) if closure.line_in_cells else None
-        self.met: FilmLine | None = None
+        # the unknown pressure, and the film fraction
+        self.P, self.fill = s.linear_pressure, s.fill if self.fills else np.ones(shape)
+        # whether vertices in the cavity have no unknown
+        self.chooses = film.complementary and not self.fills
+        # rupture line inside the cells, curves of the vertices, and ``late`` of the flows without curves
+        self.line, self.curve, self.late = edge_of(film, s.late)
+        # whether the pressure changes the deflection of the liner alone
         self.plain = contact is None and limiter is None and oil is None and not film.flux_effects
         self.smallest = 1.0
 
     def cut_links(self) -> None:
-        """Take the grid's cuts; the last factor is of no use."""
+        """Apply the grid's cuts to the links, which invalidates the last factor."""
         self.reusable = False
         self.metric[:2] = self.uncut
         self.film.grid.cut(*self.metric[:2])
 
     def take_rigid(self, squeeze: bool) -> None:
-        """Keep the undeformed gaps and their rate, and what the film would see of them."""
+        """Store gaps and rate of the undeformed surfaces, and the film gap that a limiter makes of them."""
         f, r = self.film, self.rigid
         r[0], r[1] = f.H, f.HF
         r[2] = f.H_t if squeeze else 0.0
@@ -122,10 +121,11 @@ class LinerFilm:
             self.limiter.limit(self.rigid_film, f.HF, scratch[0], self.rigid_slope, scratch[1], scratch[2])
 
     def set_known_loads(self) -> bool:
-        """Pressures on the elements at prescribed vertices and in the cavity; False where the oil has none."""
+        """Set the elements' pressures at prescribed vertices and in the cavity; returns False if the oil's law has
+        none."""
         fixed, pc = self.film.grid.fixed, self.film.system.cavity_pressure
         self.cavity_load = pc if self.film.ruptures else 0.0
-        P = self.u.P
+        P = self.P
         if self.to_pressure is None:
             return True
         known = np.append(P[fixed], self.cavity_load)[None] * self.scale
@@ -138,7 +138,7 @@ class LinerFilm:
         return True
 
     def press(self, P: np.ndarray) -> bool:
-        """Pressure on every element for the film's unknown P; False where the oil would be solid."""
+        """Set the pressure on every element for the film's unknown P; returns False if the oil would be solid."""
         load, f = self.load, self.film
         drive_elements(P, f.grid.fixed, f.system.cavity_pressure, self.clips, self.load_fields)
         if self.oil is None or self.to_pressure is None:
@@ -153,10 +153,9 @@ class LinerFilm:
         return True
 
     def update_elements(self, P: np.ndarray) -> bool:
-        """Every element under the film of the unknown P, with the gaps that the
-        film sees; False where the oil has no pressure."""
+        """Update the elements and the gaps that the film sees for its unknown P; returns False if the oil's law has no
+        such pressure."""
         f, contact = self.film, self.contact
-        self.known_slopes = False
         if contact is None and self.oil is None:
             smallest, on_links = deflect(
                 P,
@@ -188,7 +187,7 @@ class LinerFilm:
         return True
 
     def _touch(self, contact: Contact, smallest: float) -> None:
-        """Gaps of elements that the contact presses as well."""
+        """Set the gaps of elements on which a contact presses as well."""
         if smallest < contact.presses_below:
             contact.solve_gap(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
             self.apart = False
@@ -200,25 +199,23 @@ class LinerFilm:
             self.gap_slopes.rate_t[:] = self.gap_slopes.link[:] = 1.0
             self.apart = True
 
-    def balance(self, state: FilmState) -> tuple[float, float]:
-        """Norm of what does not hold, and the smallest film gap; (inf, -1) where the oil has no pressure."""
-        if self.plain and not self.fills:
-            norm, gap = self._plain_balance(state.P)
-            return (norm, gap) if self.met is None or not gap > 0.0 else (self._meet(state.P, self.met), gap)
-        if not self.update_elements(state.P):
+    def balance(self) -> tuple[float, float]:
+        """Update gaps, links and residual; returns (norm of the residual, smallest film gap), (inf, -1) if the oil's
+        law has no such pressure."""
+        f, fill = self.film, self.fill if self.fills else None
+        if not self.update_elements(self.P):
             return np.inf, -1.0
         if not self.smallest > 0.0:
             return np.inf, self.smallest
-        f = self.film
         if self.links is None:
             plain_links(self.gap_fields, self.metric, f.vx, f.vz, self.term_fields)
         else:
             if self.thin is not None:
-                self.thin.see(state.P)
+                self.thin.see(self.P)
             self.set_links()
         norm = liner_residual(
-            state.P,
-            state.fill if self.fills else None,
+            self.P,
+            fill,
             self.rho,
             self.load_fields,
             self.gap_fields,
@@ -228,89 +225,30 @@ class LinerFilm:
             tuple(self.rates),
             self.beta,
             f.system.cavity_pressure,
-            self._chooses(),
-            self.residual,
-        )
-        return norm if self.met is None else self._meet(state.P, self.met), self.smallest
-
-    def _meet(self, P: np.ndarray, line: FilmLine) -> float:
-        """Norm of what does not hold with the line inside the cells."""
-        pc, terms = self.film.system.cavity_pressure, self.terms
-        meet_line(P, pc, terms.kx, terms.kz, line.state, self.residual)
-        return float(violation(self.residual, P, terms.fixed, pc, True))
-
-    def _plain_balance(self, P: np.ndarray) -> tuple[float, float]:
-        """As `balance` without effects, in one call: for films so fast that calls cost as much as they do."""
-        f = self.film
-        self.known_slopes = False
-        norm, self.smallest = plain_residual(
-            P,
-            f.grid.fixed,
-            (f.system.cavity_pressure, f.vx, f.vz, self.beta),
-            (self.clips, self._chooses()),
-            self.load_fields,
-            self.rigid,
-            self.true_gap,
-            self.deflection_old,
-            self.gap_fields,
-            self.metric,
-            self.term_fields,
-            self.known,
-            tuple(self.rates),
+            self.chooses,
+            self.curve,
             self.residual,
         )
         return norm, self.smallest
 
-    def _chooses(self) -> bool:
-        """Whether vertices without pressure are no unknowns."""
-        return self.film.complementary and not self.fills
-
-    def gradients(self) -> None:
-        """Derivatives of gaps and of the links' flows at the present state, into ``gap_slopes`` and ``by``."""
-        f, u = self.film, self.u
-        element_slopes(
-            u.P,
-            self.load_fields,
-            self.rigid_slope,
-            self.contact_G,
-            self.bend,
-            self.beta,
-            self.rates.liner,
-            self.slope_fields,
-        )
-        link_gradients(
-            u.P,
-            self.film.carried if self.fills else None,
-            self.rho,
-            self.term_fields,
-            f.grid.fixed,
-            self.gap_fields,
-            self.links,
-            self.metric,
-            f.vx,
-            f.vz,
-            self.by,
-        )
-        self.known_slopes = True
-
     def storage_gradients(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (n, m) of the storage to the undeformed gap and rate."""
+        """Derivatives (n, m) of the storage to the undeformed gap and to its rate."""
         a, content = self.gap_slopes, self.film.area
         if self.rho is not None:
             content = content * self.rho
         if self.fills:
-            content = content * self.u.fill
+            content = content * self.fill
         if self.rates.own == 0.0:
             kept = self.film.area * self.film.follows
             return (content * a.H_r - kept) * self.rates.mass, kept
         return content * a.rate_r, content * a.rate_t
 
     def flows_by_speed(self) -> np.ndarray:
-        """Derivatives (3, n, m) of the links' flows, as returned by `speed_gradients`."""
-        by = np.empty((3, *self.u.P.shape))
+        """Derivatives (3, n, m) of the links' flows to the speeds, as `speed_gradients` sets them."""
+        by = np.empty((3, *self.P.shape))
         fill = self.film.carried if self.fills else None
         speed_gradients(
-            self.u.P,
+            self.P,
             fill,
             self.rho,
             self.term_fields,
@@ -321,3 +259,19 @@ class LinerFilm:
             by,
         )
         return by
+
+
+def edge_of(film: FilmSolver, late: np.ndarray) -> tuple[FilmLine | OilFilmLine | None, np.ndarray, np.ndarray]:
+    """Return the rupture line inside the cells (None without), the curves of its vertices, and ``late`` without curves.
+
+    ``late`` (n, m): that of the film's coefficients, see `exudyn_ehd.film.reynolds.lagging_void`.
+    """
+    s, shape = film.system, late.shape
+    if film.closure.clips or not film.closure.line_in_cells:
+        return None, straight(shape), late
+    if not film.closure.conserves_mass:
+        line = FilmLine(shape)
+        return line, line.curve, late
+    film.oil_line = s.oil_line = edge = OilFilmLine(shape)
+    edge.late, s.late = late, np.zeros(shape)
+    return edge, edge.block, edge.kept

@@ -1,9 +1,8 @@
-"""Derivatives of the flows over links whose gaps follow the pressure: Newton's
-matrix and the gradients of a film on an elastic liner.
+"""Derivatives of the flows over links whose gaps follow the pressure, for Newton's matrix and for gradients.
 
-Symbols of `exudyn_ehd.film.solvers.liner.elements`; a, b ends of a link, h its gap and d half the
-difference of E, up its upstream fill times its mean density. A link's flow is
-``up f - k (P_b - P_a)``, with a Couette flux f(h) and ``k = g(h) (1 + (d / h)^2)`` with its metric.
+Symbols of `exudyn_ehd.film.solvers.liner.elements`; a, b ends of a link, h its gap, d half the difference of E, up its
+upstream fill times its mean density. The flow over a link is ``up f - k (P_b - P_a)``, with a Couette flux f(h) and the
+conductance ``k = g(h) (1 + (d / h)^2)`` with its metric.
 """
 
 import numpy as np
@@ -18,8 +17,8 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 @njit(cache=True)
 def of_axis(links, axis):
-    """Conductance, its slope and that of the carrier of the links in theta (0)
-    or z (1), flat; None for a plain film."""
+    """Return conductance, its slope and the carrier's slope of the links in theta (0) or z (1), flat; None for a plain
+    film."""
     if links is None:
         return None, None, None
     if axis == 0:
@@ -29,8 +28,7 @@ def of_axis(links, axis):
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def _conductance_gradients(P_a, P_b, k, mean, lean, g, g_h, by_h, by_d):
-    """Derivatives to h and d of the pressure flow over links with the gaps
-    ``mean`` and half differences ``lean`` of E."""
+    """Set the derivatives ``by_h``, ``by_d`` of the pressure flow over links to h (``mean``) and d (``lean``)."""
     for c in range(by_d.size):
         by_d[c] = -2.0 * k[c] * (P_b[c] - P_a[c]) * lean[c] / (mean[c] * mean[c] + lean[c] * lean[c])
     if g is None:
@@ -43,7 +41,7 @@ def _conductance_gradients(P_a, P_b, k, mean, lean, g, g_h, by_h, by_d):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_carriers(f, v, linked, carrier_h, fill_a, fill_b, rho_a, rho_b, by_h):
-    """Add the Couette flow's derivative to h."""
+    """Add the derivative of the Couette flow to h."""
     for c in range(f.size):
         up = v * linked[c]
         if carrier_h is not None:
@@ -57,7 +55,7 @@ def _add_carriers(f, v, linked, carrier_h, fill_a, fill_b, rho_a, rho_b, by_h):
 
 @njit(cache=True)
 def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz, by):
-    """by (4, n m): derivatives of the flows over links to h and d, in theta, then in z.
+    """Set ``by`` (4, n m): derivatives of the flows over links to h and d, in theta, then in z.
 
     ``links``: `LinkFlux`, or None for a plain film; ``metric`` as in `elements.plain_links`.
     """
@@ -109,8 +107,8 @@ def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz
 
 @njit(cache=True, fastmath=_FAST)
 def speed_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, by):
-    """by (3, n, m): derivatives of the flows over links in theta to vx, and in
-    z to vx and to vz; the rest as for `link_gradients`."""
+    """Set ``by`` (3, n, m): derivatives of the flows over links in theta to vx, and in z to vx and to vz. Other
+    parameters as for `link_gradients`."""
     n, m = P.shape
     film, gaps = terms_of(terms, fixed), gaps_of(gap_fields)
     for i in range(n):
@@ -143,8 +141,7 @@ def speed_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, by):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_end(by_h, by_d, side, steep, lean, full, out):
-    """Add the derivative of a link's flow to the unknown at one of its ends,
-    which bends it (side 1: b) or its other end (-1: a)."""
+    """Add the derivative of a link's flow to the unknown at its end b (``side`` 1) or a (-1), through the gap there."""
     for c in range(out.size):
         slope = 0.5 * (by_h[c] * steep[c] + side * by_d[c] * lean[c])
         if full is not None:
@@ -160,7 +157,7 @@ def _product(a, b, out):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
-    """Derivative of the storage through the gap."""
+    """Add the derivative of the storage to the unknowns, through the gap."""
     for c in range(out.size):
         by = rate_P[c]
         if fill is not None:
@@ -174,15 +171,15 @@ def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_pseudo(area, P, drive, slope, factor, out):
-    """Derivative of the pseudo storage of a film that keeps no mass."""
+    """Add the derivative of pseudo time's storage, for a film that does not conserve mass."""
     for c in range(out.size):
         out[c] += area[c] * factor * (slope[c] if P[c] == drive[c] else 1.0)
 
 
 @njit(cache=True)
 def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, slopes):
-    """Add the derivatives of flows and storage through the gap to ``slopes``
-    of `balance.film_slopes`; ``by`` of `link_gradients`."""
+    """Add the derivatives of flows and storage through the gap to ``slopes`` of `balance.film_slopes`; ``by``: that of
+    `link_gradients`."""
     n, m = P.shape
     size = n * m
     last, e = size - m, size - 1
@@ -217,17 +214,17 @@ def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, 
 
 @njit(cache=True, fastmath=_FAST)
 def _end_gain(by_h, by_d, side, yields, bends, out):
-    """Derivative of a link's flow to the undeformed gap at one of its ends, b (side 1) or a (-1)."""
+    """Set the derivative of a link's flow to the undeformed gap at its end b (``side`` 1) or a (-1)."""
     for c in range(out.size):
         out[c] = 0.5 * (by_h[c] * yields[c] + side * by_d[c] * bends[c])
 
 
 @njit(cache=True, fastmath=_FAST)
 def gap_columns(order, count, by, by_v, slope_fields, gain_t, gain_r, at, out):
-    """Derivatives (10, count) of the balances at the unknowns to (scaled pose, scaled rates, vx, vz).
+    """Set the derivatives (10, count) of the balances at the unknowns to (scaled pose, scaled rates, vx, vz).
 
-    ``by`` (4, n m) of `link_gradients`, ``by_v`` (3, n, m) of `speed_gradients`; ``gain_t``, ``gain_r`` (n, m): of the
-    storage to the undeformed rate and gap; ``at``: `Directions`.
+    ``by`` (4, n m): that of `link_gradients`; ``by_v`` (3, n, m): of `speed_gradients`; ``gain_t``, ``gain_r`` (n, m):
+    derivatives of the storage to the undeformed rate and gap; ``at``: `Directions`.
     """
     _, n, m = by_v.shape
     size, gap_slopes = n * m, slopes_of(slope_fields.reshape(9, n * m))

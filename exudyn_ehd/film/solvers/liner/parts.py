@@ -1,4 +1,4 @@
-"""What a film on a liner may be made of besides its closure; see `exudyn_ehd.film.solvers.nonlinear`."""
+"""Optional parts of a film on a liner; see `exudyn_ehd.film.solvers.nonlinear`."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 
 
 class LinerParts(NamedTuple):
-    """What takes part, None: absent.
+    """Optional parts of a film on a liner, None if absent.
 
     Attributes
     ----------
     contact : Contact or None
-        Its pressure acts on the liner, as the film's does.
+        Contact whose pressure acts on the liner, as the film's does.
     limiter : GapLimiter or None
-        Of the gap that the film sees; goes with the contact or with flow factors.
+        Limiter of the gap that the film sees; comes with a contact or with flow factors.
     oil : PressureLaw or None
-        Of a viscosity that follows the pressure.
+        Law of a viscosity that follows the pressure.
     density : CompressibleLaw or None
-        Of a density that does; then it is the ``oil`` as well.
+        Law of a density that follows the pressure; it is the ``oil`` as well.
     """
 
     contact: Contact | None
