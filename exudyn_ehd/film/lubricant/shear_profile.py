@@ -37,9 +37,9 @@ _PLACE, _ONE = _unsigned((1 << 52) - 1), _unsigned(1023 << 52)
 # Gauss points across the film, of the pressure flow and of the mean stress. Largest error of a flow for exponents from
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
-# Share of the stress at which Newton's step is the last one, on the way and for exact derivatives: what it leaves of
-# stress and flow is its square.
-LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-7, 200, 30
+# Share of the stress at which Newton's step is the last one: on the way, where what it leaves of stress and flow is its
+# square, and for exact derivatives, of which it leaves itself.
+LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-12, 200, 30
 # Change of the stress, as a share, up to which the last profile's derivatives are those of the next: what tangents are
 # exact to. Smaller values ask the law more often.
 SAME = 1e-12
@@ -222,7 +222,7 @@ def _scale(T_x, T_z, G_x, G_z):
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
-def _follow(S, G_x, G_z, oil, points, last):
+def _follow(S, G_x, G_z, oil, points, last_step, last):
     """`Profile` from the last one, ``last`` (`LAST`,): along its derivatives if it is near, else where they lead to."""
     dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
     T_x, T_z = last[3], last[4]
@@ -237,7 +237,7 @@ def _follow(S, G_x, G_z, oil, points, last):
         F_x = last[13] + F_xs * dS + F_xx * d_x + F_xz * d_z
         F_z = last[14] + F_zs * dS + F_xz * d_x + F_zz * d_z
         return Profile(T_x, T_z, F_x, F_z, last[5], last[6], last[7], F_xs, F_zs, F_xx, F_xz, F_zz)
-    p, others, rough = _profile(S, G_x, G_z, oil, points, T_x, T_z, LAST_STEP)
+    p, others, rough = _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step)
     last[0], last[1], last[2], last[3], last[4] = S, G_x, G_z, p.T_x, p.T_z
     last[5], last[6], last[7] = p.T_xs, p.T_xx, p.T_xz
     last[8], last[9], last[10] = others
@@ -302,7 +302,7 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out)
                 out[1, i, j] = out[2, i, j] = out[4, i, j] = 0.0
                 out[3, i, j] = 1.0
                 continue
-            p = _follow(S, G_x, G_z, oil, points, known)
+            p = _follow(S, G_x, G_z, oil, points, LAST_STEP, known)
             F, by_own, by_s = (p.F_x, p.F_xx, p.F_xs) if axis == 0 else (p.F_z, p.F_zz, p.F_zs)
             if abs(own) <= SLIGHT * (abs(p.T_x) + abs(p.T_z) + 1.0):
                 a = 12.0 * by_own
@@ -339,7 +339,7 @@ def thin_shear(H, slopes, fluid, speed, k, oil, points, last, out):
                 by_s = last[i, j, 5]
                 out[1, i, j] = out[3, i, j] = out[4, i, j] = 0.0
             else:
-                p = _follow(at, G_x, G_z, oil, points, last[i, j])
+                p = _follow(at, G_x, G_z, oil, points, EXACT, last[i, j])
                 a, by_s = p.T_x / at, p.T_xs
                 out[1, i, j] = (p.T_xx * G_x + p.T_xz * G_z) / at / h
                 out[3, i, j] = p.T_xx / at * per
