@@ -51,7 +51,7 @@ import numpy as np
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.linear_film import mean_in_cells
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.cavitation.steady_oil import status_of
+from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row, status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
@@ -244,7 +244,11 @@ class NonlinearFilmSolver(FilmSolver):
 
     def _failure(self) -> Status:
         """Status of a film that was not found."""
-        e = self.elements
+        e, s = self.elements, self.system
+        # in pseudo time it ended with the last film that it found
+        unfed = s.turns > 0.0 and has_unfed_row(s.linear_pressure, self.H, s.fixed, s.turns, s.cavity_pressure)
+        if unfed and not e.rigid[2].any():
+            return Status.NO_OIL
         if e.oil is not None and float(e.load.p.max()) * e.scale > NEARLY_SOLID * e.oil.largest_pressure:
             return Status.NO_PRESSURE
         if e.contact is not None or e.beta == 0.0:

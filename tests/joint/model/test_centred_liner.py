@@ -54,7 +54,7 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
 @pytest.mark.slow
 @pytest.mark.parametrize("contact", [None, ehd.RegularisedWall(onset=2e-6)], ids=["plain", "contact"])
 def test_slight_films_rupture_without_turning_in_circles(contact):
-    """Steps are measured by a pressure that the speed could make, not by the rounding next to it (400 solves)."""
+    """Pressures next to rounding took 400 solves; some 100 with those in pseudo time, which tell that nothing feeds it."""
     motion = np.zeros(10)
     motion[0], motion[8] = 0.02548220424684501 * CLEARANCE, -123.07779066684151
     found = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(motion)
@@ -63,7 +63,7 @@ def test_slight_films_rupture_without_turning_in_circles(contact):
     other = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(near)
     # a film that nothing feeds may have none
     assert found.status is other.status and found.status in (ehd.Status.CONVERGED, ehd.Status.NO_OIL)
-    assert max(found.iterations, other.iterations) < 40
+    assert max(found.iterations, other.iterations) < 120
     assert found.status is ehd.Status.NO_OIL or np.allclose(
         found.wrench, other.wrench, rtol=1e-2, atol=1e-3 * np.abs(other.wrench).max()
     )
