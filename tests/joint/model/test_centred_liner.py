@@ -54,7 +54,7 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
 @pytest.mark.slow
 @pytest.mark.parametrize("contact", [None, ehd.RegularisedWall(onset=2e-6)], ids=["plain", "contact"])
 def test_slight_films_rupture_without_turning_in_circles(contact):
-    """Pressures next to rounding took 400 solves; some 100 with those in pseudo time, which tell that nothing feeds it."""
+    """Pressures next to rounding took 400 solves; now some 100, most of them in pseudo time."""
     motion = np.zeros(10)
     motion[0], motion[8] = 0.02548220424684501 * CLEARANCE, -123.07779066684151
     found = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(motion)
