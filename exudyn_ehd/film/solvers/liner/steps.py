@@ -189,7 +189,8 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, film, elements, links
             progress = (False, False, False, progress[3], progress[4])
     if not (gap > 0.0 and norm < np.inf):
         return LOST, course
-    curve, is_last, even = curve_of(film[3]), step + 1 == MOST_STEPS, EVEN_DENSE if progress[2] and step >= PATIENT else EVEN
+    curve, is_last = curve_of(film[3]), step + 1 == MOST_STEPS
+    even = EVEN_DENSE if progress[2] and step >= PATIENT else EVEN
     outcome, progress = look(
         terms_of(film[0], film[1]), film[2], kind, curve, even, is_last, full, state, rest, progress
     )
