@@ -14,7 +14,7 @@ from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
 from exudyn_ehd.film.cavitation.solve import BENDS, EVEN, EVEN_DENSE, GOES_ON, LOST, MOST_STEPS, look, take_step
-from exudyn_ehd.film.cavitation.states import RUPTURE, add_sink, place_states, set_states
+from exudyn_ehd.film.cavitation.states import OIL, RUPTURE, add_sink, place_states, set_states
 from exudyn_ehd.film.reynolds.balance import carried_fill, film_slopes, oil_links, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, element_slopes, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes, link_gradients
@@ -25,8 +25,10 @@ CLOSING = 0.8
 # Smallest range of pressures, over the scaled speed (the pressure scale of a gap of one clearance). A smaller range is
 # round-off of a centred journal, and counts as this.
 LEAST_PRESSURE = 1e-6
-# Growth of the residual from which a step is halved, and relative change of the pressures below which it is round-off.
-WORSE, SILENT = 2.0, 1e-8
+# Growth of the residual from which a step is halved, the second one where vertices of a film that conserves mass change
+# their side: their fills change at once, those of their neighbours in the next step. Relative change of the pressures
+# below which the growth is round-off.
+WORSE, REFILLED, SILENT = 2.0, 10.0, 1e-8
 # Largest number of halvings of a step; steps after which round-off may be that of a density, as in gaps of 1e-5 of the
 # clearance.
 MOST_HALVINGS, PATIENT = 12, 20
@@ -204,7 +206,7 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, film, elements, links
     order, _, lower, upper, inv_diag, _, steep = matrix
     u_before[:], full_before[:], before[:] = u, full, above
     bends = BENDS, steep, 1e300, elements[2].reshape(4, -1), 1.0
-    ok, _, progress = take_step(
+    ok, changes, progress = take_step(
         kind, bends, curve, (order, lower, upper, inv_diag), (count, width), step == 0, fresh, x, full, state, rest,
         progress,
     )  # fmt: skip
@@ -214,7 +216,10 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, film, elements, links
     share = _open_share(above, before, elements[0][0], elements[1][0])
     if share < 1.0:
         _shorten(share, film, pc, full, state, P, (u_before, full_before))
-    return GOES_ON, (step + 1, fresh, 0, share, norm * (WORSE if fresh else 1.0), count, width, progress)
+    limit = norm * (WORSE if fresh else 1.0)
+    if kind == OIL and changes > 0:
+        limit = norm * REFILLED
+    return GOES_ON, (step + 1, fresh, 0, share, limit, count, width, progress)
 
 
 @njit(cache=True, nogil=True)
