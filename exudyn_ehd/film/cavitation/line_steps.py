@@ -9,11 +9,10 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
+from exudyn_ehd.film.cavitation.states import ROUNDING
 
 # s that a vertex starts from whose pressure says nothing of it.
 START = 1e-3
-# Pressure below the cavity's, over the peak, by which a vertex without a line leaves the film: about 100 roundings.
-ROUNDING = 1e-13
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 _unsigned = np.uint64
 _0, _1 = _unsigned(0), _unsigned(1)

@@ -33,7 +33,8 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.grid import Directions, Mesh
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
-# A vertex joins with s beyond it: what lies below is the rounding of its neighbours' pressures.
+# Smallest s of a vertex in the film, as dp/ds vanishes at 0: what lies below is the rounding of its neighbours'
+# pressures.
 LEAST = 1e-8
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 

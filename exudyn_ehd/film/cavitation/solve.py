@@ -49,12 +49,12 @@ MOST_STEPS = 60
 # Largest estimated error after a chord step, over the peak pressure; and largest change of u on a curve, and weighted
 # change of the density, in a last step with its own factor, whose error is of the order of its square.
 LEFT, SETTLED = 1e-13, 1e-8
-# Largest contraction rate at which chord steps continue: at larger ones a factor of its own is faster.
+# Largest contraction rate at which a factor serves on, as a whole or in rows: at larger ones a new one is faster.
 REUSABLE = 0.01
 # Largest residual of a vertex that counts as round-off, over the largest flow; the second one for a density, as
-# round-off grows near the end of its law. Over the largest flow that drives the film; the second one where no pressure
-# moves by more than its round-off: larger residuals come from a singular matrix.
-EVEN, EVEN_DENSE, BALANCED, BALANCED_AT_REST = 1e-13, 1e-11, 1e-8, 1e-6
+# round-off grows near the end of its law. Over the largest flow that drives the film: larger residuals come from a
+# singular matrix.
+EVEN, EVEN_DENSE, BALANCED = 1e-13, 1e-11, 1e-6
 # Largest negative fill that counts as round-off in a dry cavity. Larger ones come from rates that last in a film
 # without history: no such film exists.
 LARGEST_DEFICIT = 1e-6
@@ -131,7 +131,7 @@ def look(terms, late, kind, curve, even, is_last, full, state, rest, progress):
         rests = done and last <= LEFT
         if of_flows <= even or rests:
             least = settle_states(terms, kind, full, P, fill)
-            sound = least > -LARGEST_DEFICIT and of_drive <= (BALANCED_AT_REST if rests else BALANCED)
+            sound = least > -LARGEST_DEFICIT and of_drive <= BALANCED
             outcome = FOUND if sound else LOST
         elif is_last:
             outcome = LOST

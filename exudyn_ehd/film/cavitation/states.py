@@ -25,9 +25,8 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation.oil_line import FILLED, lack
+from exudyn_ehd.film.cavitation.rupture_line import LEAST
 
-# Smallest u on a curve, as dP/du vanishes at 0: below, a vertex can't be told from one in the cavity.
-LEAST = 1e-8
 # Pressure over the peak, and fill, by which a vertex may violate its bound: some thousand units of round-off.
 ROUNDING = 1e-12
 

@@ -26,16 +26,11 @@ from exudyn_ehd.film.cavitation.line_steps import (
     place_line,
 )
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
+from exudyn_ehd.film.cavitation.solve import FAR, LEFT, REUSABLE
 from exudyn_ehd.film.cavitation.system import FilmSystem
 
 # Steps of a film, or one for each column if these are more: without a coarser grid a line may have as far to go.
 MOST_STEPS = 100
-# What a step may leave of s and of pressures over the peak: some hundred roundings.
-LEFT = 1e-13
-# Change of pressures over the peak that takes digits of small ones with it: another step brings them back.
-FAR = 10.0
-# Change of s up to which rows in front of all others keep their factor.
-KEPT_ROWS = 0.01
 _NONE = np.int64(0)
 
 
@@ -60,7 +55,7 @@ def _newton(links, line, active, factor, x, forth, p):
             # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
             first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else FIRST_ROW
         line_rows(lack, line, order, count, x)
-        ok, kept = factor_line(links, line, factor, count, width, first, KEPT_ROWS)
+        ok, kept = factor_line(links, line, factor, count, width, first, REUSABLE)
         if not ok:
             return False, step + 1, count, width
         solve_ldl_one(band, inv_diag, count, width, x)
