@@ -68,18 +68,11 @@ def test_coefficients_against_the_closed_form(make_bearing, count):
     for eccentricity in rng.uniform(0.1, 0.9, count):
         motion, angle, expected = _motion(eccentricity), rng.uniform(0.0, 2.0 * np.pi), _closed_form(eccentricity)
         error = _errors(_coefficients(cells, motion, angle), expected)
-        # 0.19 % up to eccentricity ratio 0.6, 0.25 % up to 0.8, 0.42 % up to 0.9, of second order in the columns
-        assert error.max() < (0.003 if eccentricity < 0.8 else 0.0045), eccentricity
+        # 0.13 % up to eccentricity ratio 0.6, 0.19 % up to 0.8, 0.29 % up to 0.9, of second order in the columns
+        assert error.max() < (0.002 if eccentricity < 0.8 else 0.003), eccentricity
         found.append((error.max(), _errors(_coefficients(vertices, motion, angle), expected).max()))
     inside, outside = np.max(found, axis=0)
     assert outside > 5.0 * inside
-
-
-def test_the_columns_that_the_largest_eccentricity_takes(make_bearing):
-    """160 columns: 0.3 % at eccentricity ratio 0.9."""
-    rng, model = np.random.default_rng(4), build_model(make_bearing(0.25, film=ehd.ShortBearing(n_theta=160)))
-    for angle in rng.uniform(0.0, 2.0 * np.pi, 8):
-        assert _errors(_coefficients(model, _motion(0.9), angle), _closed_form(0.9)).max() < 0.003
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(30, marks=pytest.mark.slow)])
@@ -88,7 +81,7 @@ def test_coefficients_of_tilted_journals(make_bearing, count):
     rng, fine_cell = np.random.default_rng(6), 2.0 * np.pi / 1024
     fine, cells, vertices = (
         build_model(make_bearing(0.25, film=ehd.ShortBearing(n_theta=n), cavitation=k))
-        for n, k in ((1024, VERTICES), (128, ehd.SwiftStieber()), (128, VERTICES))
+        for n, k in ((1024, VERTICES), (160, ehd.SwiftStieber()), (160, VERTICES))
     )
     found = []
     for _ in range(count):
