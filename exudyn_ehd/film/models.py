@@ -136,10 +136,10 @@ class ShortBearing:
     eccentricity, and for comparison with closed forms. Tilt, squeeze and end pressures are included.
 
     On the default grid, of an aligned journal in any direction (Swift-Stieber), stiffness and damping are within 0.3 %
-    of the closed form at eccentricity ratios 0.1 to 0.9, and the load within 0.25 %. Tilts up to 0.3 of what closes the gap leave 1.5 %. On vertices
-    (`SwiftStieber(line_in_cells=False)`) stiffness is up to 3 % off, damping 8 %, tilted journals 5 %. Where the line
-    crosses many columns, as with larger tilts and with end pressures above the cavity's, errors approach those. The
-    load is then up to 0.7 % off on 96 columns, where it is up to 0.3 % off on vertices.
+    of the closed form at eccentricity ratios 0.1 to 0.9, and the load within 0.25 %. Tilts up to 0.3 of what closes the
+    gap leave 1.5 %. On vertices (`SwiftStieber(line_in_cells=False)`) stiffness is up to 3 % off, damping 8 %, tilted
+    journals 5 %. Where the line crosses many columns, as with larger tilts and with end pressures above the cavity's,
+    errors approach those. The load is then up to 0.7 % off on 96 columns, where it is up to 0.3 % off on vertices.
 
     Parameters
     ----------
