@@ -49,7 +49,8 @@ MOST_STEPS = 60
 # Largest estimated error after a chord step, over the peak pressure; and largest change of u on a curve, and weighted
 # change of the density, in a last step with its own factor, whose error is of the order of its square.
 LEFT, SETTLED = 1e-13, 1e-8
-# Largest contraction rate at which a factor serves on, as a whole or in rows: at larger ones a new one is faster.
+# Largest contraction rate at which a factor serves on, as a whole or in rows: at larger ones a new one is faster. A
+# step that changes u on a curve by a share of itself makes about that rate.
 REUSABLE = 0.01
 # Largest residual of a vertex that counts as round-off, over the largest flow; the second one for a density, as
 # round-off grows near the end of its law. Over the largest flow that drives the film: larger residuals come from a
@@ -58,8 +59,6 @@ EVEN, EVEN_DENSE, BALANCED = 1e-13, 1e-11, 1e-6
 # Largest negative fill that counts as round-off in a dry cavity. Larger ones come from rates that last in a film
 # without history: no such film exists.
 LARGEST_DEFICIT = 1e-6
-# Largest change of u on a curve over u, in a step with its own factor, after which a chord step with that factor pays.
-WORN = 0.3
 # Weight of a relative change of the density against a change of u on a curve. The square of the weighted change bounds
 # the error of a pressure over the peak after a step: that of a mineral oil is (2 b + alpha) / a, about 6^2, times the
 # square of the density's change. Larger values cost another step.
@@ -160,7 +159,7 @@ def take_step(kind, bends, curve, factor, size, is_first, fresh, x, full, state,
     changes, moved, bent, worn = move_states(kind, bends, curve, order, count, x, full, state[0], state[1])
     if fresh:
         own, drift = True, 0.0
-        done, ready = changes == 0 and bent <= SETTLED and moved <= FAR, changes == 0 and worn <= WORN
+        done, ready = changes == 0 and bent <= SETTLED and moved <= FAR, changes == 0 and worn <= REUSABLE
     else:
         # the contraction rate is unknown after the first step
         done = changes == 0 and moved * moved <= LEFT * last
