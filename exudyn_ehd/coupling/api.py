@@ -401,7 +401,7 @@ def attach(
         # imported here: a bearing without faces needs none of it
         from exudyn_ehd.coupling.element.thrust import attach_faces
 
-        element.faces = attach_faces(mbs, element, (housing, journal), points, rotation)
+        element.faces = attach_faces(mbs, name, model.bearing, element.steps, (housing, journal), points, rotation)
     constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None
     element.presence = Presence(mbs, name, element, number, sides)
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))

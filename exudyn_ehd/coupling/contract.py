@@ -155,21 +155,6 @@ class Side(Protocol):
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
 
 
-class Faces(Protocol):
-    """Films on the end faces of a joint, as records ask for them; ``objectNumber`` is that of their element."""
-
-    objectNumber: Index
-
-    def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
-        """Scalars at a trial, to which the sides' arrays belong."""
-
-    def place(self, sides: tuple[Side, Side], motion: np.ndarray) -> float:
-        """Axial position, m, at the state to which the sides' frames and a motion (10,) belong."""
-
-    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
-        """Force and moment about O (6,) on the journal at the state to which the sides' arrays belong."""
-
-
 class Steps(Protocol):
     """The accepted steps of an element.
 

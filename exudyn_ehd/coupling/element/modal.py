@@ -48,11 +48,6 @@ class BoreFilmElement(FilmElement):
         self.bore_nodes = nodes
         self._places: np.ndarray | None = None
 
-    @property
-    def rigid_size(self) -> int:
-        """Number of coordinates of housing and journal."""
-        return self.sides[0].size + self.sides[1].size
-
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         q, q_t = super().read(mbs, configuration)
         if self._places is None:
@@ -66,11 +61,8 @@ class BoreFilmElement(FilmElement):
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
     ) -> np.ndarray:
         """Motion (10 + 2 k,): that of the rigid surfaces, then the bore's coordinates and rates."""
-        if not self._bound:
-            self._bind(mbs)
-        qv, qv_t, n = np.array(q), np.array(q_t), self.rigid_size
-        rigid = self._move_rigid(mbs, qv[:n], qv_t[:n], configuration)
-        return np.concatenate((rigid, *self._bore_motion(qv[n:], qv_t[n:])))
+        rigid, n = super()._move(mbs, q, q_t, configuration), self.rigid_size
+        return np.concatenate((rigid, *self._bore_motion(np.array(q[n:]), np.array(q_t[n:]))))
 
     @staticmethod
     def _evaluation(trial: Trial) -> ElasticEvaluation:

@@ -100,8 +100,8 @@ class NodalFilmElement(BoreFilmElement):
         wrench, nodal = self._evaluation(trial).nodal_tangent()
         return np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
 
-    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        evaluation, T = self._evaluation(trial), tangent
+    def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        evaluation, T = self._evaluation(trial), self._tangent(trial, f_q, f_qt)
         n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :MOTION_SIZE]))
         by_place, by_rate = T[:, MOTION_SIZE : MOTION_SIZE + k], T[:, MOTION_SIZE + k :]
@@ -121,7 +121,7 @@ class NodalFilmElement(BoreFilmElement):
         )
         if n_h:
             stiffness[n:, :n_h] += self._turning_forces(evaluation)
-        return stiffness, damping
+        return -(f_q * stiffness + f_qt * damping)
 
     def operator(
         self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
