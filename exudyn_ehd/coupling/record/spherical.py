@@ -19,11 +19,10 @@ class BallRecord(Record):
 
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """The record, with ``final`` as its last row if given."""
-        rows = self.rows(final)
-        packed, load = rows[:, PACK].copy(), rows[:, LOAD].copy()
-        rows[:, FIRST_BLOCK:] = np.nan
-        clearance = self._dimensions["radial_clearance"]
-        history = history_of(rows, self._dimensions, False)
+        rows = self._all_rows(final)
+        history = history_of(rows, self._dimensions, lags=False)
+        packed, load = rows.behind[:, PACK], rows.behind[:, LOAD]
         place, velocity, _ = np.split(history.motion[:, :9], 3, axis=1)
+        clearance = self._dimensions["radial_clearance"]
         errors = errors_of_ball(history.time, place, velocity, packed, history.minimum_gap, clearance, load)
         return dataclasses.replace(history, step_error=errors)
