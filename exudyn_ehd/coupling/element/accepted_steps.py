@@ -26,8 +26,8 @@ from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.watch import poor_films, solver_state, tiny_forces
-from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch, warn_of_radius
+from exudyn_ehd.coupling.watch import poor_films, solver_state
+from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, warn_of_radius
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
@@ -227,7 +227,7 @@ class AcceptedSteps:
         self._chatter = ChatterWatch(bearing) if explicit else None
         area = 2.0 * bearing.journal_radius * bearing.length
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
-        self._turning = turn_watch(mbs, film.sides, self.solver)
+        self._turning = TurnWatch(mbs, film.sides, self.solver)
         warn_of_radius(self.solver)
         self.film.outer.begin(self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
@@ -361,12 +361,12 @@ class AcceptedSteps:
         if self._told:
             return
         self._told = True
-        self._grid.tell(self.film.failures.name)
-        history = self.history(mbs)
-        tiny_forces.warn(self.film.failures.name, self.solver, self.tolerance, self.film.model.bearing, history)
+        name, bearing, history = self.film.failures.name, self.film.model.bearing, self.history(mbs)
+        self._grid.tell(name)
+        poor_films.warn_of_tiny_forces(name, self.solver, self.tolerance, bearing, history)
         if summary.is_on() and history.time.size > 1:
             since = self.began if solver_state.is_implicit(self.solver) and not self.chosen else None
-            summary.tell(self.film.failures.name, self.film.model.bearing, history, since=since)
+            summary.LOGGER.info("%s", summary.line(name, bearing, history, since=since))
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the end of the run or the current state if that is later than the last step.

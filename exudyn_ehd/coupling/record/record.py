@@ -27,19 +27,25 @@ MOST_ROWS = 256
 
 
 class Record:
-    """Rows of accepted steps of a bearing in a growing array, or the last ones behind what was kept of the others."""
+    """Rows of accepted steps of a bearing, or the last ones behind what was kept of the others.
+
+    Attributes
+    ----------
+    end : (k,) array or None
+        Row of the last state, which no further step has brought.
+    thinnest : float
+        Minimum film thickness of all rows, m; nan where no film has one.
+    """
 
     def __init__(self, bearing: JournalBearing) -> None:
         self._dimensions: dict[str, Any] = {name: float(getattr(bearing, name)) for name in DIMENSIONS}
         self._lags = isinstance(getattr(bearing, "bush", None), ElasticLiner)
-        self._rows = np.empty((64, WIDTH))
-        self._count = 0
+        self._rows: list[np.ndarray] = []
         self._thinner: Thinner | None = None
         self._disk: RowsOnDisk | None = None
         # rows that are settled, thinned ones in memory or restored ones on their way to the file
         self._kept: list[np.ndarray] = []
-        self._thinnest = math.nan
-        # the last state, which no further step has brought
+        self.thinnest = math.nan
         self.end: np.ndarray | None = None
 
     def thin(self, rule: Every | Period) -> None:
@@ -65,22 +71,18 @@ class Record:
     def append(self, row: np.ndarray) -> None:
         """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
         self.end = None
-        if self._count:
-            last = self._rows[self._count - 1, TIME]
-            if row[TIME] < last:
-                self.clear()
-            elif row[TIME] == last:
-                self._count -= 1
-        if (self._disk is not None or self._thinner is not None) and self._count >= MOST_ROWS:
+        if row[TIME] < self.last_time:
+            self.clear()
+        elif row[TIME] == self.last_time:
+            self._rows.pop()
+        if len(self._rows) >= MOST_ROWS:
             self.write()
-        if self._count == self._rows.shape[0]:
-            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
-        self._rows[self._count] = row
-        self._count += 1
+        self._rows.append(row)
+        self.thinnest = float(np.fmin(self.thinnest, row[MINIMUM_GAP]))
 
     def clear(self) -> None:
         """Begin a new record."""
-        self._count, self._thinnest, self._kept, self.end = 0, math.nan, [], None
+        self._rows, self.thinnest, self._kept, self.end = [], math.nan, [], None
         if self._thinner is not None:
             self._thinner.begin_anew()
         if self._disk is not None:
@@ -91,13 +93,10 @@ class Record:
 
         Without a file drop those that a thinned record does not keep.
         """
-        if (self._disk is None and self._thinner is None) or not self._count:
+        if (self._disk is None and self._thinner is None) or not self._rows:
             return
-        rows, done, thinner = self._rows[: self._count], self._count - 1, self._thinner
-        settled = rows[:done].copy() if thinner is None else thinner.take(rows[:done])
-        self._kept.append(settled)
-        self._thinnest = self.thinnest
-        self._rows[0], self._count = rows[done].copy(), 1
+        rows, self._rows = np.array(self._rows), self._rows[-1:]
+        self._kept.append(rows[:-1] if self._thinner is None else self._thinner.take(rows[:-1]))
         if self._disk is not None:
             whole = np.concatenate(self._kept)
             self._disk.add(np.concatenate([whole, self._behind(final)]), len(whole))
@@ -105,9 +104,8 @@ class Record:
 
     def _behind(self, final: np.ndarray | None) -> np.ndarray:
         """Rows (n, width) of what is not settled, with ``final`` behind them."""
-        rows = self._rows[: self._count]
-        rows = rows if final is None else np.concatenate([rows, final[None]])
-        return rows.copy() if self._thinner is None else self._thinner.look(rows)
+        rows = np.array(self._rows if final is None else [*self._rows, final]).reshape(-1, WIDTH)
+        return rows if self._thinner is None else self._thinner.look(rows)
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, width), with ``final`` behind them if given and later."""
@@ -128,23 +126,16 @@ class Record:
                 "joint with the record of the stored run."
             )
         self.clear()
-        if self._thinner is None or not len(rows):
-            self._rows, self._count = np.concatenate([rows, np.empty((64, rows.shape[1]))])[:, :WIDTH], len(rows)
-            return
-        self._kept, self._rows[0], self._count = [rows[:-1].copy()], rows[-1, :WIDTH], 1
-        self._thinner.begin_anew(rows[-1])
-        self._thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP]))
-
-    @property
-    def thinnest(self) -> float:
-        """The minimum film thickness of all rows, m; nan where no film has one."""
-        gaps = self._rows[: self._count, MINIMUM_GAP]
-        return float(np.fmin.reduce(gaps, initial=self._thinnest))
+        self._rows = list(rows[:, :WIDTH].copy())
+        self.thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP], initial=math.nan))
+        if self._thinner is not None and self._rows:
+            self._kept, self._rows = [rows[:-1].copy()], self._rows[-1:]
+            self._thinner.begin_anew(rows[-1])
 
     @property
     def last_time(self) -> float:
         """Time of the last row, minus infinity if there is none."""
-        return float(self._rows[self._count - 1, TIME]) if self._count else -np.inf
+        return float(self._rows[-1][TIME]) if self._rows else -np.inf
 
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """The record, with ``final`` as its last row if given: a copy, or what reads the file."""
