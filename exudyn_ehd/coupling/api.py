@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
+from exudyn_ehd.coupling.element.display import FilmDisplay
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
@@ -22,7 +23,6 @@ from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, hold, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.on_disk import File
 from exudyn_ehd.coupling.record.thinning import Every, Period
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint

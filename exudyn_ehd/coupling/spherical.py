@@ -16,18 +16,18 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
 from exudyn_ehd.coupling.element import outer_load
+from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.element.sensors import OUTPUTS, reader
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.record.history import FIRST_BLOCK, LOAD, JointHistory, Quantity, make_row
 from exudyn_ehd.coupling.record.record import Record, history_of
-from exudyn_ehd.coupling.record.sensors import OUTPUTS, reader
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.solver_state import require_end

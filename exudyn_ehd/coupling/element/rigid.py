@@ -134,7 +134,7 @@ class FilmElement:
             If the film of the accepted step is none that can go on.
         """
         start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
-        if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
+        if start != steps.start or solvers != steps.solvers:
             steps.accept(mbs, start, solvers)
         return self._prepare(mbs, q, q_t, CURRENT, t, not steps.is_idle)
 
@@ -340,10 +340,6 @@ class FilmElement:
     def _quantities(self, evaluation: Evaluation) -> Mapping[str, float]:
         """Scalars of an evaluation, to which the sides' arrays belong."""
         return evaluation.quantities()
-
-    def faces_wrench(self) -> np.ndarray:
-        """Return the wrench (6,) of the thrust faces on the journal at the state of the sides' arrays, or zero."""
-        return np.zeros(6) if self.faces is None else self.faces.wrench(self.sides)
 
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

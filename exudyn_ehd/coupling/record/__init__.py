@@ -9,6 +9,4 @@ on_disk      a history in a file, for long runs
 films        films over accepted steps
 summary      a run in one line
 revolutions  extremes by revolution
-sensors      Exudyn sensors
-display      drawing in Exudyn's renderer
 """

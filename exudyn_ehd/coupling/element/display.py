@@ -19,7 +19,8 @@ import exudyn.graphics
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Data, Element, Side, Trial
+from exudyn_ehd.coupling.contract import Data, Side, Trial
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.status import Status
@@ -36,7 +37,7 @@ class FilmDisplay:
 
     Parameters
     ----------
-    element : Element
+    element : FilmElement
 
     Attributes
     ----------
@@ -47,7 +48,7 @@ class FilmDisplay:
         0 draws the true size.
     """
 
-    def __init__(self, element: Element) -> None:
+    def __init__(self, element: FilmElement) -> None:
         self.element = element
         self.wanted = False
         self.clearance = CLEARANCE
