@@ -72,7 +72,6 @@ class Trial:
         begin: StepStart | None,
         bodies: np.ndarray,
         motion: np.ndarray,
-        evaluation: Evaluation | None,
     ) -> None:
         self.q = q
         self.q_t = q_t
@@ -81,11 +80,9 @@ class Trial:
         self.begin = begin
         self.bodies = bodies
         self.motion = motion
-        self.evaluation = evaluation
+        self.evaluation: Evaluation | None = None
         # a sum is finite only if all its terms are
         self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
-        if evaluation is not None:
-            self.take(evaluation)
 
     def take(self, evaluation: Evaluation) -> None:
         """Store the film's evaluation."""

@@ -89,7 +89,7 @@ def attach_bush(
     if isinstance(model, TurningModel):
         settle_body(mbs, model, sides)
         _equip_body(mbs, items[1], model.turning.surface)
-        return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name), {}
+        return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name, model.turning), {}
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         settle_body(mbs, model, sides)

@@ -91,7 +91,8 @@ class FilmDisplay:
                 self.take(trial)
         frame, scale = self._frame(mbs), self._scale(model.bearing)
         bore, z = self._bore(scale), model.grid.z * model.grid.reference_length
-        data = [self._line(_points(frame, model.grid.x, bore[:, [k]], z[[k]])[:, 0]) for k in (0, -1)]
+        rings = _points(frame, model.grid.x, bore[:, [0, -1]], z[[0, -1]])
+        data = [exudyn.graphics.Lines(np.vstack([rings[:, k], rings[:1, k]]), color=EDGE) for k in (0, 1)]
 
         def surface(radii: np.ndarray, places: np.ndarray, color: list[float] | np.ndarray) -> None:
             """Add the surface through rings of radii (n, k) at places (k,)."""
@@ -137,11 +138,6 @@ class FilmDisplay:
         q, q_t = read_state(mbs, [self._housing], _VISUALIZATION)
         self._housing.update(mbs, np.array(q), np.array(q_t), _VISUALIZATION)
         return self._housing.frame
-
-    @staticmethod
-    def _line(points: np.ndarray) -> Data:
-        """Closed line through points (n, 3)."""
-        return exudyn.graphics.Lines(np.vstack([points, points[:1]]), color=EDGE)
 
 
 def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.ndarray) -> np.ndarray:

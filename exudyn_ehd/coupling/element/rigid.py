@@ -187,7 +187,7 @@ class FilmElement:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own
         self._trial = self._derived = None
-        return Trial(q, q_t, memory, step, begin, bodies, motion, None)
+        return Trial(q, q_t, memory, step, begin, bodies, motion)
 
     def evaluate(self, trial: Trial) -> None:
         """Evaluate the film at a new trial, to which the sides' arrays belong."""
