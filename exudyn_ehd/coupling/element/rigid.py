@@ -71,6 +71,8 @@ class FilmElement:
         Whether it has coordinates of its own whose mass is a numerical one.
     evaluations : int
         Number of film evaluations.
+    last : Trial or None
+        The state evaluated last, if it is still known.
     kinematics : module
         Of the motion that the film knows.
     crew : Crew or None
@@ -85,7 +87,7 @@ class FilmElement:
         self.failures = Failures(name, model.bearing)
         self.is_massless = False
         self.evaluations = 0
-        self._trial: Trial | None = None
+        self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self._derived: tuple[Trial, tuple[float, float], np.ndarray] | None = None
         self.crew: Crew | None = None
@@ -102,7 +104,7 @@ class FilmElement:
             steps.asked = t, q
         if self.crew is not None:
             self.crew.evaluate(mbs, t, self, trial)
-        if trial is not self._trial:
+        if trial is not self.last:
             self.evaluate(trial)
         if self._refuses(t, trial):
             return np.full(len(q), np.nan)
@@ -156,7 +158,7 @@ class FilmElement:
     ) -> Trial:
         """The film at a state, evaluated unless it is the last one; the sides' arrays are brought there."""
         trial = self._prepare(mbs, q, q_t, where, time, stepping)
-        if trial is not self._trial:
+        if trial is not self.last:
             self.evaluate(trial)
         return trial
 
@@ -176,7 +178,7 @@ class FilmElement:
         begin = self.steps.begin if stepping else None
         if begin is not None and not time > begin.time:
             begin = None
-        last = self._trial
+        last = self.last
         known = last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory
         if last is not None and known and last.begin is begin:
             return last
@@ -186,17 +188,17 @@ class FilmElement:
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own
-        self._trial = self._derived = None
+        self.last = self._derived = None
         return Trial(q, q_t, memory, step, begin, bodies, motion)
 
     def evaluate(self, trial: Trial) -> None:
         """Evaluate the film at a new trial, to which the sides' arrays belong."""
         # a sum is finite only if all its terms are
         if math.isfinite(trial.motion.dot(trial.motion)):
-            spin = self._spin() if self.model.needs_spin else 0.0
+            spin = relative.angle_of(self.sides[0].frame, self.sides[1].frame) if self.model.needs_spin else 0.0
             trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
             self.evaluations += 1
-        self._trial = trial
+        self.last = trial
 
     def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
         """Keep the derivatives of the film at the last trial for `jacobian`."""
@@ -223,11 +225,6 @@ class FilmElement:
             self._bound = True
         n = self.rigid_size
         return motion_between(mbs, self.sides, np.array(q[:n]), np.array(q_t[:n]), configuration, self.kinematics)
-
-    def _spin(self) -> float:
-        """Angle of the journal [rad], see `relative.angle_of`."""
-        housing, journal = self.sides
-        return relative.angle_of(housing.frame, journal.frame)
 
     def require_items(self, mbs: exu.MainSystem) -> None:
         """Refuse a system of which items were deleted that the joint was made on."""
@@ -264,19 +261,14 @@ class FilmElement:
         """Number of coordinates of housing and journal."""
         return self.sides[0].size + self.sides[1].size
 
-    @property
-    def last(self) -> Trial | None:
-        """The state evaluated last, if it is still known."""
-        return self._trial
-
     def has_result(self) -> bool:
         """Return whether the state evaluated last can be accepted as the end of a step."""
-        trial = self._trial
+        trial = self.last
         return trial is None or not (trial.status == Status.NO_PRESSURE or self.failures.crushes(trial))
 
     def require_film(self, time: float) -> None:
         """Raise if the run has ended behind the end of a pressure law, or with a film that no bearing has."""
-        trial = self._trial
+        trial = self.last
         if trial is not None and trial.status == Status.NO_PRESSURE:
             raise self.failures.no_film(time, trial, explicit=False)
         row = None if trial is None else self.row(time, trial)
@@ -312,7 +304,7 @@ class FilmElement:
 
     def forget(self) -> None:
         """Evaluate the film anew at the next state, whichever it is."""
-        self._trial = self._peeked = self._derived = None
+        self.last = self._peeked = self._derived = None
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film."""

@@ -212,11 +212,10 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
         return history_of(Rows(rows), dimensions, head["lags"], first).between(start, end)
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
-            known = "format" in data.files and str(data["format"]) == FORMAT
-            values = {name: data[name] for name in data.files if name != "format"} if known else {}
+            values = dict(data)
     except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
-        known = False
-    if not known:
+        values = {}
+    if str(values.pop("format", "")) != FORMAT:
         raise InputError(
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )
