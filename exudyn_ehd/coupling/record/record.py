@@ -34,7 +34,7 @@ class Record:
     end : (k,) array or None
         Row of the last state, which no further step has brought.
     thinnest : float
-        Minimum film thickness of all rows, m; nan where no film has one.
+        Minimum film thickness of all rows, m; infinite where no film has one.
     """
 
     def __init__(self, bearing: JournalBearing) -> None:
@@ -45,7 +45,7 @@ class Record:
         self._disk: RowsOnDisk | None = None
         # rows that are settled, thinned ones in memory or restored ones on their way to the file
         self._kept: list[np.ndarray] = []
-        self.thinnest = math.nan
+        self.thinnest = math.inf
         self.end: np.ndarray | None = None
 
     def thin(self, rule: Every | Period) -> None:
@@ -78,11 +78,12 @@ class Record:
         if len(self._rows) >= MOST_ROWS:
             self.write()
         self._rows.append(row)
-        self.thinnest = float(np.fmin(self.thinnest, row[MINIMUM_GAP]))
+        if row[MINIMUM_GAP] < self.thinnest:
+            self.thinnest = float(row[MINIMUM_GAP])
 
     def clear(self) -> None:
         """Begin a new record."""
-        self._rows, self.thinnest, self._kept, self.end = [], math.nan, [], None
+        self._rows, self.thinnest, self._kept, self.end = [], math.inf, [], None
         if self._thinner is not None:
             self._thinner.begin_anew()
         if self._disk is not None:
@@ -127,7 +128,7 @@ class Record:
             )
         self.clear()
         self._rows = list(rows[:, :WIDTH].copy())
-        self.thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP], initial=math.nan))
+        self.thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP], initial=math.inf))
         if self._thinner is not None and self._rows:
             self._kept, self._rows = [rows[:-1].copy()], self._rows[-1:]
             self._thinner.begin_anew(rows[-1])
