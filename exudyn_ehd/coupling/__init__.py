@@ -8,11 +8,11 @@ replace     `ReplaceJoint`: films in the place of joints that a model has; `Repl
 handle      `LubricatedJoint`: what a user has of a joint
 rotor       rotors in several films: equilibria over the speed, eigenvalues, unbalance
 run         Exudyn's solvers with this package's errors and start of Newton's method; restarts; settings
-element     the film as an object of Exudyn: user functions, accepted steps, failures
+element     the film as an object of Exudyn: user functions, accepted steps, failures, sensors, drawing
 bush        nodal bush as an object of a model
 watch       which solver is at work, steps too coarse for a film
 items       item numbers of a scene to carriers of a joint frame; input checks
-record      what a run leaves: histories, films, sensors, drawing
+record      what a run leaves: histories, films, a line
 kinematics  poses, rates and exact variations of the two frames, as kernels
 contract    what the coupling asks of a film and of a side; names for Exudyn's types
 """

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
+from exudyn_ehd.coupling.element.display import FilmDisplay
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
@@ -22,7 +23,6 @@ from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, hold, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.on_disk import File
 from exudyn_ehd.coupling.record.thinning import Every, Period
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
@@ -279,18 +279,6 @@ def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:
     return cast(JointModel, build_model(bearing))
 
 
-def _on_its_housing(
-    mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
-) -> tuple[JournalBearing, Item]:
-    """Return the bearing with the bore of its finite-element housing, and the housing's item."""
-    if housing.body is not None and getattr(bearing, "bush", None) is not None:
-        # imported here: a rigid bearing needs no solid
-        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
-
-        bearing, housing = hold_fe_bore(mbs, bearing, housing, point, rotation)
-    return bearing, housing
-
-
 def _on_its_bodies(
     mbs: exu.MainSystem,
     bearing: JournalBearing,
@@ -299,8 +287,12 @@ def _on_its_bodies(
     rotation: np.ndarray,
 ) -> tuple[JournalBearing, Item, Item]:
     """Return the bearing with the bore and journal of the finite-element bodies under it, and both items."""
-    bearing, housing = _on_its_housing(mbs, bearing, items[0], points[0], rotation)
-    journal = items[1]
+    housing, journal = items
+    if housing.body is not None and getattr(bearing, "bush", None) is not None:
+        # imported here: a rigid bearing needs no solid
+        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
+
+        bearing, housing = hold_fe_bore(mbs, bearing, housing, points[0], rotation)
     if journal.body is not None and getattr(bearing, "journal", None) is not None:
         # imported here: a rigid bearing needs no solid
         from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_journal
@@ -397,13 +389,13 @@ def attach(
             **more,
         )
     )
+    element.presence = Presence(mbs, name, element, number, sides)
     if getattr(model.bearing, "thrust", None) is not None:
         # imported here: a bearing without faces needs none of it
         from exudyn_ehd.coupling.element.thrust import attach_faces
 
-        element.faces = attach_faces(mbs, element, (housing, journal), points, rotation)
+        element.faces = attach_faces(mbs, name, model.bearing, element.steps, (housing, journal), points, rotation)
     constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None
-    element.presence = Presence(mbs, name, element, number, sides)
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
     register_joint(mbs, make)
     return make(mbs)

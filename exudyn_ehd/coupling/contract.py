@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, Protocol, SupportsInt, TypeAlias
 
 import exudyn as exu
@@ -72,7 +72,6 @@ class Trial:
         begin: StepStart | None,
         bodies: np.ndarray,
         motion: np.ndarray,
-        evaluation: Evaluation | None,
     ) -> None:
         self.q = q
         self.q_t = q_t
@@ -81,11 +80,9 @@ class Trial:
         self.begin = begin
         self.bodies = bodies
         self.motion = motion
-        self.evaluation = evaluation
+        self.evaluation: Evaluation | None = None
         # a sum is finite only if all its terms are
         self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
-        if evaluation is not None:
-            self.take(evaluation)
 
     def take(self, evaluation: Evaluation) -> None:
         """Store the film's evaluation."""
@@ -153,62 +150,3 @@ class Side(Protocol):
         self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
     ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
-
-
-class Faces(Protocol):
-    """Films on the end faces of a joint, as records ask for them; ``objectNumber`` is that of their element."""
-
-    objectNumber: Index
-
-    def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
-        """Scalars at a trial, to which the sides' arrays belong."""
-
-    def place(self, sides: tuple[Side, Side], motion: np.ndarray) -> float:
-        """Axial position, m, at the state to which the sides' frames and a motion (10,) belong."""
-
-    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
-        """Force and moment about O (6,) on the journal at the state to which the sides' arrays belong."""
-
-
-class Steps(Protocol):
-    """The accepted steps of an element.
-
-    Attributes
-    ----------
-    observers : list of functions
-        Called with every accepted trial that has a film.
-    """
-
-    observers: list[Callable[[Trial], None]]
-
-    @property
-    def is_idle(self) -> bool:
-        """Return whether no solver is running."""
-
-    def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, exu.ConfigurationType]:
-        """Time of the last accepted state, the film there, and the configuration that holds it."""
-
-
-class Element(Protocol):
-    """The film between two sides."""
-
-    @property
-    def model(self) -> JointModel:
-        """The film."""
-
-    @property
-    def sides(self) -> tuple[Side, Side]:
-        """Carriers of the joint frame and of the journal's frame."""
-
-    @property
-    def steps(self) -> Steps:
-        """The accepted steps."""
-
-    def require_items(self, mbs: exu.MainSystem) -> None:
-        """Refuse a system of which items were deleted that the joint was made on."""
-
-    def faces_wrench(self) -> np.ndarray:
-        """Return the wrench (6,) of the thrust faces on the journal in the joint frame, at the state evaluated last."""
-
-    def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
-        """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

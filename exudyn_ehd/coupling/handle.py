@@ -12,12 +12,12 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.element.display import FilmDisplay
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record.display import FilmDisplay
+from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.revolutions import Revolutions
-from exudyn_ehd.coupling.record.sensors import reader
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.film.models import FiniteLength

@@ -16,27 +16,26 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
 from exudyn_ehd.coupling.element import outer_load
+from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.element.sensors import OUTPUTS, reader
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.display import FilmDisplay, pressure_colours, ring_triangles
-from exudyn_ehd.coupling.record.history import JointHistory, Quantity, make_row
-from exudyn_ehd.coupling.record.sensors import OUTPUTS, reader
-from exudyn_ehd.coupling.record.spherical import PACK, BallRecord
+from exudyn_ehd.coupling.record.history import FIRST_BLOCK, LOAD, JointHistory, Quantity, make_row
+from exudyn_ehd.coupling.record.record import Record, history_of
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
-from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
-from exudyn_ehd.joint.step_error import pack_of_ball
+from exudyn_ehd.joint.step_error import errors_of_ball, pack_of_ball
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_bool, require_type, require_vector
 
@@ -46,6 +45,8 @@ if TYPE_CHECKING:
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
 _WHERE = "CreateLubricatedSphericalJoint"
+# Columns of the record with what `pack_of_ball` keeps.
+PACK = slice(FIRST_BLOCK, FIRST_BLOCK + 15)
 _QUANTITIES = ("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load")
 
 
@@ -76,6 +77,19 @@ class SphericalFailures(Failures):
         return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
 
 
+class BallRecord(Record):
+    """Rows of a ball, which know the stiffness and the damping of three translations."""
+
+    def snapshot(self, final: np.ndarray | None) -> JointHistory:
+        """The record, with ``final`` as its last row if given."""
+        rows = self._all_rows(final)
+        history = history_of(rows, self._dimensions, lags=False)
+        place, velocity, _ = np.split(history.motion[:, :9], 3, axis=1)
+        clearance, packed, load = history.radial_clearance, rows.behind[:, PACK], rows.behind[:, LOAD]
+        errors = errors_of_ball(history.time, place, velocity, packed, history.minimum_gap, clearance, load)
+        return dataclasses.replace(history, step_error=errors)
+
+
 class SphericalFilmElement(FilmElement):
     """Film between the sides of a socket and of a ball; parameters as for `FilmElement`."""
 
@@ -102,12 +116,6 @@ class SphericalFilmElement(FilmElement):
         if self.steps.tangent is not None:
             row[PACK] = pack_of_ball(self.steps.tangent)
         return row
-
-    def fields(
-        self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
-    ) -> FilmFields:
-        """A ball has no film over angle and length."""
-        raise InputError(f"LubricatedSphericalJoint '{self.failures.name}' records no films over angle and length.")
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -222,14 +230,9 @@ class LubricatedSphericalJoint(Joint):
         self.bearing = cast(SphericalBearing, element.model.bearing)
 
     def __repr__(self) -> str:
-        size, clearance = (
-            shown("length", 2.0 * self.bearing.ball_radius),
-            shown("length", self.bearing.radial_clearance),
-        )
-        return (
-            f"<LubricatedSphericalJoint '{self.name}': object {int(self.objectNumber)}, ball of {size}, "
-            f"clearance {clearance}>"
-        )
+        ball = f"ball of {shown('length', 2.0 * self.bearing.ball_radius)}"
+        clearance = f"clearance {shown('length', self.bearing.radial_clearance)}"
+        return f"<LubricatedSphericalJoint '{self.name}': object {int(self.objectNumber)}, {ball}, {clearance}>"
 
     @property
     def history(self) -> SphericalHistory:  # type: ignore[override]

@@ -14,7 +14,7 @@ of motion demand at accepted states. Newmark's formulas carry others along.
 
 A load L on the film that jumps within a step breaks the parabolas. Where the load is a function of time, its mean
 within the step is known: it exceeds the mean of both ends by s d, with the departure d of L from the line through the
-two states before, and the offset s (`exudyn_ehd.coupling.element.load_functions`), 1/2 - u for a jump at the share u of
+two states before, and the offset s (`exudyn_ehd.coupling.element.outer_load`), 1/2 - u for a jump at the share u of
 the step. Such a step, and the one behind it, is integrated again with the film's force between both ends
 (`exudyn_ehd.joint.jump_error`). That takes the place of l and m.
 

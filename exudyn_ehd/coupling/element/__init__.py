@@ -10,4 +10,8 @@ failures        messages of films that can't go on
 modal           bore by modes
 nodal           bore by nodes
 thrust          films on the end faces, an element of their own
+outer_load      load on a film from everything else, also of functions of time
+side_by_side    films of one system on several threads
+sensors         Exudyn sensors
+display         drawing in Exudyn's renderer
 """

@@ -19,15 +19,15 @@ from typing import Protocol
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Element, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.watch import poor_films, solver_state, tiny_forces
-from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, turn_watch, warn_of_radius
+from exudyn_ehd.coupling.watch import poor_films, solver_state
+from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, warn_of_radius
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
@@ -41,20 +41,28 @@ from exudyn_ehd.status import OverloadWarning, Status
 SAME_TIME = 1e-3
 
 
-class Film(Element, Protocol):
+class Film(Protocol):
     """Element of a joint, as its accepted steps use it.
 
     Attributes
     ----------
+    model : JointModel
+    sides : pair of Side
+        Carriers of the joint frame and of the journal's frame.
     failures : Failures
     outer : OuterLoad
     is_massless : bool
         True if it has coordinates of its own without mass, which explicit solvers do not support.
     """
 
+    model: JointModel
+    sides: tuple[Side, Side]
     failures: Failures
     outer: OuterLoad
     is_massless: bool
+
+    def require_items(self, mbs: exu.MainSystem) -> None:
+        """Refuse a system of which items were deleted that the joint was made on."""
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element."""
@@ -135,16 +143,11 @@ class AcceptedSteps:
         self.record = Record(film.model.bearing)
         # a bore that wears or yields has another gap than the rigid surfaces
         self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
-        self._chatter: ChatterWatch | None = None
-        self._ringing: ringing.RingingWatch | None = None
-        self._turning: TurnWatch | None = None
-        self._uses_memory = self._may_starve = self.in_own_run = self.chosen = False
+        self._uses_memory = self.in_own_run = self.chosen = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
         self.tolerance: float | None = None
-        self._thin = -np.inf
         self._told = True
-        self._overloaded, self._cool, self._grid = False, HOT, poor_films.GridWatch()
         self.asked: tuple[float, list[float]] = (np.nan, [])
         self.forget()
 
@@ -171,7 +174,7 @@ class AcceptedSteps:
             If the film there is none that can go on.
         """
         # without a stored solver it is the clock put back that tells of a new run
-        begins = solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1] or start < self.start
+        begins = solvers != self.solvers or start < self.start
         resumed = begins and self._begin_run(mbs, start, solvers)
         self.unseen = 0 if begins or not self.is_idle else self.unseen + 1
         if self.unseen == 2:
@@ -213,29 +216,20 @@ class AcceptedSteps:
         goes_on = start > self.record.last_time and (place != before or self.asked[1] == before)
         resumed = self._resumed is not None and start == self._resumed[0]
         solver = self.solver
-        if solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1]:
+        if solvers != self.solvers:
             solver = solver_state.running_solver(self.solvers, solvers)
         if self._resumed is None and place == before and not goes_on:
             memory, self.begin, self.start = self._first_memory, None, start
         else:
             memory = self._take_up(mbs, start, place, solver)
         self.solver, self.solvers = solver, solvers
-        explicit, static = solver_state.is_explicit(self.solver), solver_state.is_static(self.solver)
-        if explicit and film.is_massless:
+        if solver_state.is_explicit(self.solver) and film.is_massless:
             raise film.failures.no_mass()
-        bearing = film.model.bearing
-        self._chatter = ChatterWatch(bearing) if explicit else None
-        area = 2.0 * bearing.journal_radius * bearing.length
-        self._ringing = None if explicit or static else ringing.RingingWatch(area)
-        self._turning = turn_watch(mbs, film.sides, self.solver)
-        warn_of_radius(self.solver)
-        self.film.outer.begin(self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
-        self._uses_memory = film.model.remembers and not static
-        self._may_starve = self._uses_memory and lacks_oil(bearing)
+        self._uses_memory = film.model.remembers and not solver_state.is_static(self.solver)
+        self._watch_anew(mbs)
+        self.film.outer.begin(self.solver)
         self.tangent = self.tolerance = None
-        self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
-        self._cool, self._grid = HOT, poor_films.GridWatch()
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory, self.began = place, memory, start
         if not resumed and not goes_on:
@@ -243,6 +237,19 @@ class AcceptedSteps:
             if self.recorder is not None:
                 self.recorder.begin_anew()
         return resumed
+
+    def _watch_anew(self, mbs: exu.MainSystem) -> None:
+        """Begin to watch the films, forces and steps of a run; every warning is given once."""
+        bearing, solver = self.film.model.bearing, self.solver
+        self._chatter = ChatterWatch(bearing) if solver_state.is_explicit(solver) else None
+        area = 2.0 * bearing.journal_radius * bearing.length
+        may_ring = solver is None or solver_state.is_implicit(solver)
+        self._ringing = ringing.RingingWatch(area) if may_ring else None
+        self._turning = TurnWatch(mbs, self.film.sides, solver)
+        warn_of_radius(solver)
+        self._may_starve = self._uses_memory and lacks_oil(bearing)
+        self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
+        self._cool, self._grid = HOT, poor_films.GridWatch()
 
     def _take_up(
         self, mbs: exu.MainSystem, start: float, place: list[float], solver: solver_state.Solver | None
@@ -293,8 +300,7 @@ class AcceptedSteps:
         if self._may_starve and self.memory is not None and (lost := poor_films.lost_share(self.memory)) > 0.0:
             self._may_starve = False
             poor_films.warn_of_starvation(failures.name, start, lost)
-        if self._turning is not None:
-            self._turning.take(failures.name, start)
+        self._turning.take(failures.name, start)
         if row is None:
             return
         self._warn_of_film(start, trial, row)
@@ -361,12 +367,12 @@ class AcceptedSteps:
         if self._told:
             return
         self._told = True
-        self._grid.tell(self.film.failures.name)
-        history = self.history(mbs)
-        tiny_forces.warn(self.film.failures.name, self.solver, self.tolerance, self.film.model.bearing, history)
+        name, bearing, history = self.film.failures.name, self.film.model.bearing, self.history(mbs)
+        self._grid.tell(name)
+        poor_films.warn_of_tiny_forces(name, self.solver, self.tolerance, bearing, history)
         if summary.is_on() and history.time.size > 1:
             since = self.began if solver_state.is_implicit(self.solver) and not self.chosen else None
-            summary.tell(self.film.failures.name, self.film.model.bearing, history, since=since)
+            summary.LOGGER.info("%s", summary.line(name, bearing, history, since=since))
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the end of the run or the current state if that is later than the last step.

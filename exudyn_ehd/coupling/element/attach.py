@@ -10,6 +10,7 @@ import dataclasses
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from scipy.linalg import block_diag
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
@@ -88,7 +89,7 @@ def attach_bush(
     if isinstance(model, TurningModel):
         settle_body(mbs, model, sides)
         _equip_body(mbs, items[1], model.turning.surface)
-        return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name), {}
+        return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name, model.turning), {}
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         settle_body(mbs, model, sides)
@@ -107,10 +108,12 @@ def attach_bush(
     )
     element = ModalFilmElement(model, *sides, [node], name, model.bore)
     element.is_massless = True
+    # far too small to be felt: without one Exudyn finds no initial accelerations of the whole system; the modes
+    # have none (`ModalFilmElement.force`)
     mass = np.diag(element.stiffness * (NUMERICAL_PERIOD * model.bearing.journal_radius) ** 2)
     # the sides of markers find their size after Assemble only
     rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
-    return element, {"massMatrix": _mass_matrix(rigid, mass)}
+    return element, {"massMatrix": block_diag(np.zeros((rigid, rigid)), mass)}
 
 
 def _equip_body(mbs: exu.MainSystem, item: Item, surface: object) -> None:
@@ -150,17 +153,6 @@ def _attach_nodes(
     return NodalFilmElement(model, *sides, nodes, name, bush)
 
 
-def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
-    """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the n coordinates of the sides.
-
-    A quasi-static bore gets a numerical mass, far too small to be felt: without one Exudyn finds no initial
-    accelerations of the whole system. Those of the modes are zero, see `ModalFilmElement.force`.
-    """
-    whole = np.zeros((n + len(mass), n + len(mass)))
-    whole[n:, n:] = mass
-    return whole
-
-
 @dataclasses.dataclass(frozen=True)
 class StartingFilm:
     """A film on its bore, the motion (10,) and the journal's angle at which it starts, and what it remembers there."""
@@ -169,12 +161,6 @@ class StartingFilm:
     motion: np.ndarray
     memory: History | None
     spin: float
-
-    def at(self, part: float, bore: np.ndarray) -> ElasticEvaluation:
-        """The film with the pose scaled by ``part`` and the bore's coordinates and rates (2 k,)."""
-        motion = np.concatenate((self.motion, bore))
-        motion[:4] *= part
-        return self.model.evaluate(motion, self.memory, 0.0, self.spin)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -200,7 +186,11 @@ class FilmsOnOneBody:
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> FilmsTogether:
         """All films at a motion (10 + 2 k,)."""
-        return FilmsTogether([film.at(float(motion[0]), motion[MOTION_SIZE:]) for film in self.films])
+        scale = np.ones(motion.size)
+        scale[:4] = motion[0]
+        motions = [scale * np.concatenate((film.motion, motion[MOTION_SIZE:])) for film in self.films]
+        parts = [f.model.evaluate(own, f.memory, 0.0, f.spin) for f, own in zip(self.films, motions, strict=True)]
+        return FilmsTogether(parts)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -164,8 +164,6 @@ class Failures:
 
     def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial, peak: float) -> FilmError | None:
         """The film of an accepted step exceeds what the user allows; None if it does not."""
-        if self.largest_force == math.inf and not peak > self.largest_pressure:
-            return None
         force = float(np.linalg.norm(row[FORCE]))
         if not (force > self.largest_force or peak > self.largest_pressure):
             return None

@@ -48,11 +48,6 @@ class BoreFilmElement(FilmElement):
         self.bore_nodes = nodes
         self._places: np.ndarray | None = None
 
-    @property
-    def rigid_size(self) -> int:
-        """Number of coordinates of housing and journal."""
-        return self.sides[0].size + self.sides[1].size
-
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         q, q_t = super().read(mbs, configuration)
         if self._places is None:
@@ -66,11 +61,8 @@ class BoreFilmElement(FilmElement):
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
     ) -> np.ndarray:
         """Motion (10 + 2 k,): that of the rigid surfaces, then the bore's coordinates and rates."""
-        if not self._bound:
-            self._bind(mbs)
-        qv, qv_t, n = np.array(q), np.array(q_t), self.rigid_size
-        rigid = self._move_rigid(mbs, qv[:n], qv_t[:n], configuration)
-        return np.concatenate((rigid, *self._bore_motion(qv[n:], qv_t[n:])))
+        rigid, n = super()._move(mbs, q, q_t, configuration), self.rigid_size
+        return np.concatenate((rigid, *self._bore_motion(np.array(q[n:]), np.array(q_t[n:]))))
 
     @staticmethod
     def _evaluation(trial: Trial) -> ElasticEvaluation:
@@ -188,22 +180,14 @@ class TurningFilmElement(ModalFilmElement):
 
     model: TurningModel
 
-    def __init__(self, model: TurningModel, housing: Side, journal: Side, nodes: list[Index], name: str) -> None:
-        super().__init__(model, housing, journal, nodes, name, model.turning)
-        self._by_angle = np.zeros(0)
-
-    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        evaluation = trial.evaluation
-        assert isinstance(evaluation, TurningEvaluation)
-        self._by_angle = evaluation.derivatives[:, -1]
-        return evaluation.combined_tangent(f_q, f_qt)
-
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        whole = super()._jacobian(mbs, trial, f_q, f_qt)
+        whole, evaluation = super()._jacobian(mbs, trial, f_q, f_qt), trial.evaluation
+        assert isinstance(evaluation, TurningEvaluation)
+        by_angle = evaluation.derivatives[:, -1]
         housing, journal = self.sides
         t = housing.frame[:, :3].T @ journal.frame[:, 0]
         n = housing.frame[:, :3] @ [*(-t[2] * t[:2] / (t[0] ** 2 + t[1] ** 2)), 1.0]
         turn = np.concatenate((-n @ housing.jac[1], n @ journal.jac[1]))
-        own = np.concatenate((self._wrench_map() @ self._by_angle[:6], self._by_angle[6:]))
+        own = np.concatenate((self._wrench_map() @ by_angle[:6], by_angle[6:]))
         whole[:, : turn.size] -= f_q * np.multiply.outer(own, turn)
         return whole

@@ -16,6 +16,7 @@ import weakref
 
 import exudyn as exu
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from exudyn_ehd.coupling.bush.object import FlexibleBush
 from exudyn_ehd.coupling.contract import CURRENT, Evaluation, Index, Side, Trial
@@ -23,6 +24,7 @@ from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.joint.tangent.nodes import NodalProduct
 from exudyn_ehd.joint.tangent.spread import complete, resultant, spread_matrix
 from exudyn_ehd.status import Status
 
@@ -100,35 +102,18 @@ class NodalFilmElement(BoreFilmElement):
         wrench, nodal = self._evaluation(trial).nodal_tangent()
         return np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
 
-    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        evaluation, T = self._evaluation(trial), tangent
-        n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
-        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :MOTION_SIZE]))
-        by_place, by_rate = T[:, MOTION_SIZE : MOTION_SIZE + k], T[:, MOTION_SIZE + k :]
-        place, rate_place = self._housing_maps()
-        A, omega = self.sides[0].frame[:, :3], self.sides[0].frame[:, 5]
-        along = A[:, :2].T
-        # the rate in the turning frame changes with the place as -omega x u
-        turning = along @ -relative.skew(omega)
-        by_bore = [np.zeros((6 + 3 * self.count, n + 3 * self.count)) for _ in range(2)]
-        by_bore[0][:, :n_h] = by_place @ place + by_rate @ rate_place
-        by_bore[1][:, :n_h] = by_rate @ place
-        by_bore[0][:, n:] = _per_node(by_place, along) + _per_node(by_rate, turning)
-        by_bore[1][:, n:] = _per_node(by_rate, along)
-        stiffness, damping = (
-            self._assemble(b, block, T[:, :MOTION_SIZE] @ motion)
-            for b, block, motion in zip(by_bore, rigid[:2], rigid[2:], strict=True)
-        )
-        if n_h:
-            stiffness[n:, :n_h] += self._turning_forces(evaluation)
-        return stiffness, damping
+    def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        film = FilmMatrix(self._tangent(trial, f_q, f_qt))
+        return NodalTangent(self, mbs, trial, film, f_q, f_qt).matrix()
 
     def operator(
         self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> NodalTangent | None:
         """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
         trial = self._try(mbs, q, q_t, CURRENT, t)
-        return NodalTangent(self, mbs, trial, f_q, f_qt) if trial.status == Status.CONVERGED else None
+        if trial.status != Status.CONVERGED:
+            return None
+        return NodalTangent(self, mbs, trial, self._evaluation(trial).nodal_product(), f_q, f_qt)
 
     def _turning_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Derivative (3 count, n_h) of the forces on the bore's nodes as the housing turns them."""
@@ -147,32 +132,33 @@ class NodalFilmElement(BoreFilmElement):
         second = np.einsum("aci,ij->ajc", change, A).reshape(2 * self.count, -1)
         return first, second
 
-    def _assemble(self, by_bore: np.ndarray, rigid: np.ndarray, by_motion: np.ndarray) -> np.ndarray:
-        """dQ/dq or dQ/dq_t (N, N).
+    def bore_map(self, by_housing: np.ndarray, by_node: np.ndarray) -> csr_matrix:
+        """Map (2 count, N) to displacements of the bore: (2 count, n_h) from the housing, (2, 3) from each node."""
+        nodes = self.rigid_size + 3 * np.arange(self.count).repeat(2)[:, None] + np.arange(3)
+        housing = np.broadcast_to(np.arange(by_housing.shape[1]), by_housing.shape)
+        values = np.hstack((by_housing, np.tile(by_node, (self.count, 1))))
+        starts = np.arange(0, values.size + 1, values.shape[1])
+        size = self.rigid_size + 3 * self.count
+        return csr_matrix((values.ravel(), np.hstack((housing, nodes)).ravel(), starts), shape=(len(values), size))
 
-        Parameters
-        ----------
-        by_bore : (6 + 3 count, N) array
-            Derivatives of wrench and nodal forces through the bore's motion.
-        rigid : (n, n) array
-            Those of the generalized forces on the sides through the journal's motion, with geometric terms.
-        by_motion : (6 + 3 count, n) array
-            Derivatives of wrench and nodal forces through the journal's motion.
-        """
-        n, n_h = self.rigid_size, self.sides[0].size
-        size = by_bore.shape[1]
-        whole = np.zeros((size, size))
-        whole[n_h:n] = self._wrench_map()[n_h:] @ by_bore[:6]
-        whole[n_h:n, :n] += rigid[n_h:]
-        by_bore[:, :n] += by_motion
-        local = by_bore[6:].reshape(self.count, 3, size)
-        nodal = complete(self.arms @ self.sides[0].frame[:, :3], by_bore[:6], local)
-        whole[n:] = np.einsum("ij,ajc->aic", self.sides[0].frame[:, :3], nodal).reshape(-1, size)
-        return whole
+
+class FilmMatrix:
+    """Tangent (6 + 3 count, 10 + 4 count) of wrench and nodal forces, with the parts of a `NodalProduct`."""
+
+    def __init__(self, tangent: np.ndarray) -> None:
+        k = (tangent.shape[1] - MOTION_SIZE) // 2
+        parts = np.split(tangent, (MOTION_SIZE, MOTION_SIZE + k), axis=1)
+        self.wrench, self.wrench_place, self.wrench_rate = (np.ascontiguousarray(part[:6]) for part in parts)
+        self.parts = [part[6:] for part in parts]
+
+    def nodal_forces(self, motion: np.ndarray, place: csr_matrix, rate: csr_matrix) -> np.ndarray:
+        """Changes (3 count, N) of the nodal forces with changes of motion (10, N) and of the bore (2 count, N)."""
+        by_motion, by_place, by_rate = self.parts
+        return np.asarray(by_motion @ motion + by_place @ place + by_rate @ rate)
 
 
 class NodalTangent:
-    """Minus (f_q dQ/dq + f_qt dQ/dq_t) of a film on a nodal bush as an operator: one film solve per product.
+    """Minus (f_q dQ/dq + f_qt dQ/dq_t) of a film on a nodal bush: a matrix, or an operator of one film solve each.
 
     Parameters
     ----------
@@ -180,49 +166,52 @@ class NodalTangent:
     mbs : exudyn.MainSystem
     trial : Trial
         The last one of the element.
+    film : FilmMatrix or NodalProduct
+        For `matrix`, and for products.
     f_q, f_qt : float
     """
 
-    def __init__(self, element: NodalFilmElement, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> None:
-        evaluation = element._evaluation(trial)
-        self.film = evaluation.nodal_product()
-        self.factors = f_q, f_qt
-        self.n, self.n_h, self.count = element.rigid_size, element.sides[0].size, element.count
-        stiffness, damping, by_place, by_rate = element._rigid_derivatives(mbs, trial, self.film.wrench)
+    def __init__(
+        self,
+        element: NodalFilmElement,
+        mbs: exu.MainSystem,
+        trial: Trial,
+        film: FilmMatrix | NodalProduct,
+        f_q: float,
+        f_qt: float,
+    ) -> None:
+        self.film = film
+        self.n, self.n_h = element.rigid_size, element.sides[0].size
+        stiffness, damping, by_place, by_rate = element._rigid_derivatives(mbs, trial, film.wrench)
         self.rigid = (f_q * stiffness + f_qt * damping)[self.n_h :]
         self.motion = f_q * by_place + f_qt * by_rate
         self.journal = element._wrench_map()[self.n_h :]
         self.frame, omega = element.sides[0].frame[:, :3], element.sides[0].frame[:, 5]
-        self.turning = (self.frame[:, :2].T @ -relative.skew(omega)).T
         x = element.arms @ self.frame
         self.spread, self.resultant = spread_matrix(x).reshape(-1, 6), resultant(x)
-        if self.n_h:
-            self.place, self.drift = element._housing_maps()
-            self.turned = f_q * element._turning_forces(evaluation)
+        place, drift = element._housing_maps()
+        # the rate in the turning frame changes with the place as -omega x u
+        along, turning = self.frame[:, :2].T, self.frame[:, :2].T @ -relative.skew(omega)
+        self.place = element.bore_map(f_q * place, f_q * along)
+        self.rate = element.bore_map(f_q * drift + f_qt * place, f_q * turning + f_qt * along)
+        self.turned = f_q * element._turning_forces(element._evaluation(trial))
+
+    def matrix(self) -> np.ndarray:
+        """The whole matrix (N, N)."""
+        return self._product(np.eye(self.n, self.place.shape[1]), self.place, self.rate)
 
     def __call__(self, change: np.ndarray) -> np.ndarray:
         """Product (N,) with a change (N,) of the element's coordinates."""
-        n, n_h, film, (f_q, f_qt) = self.n, self.n_h, self.film, self.factors
-        nodes = change[n:].reshape(-1, 3)
-        moved, drift = (nodes @ self.frame[:, :2]).ravel(), (nodes @ self.turning).ravel()
-        if n_h:
-            moved += self.place @ change[:n_h]
-            drift += self.drift @ change[:n_h]
-        place, rate = f_q * moved, f_q * drift + f_qt * moved
-        motion = self.motion @ change[:n]
-        local = film.nodal_forces(motion, place, rate)
+        return self._product(change[: self.n], self.place @ change, self.rate @ change)
+
+    def _product(self, sides: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix) -> np.ndarray:
+        """Products (N, ...) with changes (n, ...) of the sides' coordinates and (2 count, ...) of the bore's motion."""
+        film, motion = self.film, self.motion @ sides
+        local = film.nodal_forces(motion, place, rate).reshape(-1, *motion.shape[1:])
         through_bore = film.wrench_place @ place + film.wrench_rate @ rate
-        rest = through_bore + film.wrench @ motion + self.resultant @ local.ravel()
-        nodal = local + (self.spread @ -rest).reshape(-1, 3)
-        out = np.empty_like(change)
-        out[:n_h] = 0.0
-        out[n_h:n] = self.journal @ through_bore + self.rigid @ change[:n]
-        out[n:] = (nodal @ self.frame.T).ravel()
-        if n_h:
-            out[n:] += self.turned @ change[:n_h]
-        return np.negative(out, out=out)
-
-
-def _per_node(rows: np.ndarray, map_: np.ndarray) -> np.ndarray:
-    """Rows (r, 2 count) times a block diagonal map of (2, 3) blocks, (r, 3 count)."""
-    return (rows.reshape(len(rows), -1, 2) @ map_).reshape(len(rows), -1)
+        nodal = local - self.spread @ (through_bore + film.wrench @ motion + self.resultant @ local)
+        turned = np.einsum("ij,aj...->ai...", self.frame, nodal.reshape(-1, 3, *motion.shape[1:]))
+        out = np.zeros((self.place.shape[1], *motion.shape[1:]))
+        out[self.n_h : self.n] = -(self.journal @ through_bore + self.rigid @ sides)
+        out[self.n :] = -(turned.reshape(local.shape) + self.turned @ sides[: self.n_h])
+        return out

@@ -11,28 +11,151 @@ missed is W^-1 J (q'1 - q'0 - integral of q''). It is kept with the trapezoid; t
 also behind a restart. Constraints and terms of the second order in
 the rates are left out of W and of J q'': they change smoothly. Only rigid bodies and mass points have a
 mass here; with any other body at the joint L = -F, the load on a film that outweighs the inertia.
+
+Loads of a system that are functions of time, and their impulse within a step.
+
+Accepted states know a load f at both ends of a step h only. The user functions of the loads are called within it where
+the load departs from the line through the two states before, by d at the end of the step. Their impulse beyond that of
+the chord, over d h,
+
+    offset = d . (mean(f) - (f0 + f1) / 2) / d^2,
+
+is 1/2 - u for a jump at the share u of the step. The load L on a film follows the loads linearly, through whatever
+bodies and joints lie between: its impulse beyond the chord is the offset times its own departure, times the step. With
+several functions the offset is that of all of them together. A ramp that begins or ends within the step lasts a share
+of it: the even change whose time has the same variance as that of the loads. A jump is found by bisection, to 1/1000 of
+the step; a pulse shorter than 1/16 of a step may lie between the samples.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TypeAlias
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Side, Trial
-from exudyn_ehd.coupling.element.load_functions import LoadFunctions
 from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.items.object_mass import object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, missed_in_steps
+from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, SUDDEN, departure, missed_in_steps
 
 UNKNOWN = np.full(LOADS, np.nan)
 _State: TypeAlias = tuple[float, np.ndarray, np.ndarray]
 # Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
 JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
+# Samples within a step; a pulse is seen if it is longer than a step over their number. Each costs a call of every load.
+SAMPLES = 16
+# Halvings of the part with the largest change: with 6 a jump is found to 1 / (16 * 2^6) of the step.
+BISECTIONS = 6
+# Departure from a line over the largest value, above which it is none of round-off.
+SMALLEST_DEPARTURE = 1e-6
+# Departure over the largest value from which steps do not resolve a load, 14 steps in a period: (2 pi / 14)^2. Larger
+# values leave more of the ends of short pulses to the estimate of jumps at unknown places.
+UNRESOLVED = 0.2
+
+
+class LoadFunctions:
+    """User functions of the loads of a system.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    """
+
+    def __init__(self, mbs: exu.MainSystem) -> None:
+        self.calls: list[tuple[Callable[[exu.MainSystem, float, Any], Any], Any]] = []
+        for number in range(mbs.systemData.NumberOfLoads()):
+            data: Any = mbs.GetLoad(number)
+            name = "load" if "load" in data else "loadVector"
+            function = data[f"{name}UserFunction"]
+            if isinstance(function, dict) and callable(function["function"]):
+                self.calls.append((function["function"], np.asarray(data[name]).tolist()))
+        # times and values of the last four accepted states, and whether the loads have departed in the last step
+        self.times, self.values = np.empty(0), np.empty((0, 0))
+        self.departed = False
+
+    def accept(self, mbs: exu.MainSystem, time: float) -> None:
+        """Go on behind an accepted state."""
+        if self.calls:
+            times, values = self._states(mbs, time)
+            self.departed = self._departs(times, values)
+            self.times, self.values = times, values
+
+    def offset(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
+        """Offset in the step from the last accepted state to a time, and the share of the step in which loads change.
+
+        Both are nan where the loads go on as before.
+        """
+        if not self.calls:
+            return math.nan, math.nan
+        times, values = self._states(mbs, time)
+        off = departure(times, values)[-1]
+        is_straight = np.abs(off).max() <= SMALLEST_DEPARTURE * np.abs(values).max()
+        if is_straight or not (self.departed or self._departs(times, values)):
+            return math.nan, math.nan
+        beyond, _, _, lasting = self._impulse(mbs, time)
+        return float(beyond @ off / (off @ off)), lasting
+
+    def largest_change(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
+        """Largest impulse beyond the chord over the load's size and the step, and time of the largest change.
+
+        The step is the one from the last accepted state to a time.
+        """
+        if not (self.calls and np.any(self.times < time)):
+            return 0.0, time
+        beyond, sizes, place, _ = self._impulse(mbs, time)
+        return float((np.abs(beyond) / sizes).max()), place
+
+    def _at(self, mbs: exu.MainSystem, time: float) -> np.ndarray:
+        """Values (k,) of all functions."""
+        return np.concatenate([np.ravel(function(mbs, time, value)) for function, value in self.calls])
+
+    def _states(self, mbs: exu.MainSystem, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Times and values of the accepted states before a time, and at that time."""
+        count = int(np.count_nonzero(self.times < time))
+        before = slice(max(0, count - 3), count)
+        return np.append(self.times[before], time), np.array([*self.values[before], self._at(mbs, time)])
+
+    def _departs(self, times: np.ndarray, values: np.ndarray) -> bool:
+        """Return whether the loads depart from their line all at once, see `SUDDEN`, or are not resolved."""
+        if len(times) < 4:
+            return False
+        sizes = np.linalg.norm(departure(times, values), axis=1)[2:]
+        last, now = np.diff(times)[1:] * sizes
+        return bool(last < SUDDEN * now or sizes[1] > UNRESOLVED * np.abs(values).max())
+
+    def _impulse(self, mbs: exu.MainSystem, time: float) -> tuple[np.ndarray, np.ndarray, float, float]:
+        """Mean values (k,) beyond those of the chord, largest values (k,), and time of the largest change.
+
+        Last the share of the step in which the loads change, 0 for a jump: that of the even change with the same
+        variance of its time.
+        """
+        start = float(self.times[self.times < time][-1])
+        step = time - start
+        times = start + step * np.array([0.0, *(np.arange(SAMPLES) + 0.5) / SAMPLES, 1.0])
+        values = np.array([self._at(mbs, float(t)) for t in times])
+        sizes = np.abs(values).max(axis=0)
+        sizes = np.maximum(sizes, SMALLEST_DEPARTURE * sizes.max() or 1.0)
+        change = np.diff(values, axis=0)
+        part, which = np.unravel_index(int((np.abs(change) / sizes).argmax()), change.shape)
+        (left, right), middle = times[part : part + 2].tolist(), values[part : part + 2, which].mean()
+        for _ in range(BISECTIONS):
+            half = 0.5 * (left + right)
+            is_behind = (self._at(mbs, half)[which] > middle) == (change[part, which] > 0.0)
+            left, right = (left, half) if is_behind else (half, right)
+        place = 0.5 * (left + right)
+        # samples stand for equal parts of the step: a jump moves the border between two of them
+        borders = np.arange(SAMPLES + 1) / SAMPLES
+        borders[part] = (place - start) / step
+        whole = values[-1] - values[0]
+        beyond = 0.5 * whole - borders @ change
+        gone = change @ whole / (whole @ whole or 1.0)
+        lasting = math.sqrt(12.0 * max(0.0, float(np.square(borders) @ gone - (borders @ gone) ** 2)))
+        return beyond, sizes, place, lasting
 
 
 class OuterLoad:

@@ -11,18 +11,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import ModuleType
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, Faces, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, JointModel, Side, Trial
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
-from exudyn_ehd.coupling.element.side_by_side import SideBySide
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between, read_state
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
@@ -31,8 +30,21 @@ from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
 from exudyn_ehd.status import Status
 
+if TYPE_CHECKING:
+    from exudyn_ehd.coupling.element.thrust import ThrustElement
+
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
+
+
+class Crew(Protocol):
+    """Evaluates the films of several joints at once."""
+
+    def evaluate(self, mbs: exu.MainSystem, t: float, asked: FilmElement, trial: Trial) -> None:
+        """Evaluate the film that is asked for its force at a trial, and others with it."""
+
+    def derive(self, asked: FilmElement, f_q: float, f_qt: float) -> None:
+        """Derive the film that is asked for its Jacobian, and others with it."""
 
 
 class FilmElement:
@@ -52,19 +64,19 @@ class FilmElement:
     steps : AcceptedSteps
     presence : Presence
         Set once the element is in a system.
-    faces : Faces or None
+    faces : ThrustElement or None
         Films on the end faces, an element of their own.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own whose mass is a numerical one.
     evaluations : int
         Number of film evaluations.
+    last : Trial or None
+        The state evaluated last, if it is still known.
     kinematics : module
         Of the motion that the film knows.
-    crew : SideBySide or None
+    crew : Crew or None
         Evaluates it with the films of other joints.
-    late : Exception or None
-        Error of `arrive`, which the film's own call raises.
     """
 
     kinematics: ModuleType = relative
@@ -75,28 +87,24 @@ class FilmElement:
         self.failures = Failures(name, model.bearing)
         self.is_massless = False
         self.evaluations = 0
-        self._trial: Trial | None = None
+        self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self._derived: tuple[Trial, tuple[float, float], np.ndarray] | None = None
-        self.late: Exception | None = None
-        self.crew: SideBySide | None = None
+        self.crew: Crew | None = None
         self.steps = AcceptedSteps(self)
         self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
         self.presence: Presence
-        self.faces: Faces | None = None
+        self.faces: ThrustElement | None = None
         self._bound = False
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
-        steps = self.steps
-        self._accept(mbs)
-        stepping = not steps.is_idle
-        if stepping or steps.solver is None:
+        steps, trial = self.steps, self.arrive(mbs, t, q, q_t)
+        if steps.solver is None or not steps.is_idle:
             steps.asked = t, q
-        trial = self._prepare(mbs, q, q_t, CURRENT, t, stepping)
         if self.crew is not None:
             self.crew.evaluate(mbs, t, self, trial)
-        if trial is not self._trial:
+        if trial is not self.last:
             self.evaluate(trial)
         if self._refuses(t, trial):
             return np.full(len(q), np.nan)
@@ -119,24 +127,18 @@ class FilmElement:
         """The film at a state for which Exudyn asks."""
         return self._try(mbs, q, q_t, CURRENT, t, stepping=not self.steps.is_idle)
 
-    def _accept(self, mbs: exu.MainSystem) -> None:
-        """Take a state as accepted if the step has moved on; raise what that has met when another film was asked."""
-        late, self.late = self.late, None
-        if late is not None:
-            raise late
-        start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
-        if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
-            steps.accept(mbs, start, solvers)
+    def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
+        """Take the last step as accepted if the solver has moved on; return the trial at a state, the last one or new.
 
-    def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial | None:
-        """Prepare a trial; errors are stored and raised by `force`. Return None if there is nothing to evaluate."""
-        try:
-            self._accept(mbs)
-            trial = self._prepare(mbs, q, q_t, CURRENT, t, not self.steps.is_idle)
-        except Exception as error:
-            self.late = error
-            return None
-        return None if trial is self._trial else trial
+        Raises
+        ------
+        FilmError
+            If the film of the accepted step is none that can go on.
+        """
+        start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
+        if start != steps.start or solvers != steps.solvers:
+            steps.accept(mbs, start, solvers)
+        return self._prepare(mbs, q, q_t, CURRENT, t, not steps.is_idle)
 
     def _refuses(self, t: float, trial: Trial) -> bool:
         """Return whether the solver shall reject the step; raise if there is no film and the step can't be repeated.
@@ -156,7 +158,7 @@ class FilmElement:
     ) -> Trial:
         """The film at a state, evaluated unless it is the last one; the sides' arrays are brought there."""
         trial = self._prepare(mbs, q, q_t, where, time, stepping)
-        if trial is not self._trial:
+        if trial is not self.last:
             self.evaluate(trial)
         return trial
 
@@ -176,7 +178,7 @@ class FilmElement:
         begin = self.steps.begin if stepping else None
         if begin is not None and not time > begin.time:
             begin = None
-        last = self._trial
+        last = self.last
         known = last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory
         if last is not None and known and last.begin is begin:
             return last
@@ -186,17 +188,17 @@ class FilmElement:
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own
-        self._trial = self._derived = None
-        return Trial(q, q_t, memory, step, begin, bodies, motion, None)
+        self.last = self._derived = None
+        return Trial(q, q_t, memory, step, begin, bodies, motion)
 
     def evaluate(self, trial: Trial) -> None:
         """Evaluate the film at a new trial, to which the sides' arrays belong."""
         # a sum is finite only if all its terms are
         if math.isfinite(trial.motion.dot(trial.motion)):
-            spin = self._spin() if self.model.needs_spin else 0.0
+            spin = relative.angle_of(self.sides[0].frame, self.sides[1].frame) if self.model.needs_spin else 0.0
             trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
             self.evaluations += 1
-        self._trial = trial
+        self.last = trial
 
     def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
         """Keep the derivatives of the film at the last trial for `jacobian`."""
@@ -217,28 +219,16 @@ class FilmElement:
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
     ) -> np.ndarray:
         """Motion (10,) at a state, to which the sides' frames and Jp, Jr are brought."""
-        return self._move_rigid(mbs, np.array(q), np.array(q_t), configuration)
-
-    def _move_rigid(
-        self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType
-    ) -> np.ndarray:
         if not self._bound:
-            self._bind(mbs)
-        return motion_between(mbs, self.sides, q, q_t, configuration, self.kinematics)
-
-    def _spin(self) -> float:
-        """Angle of the journal [rad], see `relative.angle_of`."""
-        housing, journal = self.sides
-        return relative.angle_of(housing.frame, journal.frame)
+            self.require_items(mbs)
+            bind(mbs, *self.sides)
+            self._bound = True
+        n = self.rigid_size
+        return motion_between(mbs, self.sides, np.array(q[:n]), np.array(q_t[:n]), configuration, self.kinematics)
 
     def require_items(self, mbs: exu.MainSystem) -> None:
         """Refuse a system of which items were deleted that the joint was made on."""
         self.presence.require(mbs)
-
-    def _bind(self, mbs: exu.MainSystem) -> None:
-        self.require_items(mbs)
-        bind(mbs, *self.sides)
-        self._bound = True
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
@@ -253,13 +243,8 @@ class FilmElement:
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
-        stiffness, damping = self._derivatives(mbs, trial, self._tangent(trial, f_q, f_qt))
+        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, self._tangent(trial, f_q, f_qt))
         return -(f_q * stiffness + f_qt * damping)
-
-    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong, for the film's ``tangent``."""
-        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, tangent)
-        return stiffness, damping
 
     def _rigid_derivatives(
         self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray
@@ -267,23 +252,23 @@ class FilmElement:
         """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
         if solver_state.is_implicit(self.steps.solver):
             self.steps.tangent = tangent
-        n = self.sides[0].size + self.sides[1].size
+        n = self.rigid_size
         state = np.array(trial.q[:n]), np.array(trial.q_t[:n])
         return derivatives_between(mbs, self.sides, state, trial.found.wrench, tangent, self.kinematics)
 
     @property
-    def last(self) -> Trial | None:
-        """The state evaluated last, if it is still known."""
-        return self._trial
+    def rigid_size(self) -> int:
+        """Number of coordinates of housing and journal."""
+        return self.sides[0].size + self.sides[1].size
 
     def has_result(self) -> bool:
         """Return whether the state evaluated last can be accepted as the end of a step."""
-        trial = self._trial
+        trial = self.last
         return trial is None or not (trial.status == Status.NO_PRESSURE or self.failures.crushes(trial))
 
     def require_film(self, time: float) -> None:
         """Raise if the run has ended behind the end of a pressure law, or with a film that no bearing has."""
-        trial = self._trial
+        trial = self.last
         if trial is not None and trial.status == Status.NO_PRESSURE:
             raise self.failures.no_film(time, trial, explicit=False)
         row = None if trial is None else self.row(time, trial)
@@ -319,7 +304,7 @@ class FilmElement:
 
     def forget(self) -> None:
         """Evaluate the film anew at the next state, whichever it is."""
-        self._trial = self._peeked = self._derived = None
+        self.last = self._peeked = self._derived = None
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film."""
@@ -347,10 +332,6 @@ class FilmElement:
     def _quantities(self, evaluation: Evaluation) -> Mapping[str, float]:
         """Scalars of an evaluation, to which the sides' arrays belong."""
         return evaluation.quantities()
-
-    def faces_wrench(self) -> np.ndarray:
-        """Return the wrench (6,) of the thrust faces on the journal at the state of the sides' arrays, or zero."""
-        return np.zeros(6) if self.faces is None else self.faces.wrench(self.sides)
 
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

@@ -10,7 +10,8 @@ A film that another call has evaluated is taken only where its own call comes wi
 else it is evaluated there. What would be evaluated without being asked for would start the next evaluation elsewhere,
 to rounding: so films go side by side only behind `ENOUGH` states in a row at which all were asked at the coordinates
 that the system had at the first call, which is not so where a model changes states between its joints. By then their
-kernels are compiled, too. An error of an evaluation is dropped, and met again in the film's own call.
+kernels are compiled, too. An error of an evaluation is dropped, and met again in the film's own call; one of an
+accepted step ends the run at once.
 
 Python runs on one thread at a time: what goes side by side is the film's solution, a compiled call that does without
 Python's lock. It is 0.7 of an evaluation with its tangent on 48 x 6, 0.85 on 96 x 10, 0.9 on 192 x 16, and 0.3, 0.5 and
@@ -23,11 +24,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import Protocol
 
 import exudyn as exu
 
-from exudyn_ehd.coupling.contract import CURRENT, JointModel, Trial
+from exudyn_ehd.coupling.contract import CURRENT, Trial
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.kernels.ahead import cores
 from exudyn_ehd.status import Status, require_integer
 
@@ -35,44 +36,12 @@ from exudyn_ehd.status import Status, require_integer
 ENOUGH = 4
 
 
-class Film(Protocol):
-    """A joint's element.
-
-    Attributes
-    ----------
-    crew : SideBySide or None
-        Group of films that is told of its calls.
-    late : Exception or None
-        Error of `arrive` that its own call raises.
-    model : JointModel
-        Of its own, or it goes on one thread.
-    """
-
-    crew: SideBySide | None
-    late: Exception | None
-    model: JointModel
-
-    @property
-    def last(self) -> Trial | None: ...
-    def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
-        """Coordinates and rates of all nodes of the element."""
-
-    def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial | None:
-        """Prepare a trial; errors are stored in ``late``. Return None if there is nothing to evaluate."""
-
-    def evaluate(self, trial: Trial) -> None:
-        """Evaluate the film at a trial of `arrive`."""
-
-    def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
-        """Keep the derivatives of the film at its last trial for its own call."""
-
-
 class SideBySide:
     """The films of one system during a run.
 
     Parameters
     ----------
-    films : sequence of Film
+    films : sequence of FilmElement
         Films of all joints, each in its own model.
     threads : int
         More than one.
@@ -83,19 +52,19 @@ class SideBySide:
         Rounds that the threads have shared.
     """
 
-    def __init__(self, films: Sequence[Film], threads: int) -> None:
+    def __init__(self, films: Sequence[FilmElement], threads: int) -> None:
         self.films, self.helpers, self.shared = films, threads - 1, 0
         self._pool = ThreadPoolExecutor(self.helpers, thread_name_prefix="exudyn_ehd film")
         self._agreed = 0
-        self._expected: dict[Film, tuple[list[float], list[float]]] = {}
-        self._derived: list[Film] = []
-        self._deriving: list[Film] = []
+        self._expected: dict[FilmElement, tuple[list[float], list[float]]] = {}
+        self._derived: list[FilmElement] = []
+        self._deriving: list[FilmElement] = []
 
     def close(self) -> None:
         """End the threads."""
         self._pool.shutdown()
 
-    def evaluate(self, mbs: exu.MainSystem, t: float, asked: Film, trial: Trial) -> None:
+    def evaluate(self, mbs: exu.MainSystem, t: float, asked: FilmElement, trial: Trial) -> None:
         """``asked`` is asked for its force at ``trial``: evaluate it with all others if it is the first to be there."""
         expected = self._expected.pop(asked, None)
         here = trial.q, trial.q_t
@@ -107,11 +76,10 @@ class SideBySide:
         self._expected = {film: film.read(mbs, CURRENT) for film in others}
         if self._agreed < ENOUGH:
             return
-        found = [(film, film.arrive(mbs, t, *self._expected[film])) for film in others]
-        calls = [(film.evaluate, (new,)) for film, new in [(asked, trial), *found] if new is not None]
-        self._share(calls)
+        trials = [(asked, trial), *((film, film.arrive(mbs, t, *self._expected[film])) for film in others)]
+        self._share([(film.evaluate, (new,)) for film, new in trials if new is not film.last])
 
-    def derive(self, asked: Film, f_q: float, f_qt: float) -> None:
+    def derive(self, asked: FilmElement, f_q: float, f_qt: float) -> None:
         """``asked`` is asked for its Jacobian: derive the films that were asked in the round before it."""
         first = not self._deriving or asked in self._deriving
         if first:
@@ -146,7 +114,7 @@ def _work(left: Iterator[tuple[Callable[..., object], tuple[object, ...]]]) -> N
 
 
 @contextmanager
-def side_by_side(where: str, films: Sequence[Film], threads: int | None) -> Iterator[None]:
+def side_by_side(where: str, films: Sequence[FilmElement], threads: int | None) -> Iterator[None]:
     """Films on ``threads`` within, None: one for each core; nothing where there is one of either."""
     if threads is not None:
         require_integer(f"{where}.threads", threads, at_least=1)
@@ -162,6 +130,5 @@ def side_by_side(where: str, films: Sequence[Film], threads: int | None) -> Iter
         yield
     finally:
         for film in films:
-            # an error that a run which has ended before did not ask for is none of the next run's
-            film.crew = film.late = None
+            film.crew = None
         crew.close()

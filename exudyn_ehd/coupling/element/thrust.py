@@ -20,13 +20,14 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, ObjectIndex, Side, Trial
-from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
-from exudyn_ehd.coupling.kinematics.sides import bind, derivatives_between
+from exudyn_ehd.coupling.kinematics.sides import bind, derivatives_between, motion_between
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
 from exudyn_ehd.joint.model.compile import MESSAGE
@@ -41,10 +42,13 @@ class ThrustElement:
 
     Parameters
     ----------
-    film : FilmElement
-        Element of the journal's film, which keeps the record.
+    name : str
+        Name of the joint.
+    bearing : JournalBearing
+    steps : AcceptedSteps
+        Those of the journal's film, which keeps the record.
     sides : pair of Side
-        Housing and journal, not those of ``film``.
+        Housing and journal, not those of the journal's film.
     offset : float
         z_0, m.
 
@@ -56,9 +60,11 @@ class ThrustElement:
 
     objectNumber: ObjectIndex
 
-    def __init__(self, film: FilmElement, sides: tuple[Side, Side], offset: float) -> None:
-        self.model = ThrustModel(film.model.bearing)
-        self.steps, self.name = film.steps, film.failures.name
+    def __init__(
+        self, name: str, bearing: JournalBearing, steps: AcceptedSteps, sides: tuple[Side, Side], offset: float
+    ) -> None:
+        self.model = ThrustModel(bearing)
+        self.steps, self.name = steps, name
         self.sides, self.offset = sides, offset
         self._gap = np.nan  # smallest one at the start of the step, m
         self._last: tuple[list[float], list[float], ThrustEvaluation] | None = None
@@ -66,20 +72,19 @@ class ThrustElement:
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
-        found, out = self._evaluate(mbs, t, q, q_t), np.full(len(q), np.nan)
+        found, out, (housing, journal) = self._evaluate(mbs, q, q_t), np.full(len(q), np.nan), self.sides
         if self._has_film(t, found) and not self._goes_too_far(t, found):
-            frames, jacobians = self._arrays()
-            relative.wrench_force(*frames, *jacobians, found.wrench, out)
+            relative.wrench_force(housing.frame, journal.frame, housing.jac, journal.jac, found.wrench, out)
         return out
 
     def jacobian(
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        found, n = self._evaluate(mbs, t, q, q_t), len(q)
+        found, n, (housing, journal) = self._evaluate(mbs, q, q_t), len(q), self.sides
         if not self._has_film(t, found):
             return np.full((n, n), np.nan)
-        (frames, jacobians), tangent = self._arrays(), found.tangent()
+        frames, jacobians, tangent = (housing.frame, journal.frame), (housing.jac, journal.jac), found.tangent()
         own, state = np.ascontiguousarray(tangent[:, :MOTION_SIZE]), (np.array(q), np.array(q_t))
         stiffness, damping, by_q, _ = derivatives_between(mbs, self.sides, state, found.wrench, own)
         turned = relative.wrench_map(*frames, *jacobians) @ tangent[:, MOTION_SIZE]
@@ -101,19 +106,11 @@ class ThrustElement:
 
     def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
         """Scalars of the films at an accepted state, to which the arrays of ``sides`` belong."""
-        values = self._tried(sides, trial).quantities()
+        values = self.at((sides[0].frame, sides[1].frame), trial.bodies[:MOTION_SIZE]).quantities()
         self._gap = values["thrust_minimum_gap"]
         return values
 
-    def _tried(self, sides: tuple[Side, Side], trial: Trial) -> ThrustEvaluation:
-        """The films at a trial, to which the arrays of ``sides`` belong."""
-        return self.at((sides[0].frame, sides[1].frame), trial.bodies[:MOTION_SIZE])
-
-    def _arrays(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
-        housing, journal = self.sides
-        return (housing.frame, journal.frame), (housing.jac, journal.jac)
-
-    def _evaluate(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> ThrustEvaluation:
+    def _evaluate(self, mbs: exu.MainSystem, q: list[float], q_t: list[float]) -> ThrustEvaluation:
         """The films at a state, to which the sides' frames and Jp, Jr are brought."""
         q, q_t, last = list(q), list(q_t), self._last
         if last is not None and last[0] == q and last[1] == q_t and last[2].serial == self.model.serial:
@@ -122,11 +119,8 @@ class ThrustElement:
         if not self._bound:
             bind(mbs, *self.sides)
             self._bound = True
-        (housing, journal), n = self.sides, self.sides[0].size
-        state, rates = np.array(q), np.array(q_t)
-        housing.update(mbs, state[:n], rates[:n], CURRENT)
-        journal.update(mbs, state[n:], rates[n:], CURRENT)
-        found = self.at((housing.frame, journal.frame), relative.motion_of(housing.frame, journal.frame))
+        motion = motion_between(mbs, self.sides, np.array(q), np.array(q_t), CURRENT)
+        found = self.at((self.sides[0].frame, self.sides[1].frame), motion)
         self._last = q, q_t, found
         return found
 
@@ -173,7 +167,9 @@ class ThrustElement:
 
 def attach_faces(
     mbs: exu.MainSystem,
-    film: FilmElement,
+    name: str,
+    bearing: JournalBearing,
+    steps: AcceptedSteps,
     items: tuple[Item, Item],
     points: tuple[np.ndarray, np.ndarray],
     rotation: np.ndarray,
@@ -183,8 +179,8 @@ def attach_faces(
     Parameters
     ----------
     mbs : exudyn.MainSystem
-    film : FilmElement
-        Element of the journal's film.
+    name, bearing, steps
+        As for `ThrustElement`.
     items : pair of Item
         Housing and journal.
     points, rotation : pair of (3,) arrays, (3, 3) array
@@ -197,7 +193,7 @@ def attach_faces(
     """
     housing, journal = (item.side(point, rotation) for item, point in zip(items, points, strict=True))
     offset = float(rotation[:, 2] @ (points[1] - points[0]))
-    element = ThrustElement(film, (housing, journal), offset)
+    element = ThrustElement(name, bearing, steps, (housing, journal), offset)
     frames = initial_frame(mbs, items[0], housing), initial_frame(mbs, items[1], journal)
     motion = relative.motion_of(*frames)
     with announced(MESSAGE):

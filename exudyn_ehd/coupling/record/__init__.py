@@ -3,13 +3,10 @@
 Module map
 ----------
 history      quantities over accepted steps
-spherical    the same of ball joints
 record       the rows of a joint's accepted steps, and histories back from files
 thinning     some of the steps, with the worst ones
 on_disk      a history in a file, for long runs
 films        films over accepted steps
 summary      a run in one line
 revolutions  extremes by revolution
-sensors      Exudyn sensors
-display      drawing in Exudyn's renderer
 """

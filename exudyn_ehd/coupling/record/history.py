@@ -6,8 +6,8 @@ import dataclasses
 import enum
 import math
 import pathlib
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -104,13 +104,6 @@ _NAMES = (*COLUMNS, "step_error")
 _ROWS = (*_NAMES, "step_count")
 
 
-class Source(Protocol):
-    """Columns of a history on disk."""
-
-    def column(self, name: str) -> np.ndarray:
-        """Return the column (n, ...) with one of the names `_ROWS`."""
-
-
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class JointHistory(History, HistoryPictures):
     """Accepted steps of one joint, first the initial state, last the state now.
@@ -162,7 +155,7 @@ class JointHistory(History, HistoryPictures):
 
     Notes
     -----
-    The history of a `File` reads each of its arrays when it is asked for, and keeps it.
+    The history of a joint makes each of its arrays when it is asked for, and keeps it; that of a `File` reads it then.
 
     Examples
     --------
@@ -209,17 +202,17 @@ class JointHistory(History, HistoryPictures):
     journal_radius: float
 
     def __getattr__(self, name: str) -> Any:
-        source = self.__dict__.get("_source")
-        if source is None or name not in _ROWS:
+        column = self.__dict__.get("_column")
+        if column is None or name not in _ROWS:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-        self.__dict__[name] = values = source.column(name)
+        self.__dict__[name] = values = column(name)
         return values
 
     @classmethod
-    def on_disk(cls, source: Source, dimensions: Mapping[str, float]) -> JointHistory:
-        """A history that reads its columns when they are asked for."""
+    def of_columns(cls, column: Callable[[str], np.ndarray], dimensions: Mapping[str, float]) -> JointHistory:
+        """A history whose columns, by the names `_ROWS`, are made when they are asked for."""
         history = object.__new__(cls)
-        history.__dict__.update(dimensions, _source=source)
+        history.__dict__.update(dimensions, _column=column)
         return history
 
     @property
@@ -261,8 +254,8 @@ class JointHistory(History, HistoryPictures):
         slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
         kept = (self.time >= start - slack) & (self.time <= end + slack)
         # columns of which a part is wanted are not kept
-        known, source = self.__dict__, self.__dict__.get("_source")
-        columns = {name: (known[name] if name in known or not source else source.column(name))[kept] for name in _ROWS}
+        known, column = self.__dict__, self.__dict__.get("_column")
+        columns = {name: (known[name] if name in known or not column else column(name))[kept] for name in _ROWS}
         return JointHistory(**columns, **{name: getattr(self, name) for name in DIMENSIONS})
 
     def save(self, path: str | pathlib.Path) -> None:

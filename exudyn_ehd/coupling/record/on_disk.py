@@ -129,37 +129,36 @@ class RowsOnDisk:
         self._head = (json.dumps(head).ljust(HEAD - 1) + "\n").encode()
         self.path.write_bytes(self._head)
 
-    def rows(self, behind: np.ndarray | None = None) -> RowsInFile:
+    def rows(self, behind: np.ndarray) -> Rows:
         """Return all settled rows for reading, with others (n, k) behind them."""
-        behind = np.empty((0, self._width)) if behind is None else behind
-        return RowsInFile(self.path, self.joint, self._head, self.count, behind)
+        return Rows(behind, self.count, self.path, self.joint, self._head)
 
     def clear(self) -> None:
         """Begin anew at the next rows."""
         self.count, self._head = 0, b""
 
 
-class RowsInFile(NamedTuple):
-    """Rows of a file as it was, read when they are asked for.
+class Rows(NamedTuple):
+    """Rows in memory, and before them those of a file as it was, read when they are asked for.
 
     Attributes
     ----------
+    behind : (n, k) array
+        Rows in memory.
+    settled : int
+        Rows in the file.
     path : path
     joint : str
         Whose they are, for messages.
     head : bytes
         Of the file.
-    settled : int
-        Rows in it.
-    behind : (n, k) array
-        Further rows.
     """
 
-    path: pathlib.Path
-    joint: str
-    head: bytes
-    settled: int
     behind: np.ndarray
+    settled: int = 0
+    path: pathlib.Path = pathlib.Path()
+    joint: str = ""
+    head: bytes = b""
 
     @property
     def width(self) -> int:
@@ -213,12 +212,12 @@ def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
     return head if isinstance(head, dict) and head.get("format") == FORMAT else None
 
 
-def open_rows(path: str | pathlib.Path, width: int) -> RowsInFile:
+def open_rows(path: str | pathlib.Path, width: int) -> Rows:
     """The whole rows (n, width) that a file of `RowsOnDisk` has by now."""
     path = pathlib.Path(path).absolute()
     with open(path, "rb") as file:
         head = file.read(HEAD)
-    return RowsInFile(path, path.name, head, _whole_rows(path, width), np.empty((0, width)))
+    return Rows(np.empty((0, width)), _whole_rows(path, width), path, path.name, head)
 
 
 def _whole_rows(path: str | pathlib.Path, width: int) -> int:

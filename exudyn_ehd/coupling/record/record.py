@@ -4,7 +4,7 @@ and back from files."""
 from __future__ import annotations
 
 import contextlib
-import dataclasses
+import functools
 import math
 import pathlib
 import zipfile
@@ -15,8 +15,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import COLUMNS, DIMENSIONS, FORMAT, MINIMUM_GAP, TIME, WIDTH, JointHistory
-from exudyn_ehd.coupling.record.on_disk import RowsInFile, RowsOnDisk, open_rows, read_head, read_rows
-from exudyn_ehd.coupling.record.thinning import STEP_COUNT, STEP_ERROR, Thinner, Thinning, errors_of
+from exudyn_ehd.coupling.record.on_disk import Rows, RowsOnDisk, open_rows, read_head, read_rows
+from exudyn_ehd.coupling.record.thinning import STEP_COUNT, STEP_ERROR, Every, Period, Thinner, errors_of
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.step_error import FIRST, NO_ERROR
 from exudyn_ehd.status import InputError, RunError
@@ -27,22 +27,28 @@ MOST_ROWS = 256
 
 
 class Record:
-    """Rows of accepted steps of a bearing in a growing array, or the last ones behind what was kept of the others."""
+    """Rows of accepted steps of a bearing, or the last ones behind what was kept of the others.
+
+    Attributes
+    ----------
+    end : (k,) array or None
+        Row of the last state, which no further step has brought.
+    thinnest : float
+        Minimum film thickness of all rows, m; infinite where no film has one.
+    """
 
     def __init__(self, bearing: JournalBearing) -> None:
         self._dimensions: dict[str, Any] = {name: float(getattr(bearing, name)) for name in DIMENSIONS}
         self._lags = isinstance(getattr(bearing, "bush", None), ElasticLiner)
-        self._rows = np.empty((64, WIDTH))
-        self._count = 0
+        self._rows: list[np.ndarray] = []
         self._thinner: Thinner | None = None
         self._disk: RowsOnDisk | None = None
         # rows that are settled, thinned ones in memory or restored ones on their way to the file
         self._kept: list[np.ndarray] = []
-        self._thinnest = math.nan
-        # the last state, which no further step has brought
+        self.thinnest = math.inf
         self.end: np.ndarray | None = None
 
-    def thin(self, rule: Thinning) -> None:
+    def thin(self, rule: Every | Period) -> None:
         """Drop rows by a rule from now on."""
         d = self._dimensions
         self._thinner = Thinner(rule, d["radial_clearance"], d["length"], self._lags)
@@ -65,22 +71,19 @@ class Record:
     def append(self, row: np.ndarray) -> None:
         """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
         self.end = None
-        if self._count:
-            last = self._rows[self._count - 1, TIME]
-            if row[TIME] < last:
-                self.clear()
-            elif row[TIME] == last:
-                self._count -= 1
-        if (self._disk is not None or self._thinner is not None) and self._count >= MOST_ROWS:
+        if row[TIME] < self.last_time:
+            self.clear()
+        elif row[TIME] == self.last_time:
+            self._rows.pop()
+        if len(self._rows) >= MOST_ROWS:
             self.write()
-        if self._count == self._rows.shape[0]:
-            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
-        self._rows[self._count] = row
-        self._count += 1
+        self._rows.append(row)
+        if row[MINIMUM_GAP] < self.thinnest:
+            self.thinnest = float(row[MINIMUM_GAP])
 
     def clear(self) -> None:
         """Begin a new record."""
-        self._count, self._thinnest, self._kept, self.end = 0, math.nan, [], None
+        self._rows, self.thinnest, self._kept, self.end = [], math.inf, [], None
         if self._thinner is not None:
             self._thinner.begin_anew()
         if self._disk is not None:
@@ -91,13 +94,10 @@ class Record:
 
         Without a file drop those that a thinned record does not keep.
         """
-        if (self._disk is None and self._thinner is None) or not self._count:
+        if (self._disk is None and self._thinner is None) or not self._rows:
             return
-        rows, done, thinner = self._rows[: self._count], self._count - 1, self._thinner
-        settled = rows[:done].copy() if thinner is None else thinner.take(rows[:done])
-        self._kept.append(settled)
-        self._thinnest = self.thinnest
-        self._rows[0], self._count = rows[done].copy(), 1
+        rows, self._rows = np.array(self._rows), self._rows[-1:]
+        self._kept.append(rows[:-1] if self._thinner is None else self._thinner.take(rows[:-1]))
         if self._disk is not None:
             whole = np.concatenate(self._kept)
             self._disk.add(np.concatenate([whole, self._behind(final)]), len(whole))
@@ -105,15 +105,18 @@ class Record:
 
     def _behind(self, final: np.ndarray | None) -> np.ndarray:
         """Rows (n, width) of what is not settled, with ``final`` behind them."""
-        rows = self._rows[: self._count]
-        rows = rows if final is None else np.concatenate([rows, final[None]])
-        return rows.copy() if self._thinner is None else self._thinner.look(rows)
+        rows = np.array(self._rows if final is None else [*self._rows, final]).reshape(-1, WIDTH)
+        return rows if self._thinner is None else self._thinner.look(rows)
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, width), with ``final`` behind them if given and later."""
         final = None if final is None or not final[TIME] > self.last_time else final
-        before = [] if self._disk is None else [self._disk.rows().column(slice(None))]
-        return np.concatenate([*before, *self._kept, self._behind(final)])
+        return self._all_rows(final).column(slice(None))
+
+    def _all_rows(self, final: np.ndarray | None) -> Rows:
+        """All rows, those of the file still there, with ``final`` behind them."""
+        rows = np.concatenate([*self._kept, self._behind(final)])
+        return Rows(rows) if self._disk is None else self._disk.rows(rows)
 
     def restore(self, rows: np.ndarray) -> None:
         """Begin with these rows (n, width)."""
@@ -124,87 +127,50 @@ class Record:
                 "joint with the record of the stored run."
             )
         self.clear()
-        if self._thinner is None or not len(rows):
-            self._rows, self._count = np.concatenate([rows, np.empty((64, rows.shape[1]))])[:, :WIDTH], len(rows)
-            return
-        self._kept, self._rows[0], self._count = [rows[:-1].copy()], rows[-1, :WIDTH], 1
-        self._thinner.begin_anew(rows[-1])
-        self._thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP]))
-
-    @property
-    def thinnest(self) -> float:
-        """The minimum film thickness of all rows, m; nan where no film has one."""
-        gaps = self._rows[: self._count, MINIMUM_GAP]
-        return float(np.fmin.reduce(gaps, initial=self._thinnest))
+        self._rows = list(rows[:, :WIDTH].copy())
+        self.thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP], initial=math.inf))
+        if self._thinner is not None and self._rows:
+            self._kept, self._rows = [rows[:-1].copy()], self._rows[-1:]
+            self._thinner.begin_anew(rows[-1])
 
     @property
     def last_time(self) -> float:
         """Time of the last row, minus infinity if there is none."""
-        return float(self._rows[self._count - 1, TIME]) if self._count else -np.inf
+        return float(self._rows[-1][TIME]) if self._rows else -np.inf
 
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """The record, with ``final`` as its last row if given: a copy, or what reads the file."""
         # where the file can't be written any more, the rows are still known
         with contextlib.suppress(RunError):
             self.write(final)
-        if self._disk is None or not self._disk.count:
-            rows = np.concatenate([*self._kept, self._behind(final)])
-            return history_of(rows, self._dimensions, self._lags)
-        behind = np.concatenate([*self._kept, self._behind(final)])
-        return history_on_disk(self._disk.rows(behind), self._dimensions, self._lags)
+        return history_of(self._all_rows(final), self._dimensions, self._lags)
 
 
-def history_of(rows: np.ndarray, dimensions: Mapping[str, Any], lags: bool, first: int = 0) -> JointHistory:
-    """Rows (n, k) as columns, with the errors of their steps; ``lags``: on a liner; ``first``: rows before them."""
-    columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in COLUMNS.items()}
-    if rows.shape[1] > WIDTH:
-        count, errors = rows[:, STEP_COUNT].astype(np.int64), rows[:, STEP_ERROR].copy()
-    else:
-        count = first + np.arange(len(rows))
-        errors, _ = errors_of(rows, dimensions["radial_clearance"], dimensions["length"], lags, NO_ERROR)
-    return JointHistory(**columns, step_error=errors, step_count=count, **dimensions)
+def history_of(rows: Rows, dimensions: Mapping[str, Any], lags: bool, first: int = 0) -> JointHistory:
+    """A history that makes its columns of rows when they are asked for.
 
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Columns:
-    """Columns of rows in a file, read one by one.
-
-    Parameters
-    ----------
-    rows : RowsInFile
-    clearance, length : float
-    lags : bool
-        As for `errors_of`.
+    ``lags``: the bearing is on a liner; ``first``: number of steps before the rows.
     """
-
-    rows: RowsInFile
-    clearance: float
-    length: float
-    lags: bool
-
-    def column(self, name: str) -> np.ndarray:
-        """Return a column by its name, as `exudyn_ehd.coupling.record.history.Source` does."""
-        thinned = self.rows.width > WIDTH
-        if name == "step_count":
-            return self.rows.column(STEP_COUNT).astype(np.int64) if thinned else np.arange(self.rows.total)
-        if name == "step_error":
-            return self.rows.column(STEP_ERROR) if thinned else self._errors()
-        return self.rows.column(COLUMNS[name])
-
-    def _errors(self) -> np.ndarray:
-        lead, before, found = np.empty((0, self.rows.width)), NO_ERROR, [np.empty(0)]
-        for part in self.rows.parts():
-            whole = np.concatenate([lead, part])
-            errors, before = errors_of(whole, self.clearance, self.length, self.lags, before)
-            found.append(errors[len(lead) :])
-            lead = whole[-FIRST:]
-        return np.concatenate(found)
+    return JointHistory.of_columns(functools.partial(_column, rows, dimensions, lags, first), dimensions)
 
 
-def history_on_disk(rows: RowsInFile, dimensions: Mapping[str, Any], lags: bool) -> JointHistory:
-    """A history that reads its columns when they are asked for."""
-    clearance, length = dimensions["radial_clearance"], dimensions["length"]
-    return JointHistory.on_disk(Columns(rows=rows, clearance=clearance, length=length, lags=lags), dimensions)
+def _column(rows: Rows, dimensions: Mapping[str, Any], lags: bool, first: int, name: str) -> np.ndarray:
+    is_numbered = rows.width > WIDTH
+    if name == "step_count":
+        return rows.column(STEP_COUNT).astype(np.int64) if is_numbered else first + np.arange(rows.total)
+    if name == "step_error":
+        return rows.column(STEP_ERROR) if is_numbered else _step_errors(rows, dimensions, lags)
+    return rows.column(COLUMNS[name])
+
+
+def _step_errors(rows: Rows, dimensions: Mapping[str, Any], lags: bool) -> np.ndarray:
+    lead, before, found = np.empty((0, rows.width)), NO_ERROR, [np.empty(0)]
+    for part in rows.parts():
+        whole = np.concatenate([lead, part])
+        errors, before = errors_of(whole, dimensions["radial_clearance"], dimensions["length"], lags, before)
+        found.append(errors[len(lead) :])
+        lead = whole[-FIRST:]
+    return np.concatenate(found)
 
 
 def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: float = math.inf) -> JointHistory:
@@ -242,16 +208,15 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     if head is not None and head["names"] == FORMAT:
         dimensions = {name: head[name] for name in DIMENSIONS}
         if start == -math.inf and end == math.inf:
-            return history_on_disk(open_rows(path, head["width"]), dimensions, head["lags"])
+            return history_of(open_rows(path, head["width"]), dimensions, head["lags"])
         first, rows = read_rows(path, head["width"], start, end)
-        return history_of(rows, dimensions, head["lags"], first).between(start, end)
+        return history_of(Rows(rows), dimensions, head["lags"], first).between(start, end)
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
-            known = "format" in data.files and str(data["format"]) == FORMAT
-            values = {name: data[name] for name in data.files if name != "format"} if known else {}
+            values = dict(data)
     except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
-        known = False
-    if not known:
+        values = {}
+    if str(values.pop("format", "")) != FORMAT:
         raise InputError(
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )

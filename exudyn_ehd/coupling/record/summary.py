@@ -52,8 +52,8 @@ def without_lines() -> Iterator[None]:
         LOGGER.setLevel(level)
 
 
-def tell(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> None:
-    """Log the line of a joint whose run has ended.
+def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> str:
+    """The line of a joint whose run has ended.
 
     Parameters
     ----------
@@ -65,11 +65,6 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, since: fl
     since : float, optional
         Start of the run, s, if it has steps in time that differ in size only where they were halved.
     """
-    LOGGER.info("%s", line(name, bearing, history, since=since))
-
-
-def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> str:
-    """The line that `tell` logs."""
     h, time = history, history.time
     text = f"LubricatedJoint '{name}', {h.step_count[-1]} steps to t = {time[-1]:.6g} s"
     for title, values, worst, factor, unit in (

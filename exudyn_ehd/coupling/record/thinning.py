@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-from typing import Protocol
 
 import numpy as np
 
@@ -32,13 +31,6 @@ STEP_COUNT, STEP_ERROR = WIDTH, WIDTH + 1
 _BLOCKS = slice(FIRST_BLOCK, FIRST_BLOCK + BLOCKS.size)
 # A span ends where a time meets its end to this share of it.
 ROUNDING = 1e-9
-
-
-class Thinning(Protocol):
-    """Rule that groups steps into spans."""
-
-    def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Number (n,) of the span of steps with numbers ``count`` and times (n,), none smaller than the one before."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -67,7 +59,7 @@ class Every:
         require_integer("Every.steps", self.steps, at_least=2)
 
     def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return the number of each step's span: the initial state alone, then ``steps`` steps each."""
+        """Return the numbers of the spans of steps by ``count`` and time (n,): the initial state, ``steps`` each."""
         return np.ceil(count / self.steps)
 
 
@@ -107,7 +99,7 @@ class Thinner:
         Whether it is on a liner.
     """
 
-    def __init__(self, rule: Thinning, clearance: float, length: float, lags: bool) -> None:
+    def __init__(self, rule: Every | Period, clearance: float, length: float, lags: bool) -> None:
         self.rule, self.bearing = rule, (clearance, length, lags)
         self.begin_anew()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,6 @@ from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.status import InputError, Status
 
 if TYPE_CHECKING:
-    from exudyn_ehd.coupling.element.thrust import ThrustElement
     from exudyn_ehd.joint.thrust import ThrustEvaluation
 
 # Loads that do work on the slopes of a motion (x, y, bx, by): F_x, F_y, M_y, -M_x.
@@ -105,7 +104,7 @@ class RotorFilm:
             )
         self.places = np.concatenate((housing.places, journal.places))
         self.motion = np.zeros(10)
-        self.faces = cast("ThrustElement | None", joint.element.faces)
+        self.faces = joint.element.faces
         self._on_faces: ThrustEvaluation | None = None
         self._told = False
 

@@ -149,14 +149,18 @@ class TurnWatch:
 
     Parameters
     ----------
-    sides : list of Side
-    solver : MainSolverImplicitSecondOrder
-        At work.
+    mbs : exudyn.MainSystem
+    sides : pair of Side
+        Housing and journal.
+    solver : solver of Exudyn or None
+        At work; only the turns of implicit ones are watched.
     """
 
-    def __init__(self, sides: list[Side], solver: exu.MainSolverImplicitSecondOrder) -> None:
-        self.sides, self.solver = sides, solver
-        self.before: list[np.ndarray] = []
+    def __init__(self, mbs: exu.MainSystem, sides: tuple[Side, Side], solver: solver_state.Solver | None) -> None:
+        self.sides, self.before = list[Side](), list[np.ndarray]()
+        if isinstance(solver, exu.MainSolverImplicitSecondOrder):
+            self.radius = solver.spectralRadius
+            self.sides = [s for s in sides if s.nodes and mbs.GetNode(s.nodes[0])["nodeType"].startswith("Point")]
 
     def take(self, name: str, time: float) -> None:
         """Take an accepted state, to which the sides were brought; warn, once, if the step to it turned one too far.
@@ -168,20 +172,14 @@ class TurnWatch:
         time : float
             s.
         """
+        if not self.sides:
+            return
         before, self.before = self.before, [side.frame[:, :3].copy() for side in self.sides]
         traces = [float(np.sum(old * new)) for old, new in zip(before, self.before, strict=False)]
         turn = max((math.acos(min(max(0.5 * (t - 1.0), -1.0), 1.0)) for t in traces), default=0.0)
-        if turn > largest_turn(self.solver.spectralRadius):
+        if turn > largest_turn(self.radius):
             self.sides = []
-            warn(name, time, turn, self.solver.spectralRadius)
-
-
-def turn_watch(mbs: exu.MainSystem, sides: tuple[Side, Side], solver: solver_state.Solver | None) -> TurnWatch | None:
-    """A watch of those sides (housing, journal) that lie on absolute coordinates; None if none does, or needs none."""
-    if not isinstance(solver, exu.MainSolverImplicitSecondOrder):
-        return None
-    loose = [s for s in sides if s.nodes and mbs.GetNode(s.nodes[0])["nodeType"].startswith("Point")]
-    return TurnWatch(loose, solver) if loose else None
+            warn(name, time, turn, self.radius)
 
 
 def warn(name: str, time: float, turn: float, radius: float) -> None:

@@ -1,4 +1,4 @@
-"""Films that run dry, are too thin for their surfaces, or too steep for their grid.
+"""Films that run dry, are too thin for their surfaces, too steep for their grid, or carry too little.
 
 Films that run dry conserve mass, oil leaves them through the ends, and nothing brings it back.
 
@@ -10,6 +10,8 @@ sinks.
 Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
 
 Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.resolution`), at the highest pressure.
+
+Films that carry so little that Newton's absolute tolerance lets them be anything.
 """
 
 from __future__ import annotations
@@ -17,9 +19,13 @@ from __future__ import annotations
 import math
 import warnings
 
+import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.record.summary import spins
+from exudyn_ehd.coupling.watch.solver_state import Solver
 from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
@@ -31,6 +37,9 @@ STARVED, LEAST = 0.6, 0.1
 GOOD_SURFACE, CLEARANCE_SHARE = 0.2e-6, 0.05
 # Pressure over the highest one yet from which on the grid is looked at again. Larger: of a lower peak; smaller: dearer.
 HIGHER = 1.02
+# Tolerance over the mean force of a run from which on it is told, one to take, and the force that is rounding, as a
+# share of the film's unit.
+LOOSE, CLOSE, ROUNDING = 1e-3, 1e-6, 1e-8
 
 
 def lost_share(history: History) -> float:
@@ -95,3 +104,28 @@ class GridWatch:
             (time, found), self._coarse = self._coarse, None
             where = f"LubricatedJoint '{name}': at t = {time:.9g} s, at its highest pressure"
             warnings.warn(coarse_film(found, where), GridWarning, stacklevel=2)
+
+
+def warn_of_tiny_forces(
+    name: str, solver: Solver | None, given: float | None, bearing: object, history: JointHistory
+) -> None:
+    """Warn where a run with Newton's method has left a share of the forces of the joint ``name``.
+
+    ``given``: the absolute tolerance that was asked for, where the solver has another one.
+    """
+    if not isinstance(solver, exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic):
+        return
+    reference_force = getattr(bearing, "reference_force", None)
+    if reference_force is None or history.time.size < 2:
+        return
+    newton = solver.newton
+    force = float(np.mean(np.linalg.norm(history.force, axis=1)))
+    left = (newton.absoluteTolerance if given is None else given) / solver.conv.errorCoordinateFactor
+    unit = reference_force(float(spins(bearing, history).max()))
+    if newton.residualMode == 0 and ROUNDING * unit < force < left / LOOSE:
+        warnings.warn(
+            f"LubricatedJoint '{name}': its film carries {force:.2g} N in the mean, of which Newton's absolute "
+            f"tolerance lets {left:.2g} N be anything: ConfigureSolver(simulationSettings, absoluteTolerance="
+            f"{CLOSE * force:.0e}).",
+            stacklevel=2,
+        )

@@ -17,7 +17,6 @@ Stored: TypeAlias = tuple[Solver | None, Solver | None]
 # Before the first run: not even no solver is the same object.
 NO_RUN: Stored = (cast(Solver, object()), cast(Solver, object()))
 Hook = TypeVar("Hook")
-_REJECTING = (exu.MainSolverImplicitSecondOrder, exu.MainSolverStatic)
 
 
 def stored_solvers(mbs: exu.MainSystem) -> Stored:
@@ -86,7 +85,7 @@ def can_reject_step(solver: Solver | None) -> bool:
     Implicit and static solvers can, down to their smallest step size. Explicit ones would accept the nan, and initial
     accelerations (step size zero) can't be repeated.
     """
-    if not isinstance(solver, _REJECTING) or is_finished(solver) or solver.timer.total >= 0.0:
+    if solver is None or is_explicit(solver) or is_finished(solver) or solver.timer.total >= 0.0:
         return False
     # iteration data, not the settings: the solver's own copy is what decides
     iteration = solver.it

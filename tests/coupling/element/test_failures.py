@@ -40,7 +40,7 @@ AREA = 2.0 * BEARING.journal_radius * BEARING.length
 def test_pressures_over_what_a_material_bears(peak, mean, share):
     row = make_row(0.5, np.zeros(10), (0.0, 0.0), np.zeros(6), {})
     row[PEAK_PRESSURE], row[FORCE] = peak, (0.6 * mean * AREA, 0.0, 0.8 * mean * AREA)
-    trial = Trial([], [], None, 0.0, None, np.zeros(10), np.zeros(10), None)
+    trial = Trial([], [], None, 0.0, None, np.zeros(10), np.zeros(10))
     failures = Failures("big end", BEARING)
     text = failures.overloaded(0.5, row, trial.motion)
     assert failures.overload(row) == pytest.approx(share)
@@ -65,7 +65,7 @@ def test_tilt_is_the_first_advice_where_the_journal_touches_by_it():
         )
         largest = max(np.hypot(*(motion[:2] + s * half * motion[2:4])) for s in (-1.0, 1.0)) / c
         tilts = largest > 2.0 * mid and largest > 0.8
-        trial = Trial([], [], None, 0.0, None, motion, motion, None)
+        trial = Trial([], [], None, 0.0, None, motion, motion)
         trial.status = ehd.Status.NO_FILM
         for text in (failures.overloaded(0.5, row, motion), str(failures.no_film(0.5, trial, explicit=False))):
             assert ("tilt=ehd.Held()" in text) == tilts
@@ -78,9 +78,8 @@ def test_tilt_is_the_first_advice_where_the_journal_touches_by_it():
 
 def test_films_that_oil_does_not_bear_are_told_once_and_end_the_run_where_there_is_no_oil():
     film = SimpleNamespace(grid=build_model(BEARING).grid)
-    trial = Trial(
-        [], [], None, 0.0, None, np.zeros(10), np.zeros(10), SimpleNamespace(status=ehd.Status.CONVERGED, film=film)
-    )
+    trial = Trial([], [], None, 0.0, None, np.zeros(10), np.zeros(10))
+    trial.take(SimpleNamespace(status=ehd.Status.CONVERGED, film=film))
     failures, field = Failures("big end", BEARING), np.full(film.grid.shape, 400.0)
     assert failures.check_heat(0.5, trial, None, HOT) == failures.check_heat(0.5, trial, History(None), HOT) == HOT
     assert failures.check_heat(0.5, trial, History(temperature=field), HOT) == HOT

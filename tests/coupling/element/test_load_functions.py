@@ -7,7 +7,7 @@ import pytest
 import scenes
 from exudyn.utilities import InertiaCylinder
 
-from exudyn_ehd.coupling.element.load_functions import BISECTIONS, SAMPLES, LoadFunctions
+from exudyn_ehd.coupling.element.outer_load import BISECTIONS, SAMPLES, LoadFunctions
 
 STEP = 1e-3
 

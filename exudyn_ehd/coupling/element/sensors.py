@@ -17,11 +17,12 @@ import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 
-from exudyn_ehd.coupling.contract import Element, Index
-from exudyn_ehd.coupling.record.history import COLUMNS, FORCE, Quantity
+from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.record.history import COLUMNS, FORCE, WIDTH, Quantity
 from exudyn_ehd.status import InputError
 
-_SIZE = {Quantity.MOTION: 10, Quantity.ECCENTRICITY: 2, Quantity.FORCE: 3, Quantity.MOMENT: 3}
+_NO_ROW = np.full(WIDTH, np.nan)
 
 
 class _State(NamedTuple):
@@ -66,7 +67,7 @@ OUTPUTS: dict[str, Callable[[_State], np.ndarray]] = {
 
 
 def reader(
-    element: Element, constraint: Index | None, quantity: Quantity | exu.OutputVariableType | str
+    element: FilmElement, constraint: Index | None, quantity: Quantity | exu.OutputVariableType | str
 ) -> tuple[str, Callable[[exu.MainSystem], np.ndarray]]:
     """Name of a quantity, and the function that reads it at a system's current state; nan without a film.
 
@@ -88,19 +89,20 @@ def reader(
             f"{quantity!r}."
         )
     asked = Quantity(quantity)
-    missing = np.full(_SIZE.get(asked, 1), np.nan)
 
     def read(mbs: exu.MainSystem) -> np.ndarray:
         row = element.current_row(mbs)
-        return missing if row is None else np.atleast_1d(row[COLUMNS[asked.value]])
+        return np.atleast_1d((_NO_ROW if row is None else row)[COLUMNS[asked.value]])
 
     return asked.value, read
 
 
-def _state(mbs: exu.MainSystem, element: Element, constraint: Index | None) -> _State:
+def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) -> _State:
     """State of the joint; its sides are there once the film was asked."""
     row = element.current_row(mbs)
-    load = np.full(6, np.nan) if row is None else -row[FORCE.start : FORCE.start + 6] - element.faces_wrench()
+    load = -(_NO_ROW if row is None else row)[FORCE.start : FORCE.start + 6]
+    if element.faces is not None:
+        load -= element.faces.wrench(element.sides)
     if constraint is not None:
         output = exu.OutputVariableType
         load[:3] += mbs.GetObjectOutput(constraint, output.ForceLocal)
@@ -112,7 +114,7 @@ def _state(mbs: exu.MainSystem, element: Element, constraint: Index | None) -> _
 
 def add_sensor(
     mbs: exu.MainSystem,
-    element: Element,
+    element: FilmElement,
     read: Callable[[exu.MainSystem], np.ndarray],
     name: str,
     file_name: str,

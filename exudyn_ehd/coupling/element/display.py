@@ -19,7 +19,8 @@ import exudyn.graphics
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Data, Element, Side, Trial
+from exudyn_ehd.coupling.contract import Data, Side, Trial
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.status import Status
@@ -36,7 +37,7 @@ class FilmDisplay:
 
     Parameters
     ----------
-    element : Element
+    element : FilmElement
 
     Attributes
     ----------
@@ -47,7 +48,7 @@ class FilmDisplay:
         0 draws the true size.
     """
 
-    def __init__(self, element: Element) -> None:
+    def __init__(self, element: FilmElement) -> None:
         self.element = element
         self.wanted = False
         self.clearance = CLEARANCE
@@ -90,7 +91,8 @@ class FilmDisplay:
                 self.take(trial)
         frame, scale = self._frame(mbs), self._scale(model.bearing)
         bore, z = self._bore(scale), model.grid.z * model.grid.reference_length
-        data = [self._line(_points(frame, model.grid.x, bore[:, [k]], z[[k]])[:, 0]) for k in (0, -1)]
+        rings = _points(frame, model.grid.x, bore[:, [0, -1]], z[[0, -1]])
+        data = [exudyn.graphics.Lines(np.vstack([rings[:, k], rings[:1, k]]), color=EDGE) for k in (0, 1)]
 
         def surface(radii: np.ndarray, places: np.ndarray, color: list[float] | np.ndarray) -> None:
             """Add the surface through rings of radii (n, k) at places (k,)."""
@@ -136,11 +138,6 @@ class FilmDisplay:
         q, q_t = read_state(mbs, [self._housing], _VISUALIZATION)
         self._housing.update(mbs, np.array(q), np.array(q_t), _VISUALIZATION)
         return self._housing.frame
-
-    @staticmethod
-    def _line(points: np.ndarray) -> Data:
-        """Closed line through points (n, 3)."""
-        return exudyn.graphics.Lines(np.vstack([points, points[:1]]), color=EDGE)
 
 
 def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.ndarray) -> np.ndarray:
