@@ -13,7 +13,7 @@ from functools import cached_property
 
 import exudyn as exu
 import numpy as np
-from scipy.sparse import bmat, csr_matrix, identity
+from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
@@ -102,7 +102,7 @@ class BushEquations:
     def jacobian(
         self, t: float, q: np.ndarray, q_t: np.ndarray, position_factor: float, velocity_factor: float
     ) -> csr_matrix:
-        """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t) on a fixed pattern.
+        """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t).
 
         Exact without carrier and without viscosity; mass-proportional damping is exact too. Left out: a viscosity's
         change with the strain rate (see `TotalLagrange.tangent`), and with a carrier the change of the slaved
@@ -110,23 +110,24 @@ class BushEquations:
         takes more iterations; its result is the same.
         """
         u, v = self.motion(q, q_t)
-        values = self.solid.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
-        self._add_follower_stiffness(values, t, u, position_factor)
-        K = self._moving_block.matrix(values)
+        whole = self.solid.tangent(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
+        for pressure, (rows, columns) in zip(self._followers, self._follower_places, strict=True):
+            block = position_factor * factor(pressure, t) * pressure.stiffness(self.solid.mesh.nodes + u)
+            whole = whole + csr_matrix((block.ravel(), (rows, columns)), shape=whole.shape)
+        moving = whole[self._moving_rows]
+        own = moving[:, self._moving_rows]
         if self.mass_rate:
-            K.data += velocity_factor * self.mass_rate * self._mass_values
-        K.data[self._cut] = 0.0
-        K.data[self._cut_diagonal] = position_factor * self._spring
+            own = own + velocity_factor * self.mass_rate * self._moving_mass
+        K = self._without_held(own, position_factor * self._spring)
         if self.carrier is None:
             return K
-        qc = q[self.count :]
+        qc, slaved = q[self.count :], whole[self._slaved_rows]
         B = self.carrier.jacobian()
-        coupling, transposed, slaved = (block.matrix(values) for block in self._carrier_blocks)
-        along, across = coupling @ B, (transposed.T @ B).T
+        along, across = moving[:, self._slaved_rows] @ B, (slaved[:, self._moving_rows].T @ B).T
         along[self._held] = across[:, self._held] = 0.0
         turn = self.carrier.force_derivative(qc, q_t[self.count :], self._nodal_forces(t, u, v)[self.slaved])
-        own = B.T @ (slaved @ B) - position_factor * turn
-        return bmat([[K, along], [across, own]], format="csr")
+        carried = B.T @ (slaved[:, self._slaved_rows] @ B) - position_factor * turn
+        return bmat([[K, along], [across, carried]], format="csr")
 
     def mass(self, q: np.ndarray | None) -> csr_matrix:
         """Return the mass matrix: constant without a carrier, else T^T M T at the carrier's coordinates."""
@@ -182,10 +183,14 @@ class BushEquations:
             total -= self.mass_rate * (self.solid.scalar_mass @ v)
         return total
 
-    def _add_follower_stiffness(self, values: np.ndarray, t: float, u: np.ndarray, scale: float) -> None:
-        for pressure, places in zip(self._followers, self._follower_places, strict=True):
-            block = pressure.stiffness(self.solid.mesh.nodes + u)
-            np.add.at(values, places, scale * factor(pressure, t) * block.ravel())
+    def _without_held(self, matrix: csr_matrix, value: float) -> csr_matrix:
+        """Return a matrix of the mesh's own coordinates with ``value`` alone in the rows and columns of held ones."""
+        if not len(self._held):
+            return matrix
+        held = np.zeros(self.count)
+        held[self._held] = 1.0
+        free = diags(1.0 - held)
+        return (free @ matrix @ free + value * diags(held)).tocsr()
 
     @cached_property
     def _moving(self) -> np.ndarray:
@@ -229,24 +234,14 @@ class BushEquations:
 
     @cached_property
     def _moving_mass(self) -> csr_matrix:
-        M = self.solid.mass[self._moving_rows][:, self._moving_rows].tocsr()
-        keep = np.ones(self.count)
-        keep[self._held] = 0.0
-        mask = csr_matrix((keep, (np.arange(self.count), np.arange(self.count))))
-        M = (mask @ M @ mask).tocsr()
+        M = self._without_held(self.solid.mass[self._moving_rows][:, self._moving_rows], self._held_inertia)
         M.eliminate_zeros()
-        return (M + self._held_inertia * (identity(self.count, format="csr") - mask)).tocsr()
+        return M
 
     @cached_property
     def _held_inertia(self) -> float:
         """Mass [kg] of a coordinate held by a spring, which then swings far above every frequency of the mesh."""
         return self._spring / (100.0 * self._highest_frequency_squared)
-
-    @cached_property
-    def _mass_values(self) -> np.ndarray:
-        """The mass on the pattern of the moving block."""
-        block = self._moving_block
-        return np.asarray(self._moving_mass[block.rows, block.indices]).ravel()
 
     @cached_property
     def _highest_frequency_squared(self) -> float:
@@ -263,70 +258,8 @@ class BushEquations:
         return [s for s in self.loads if isinstance(s, FollowerPressure)]
 
     @cached_property
-    def _follower_places(self) -> list[np.ndarray]:
-        return [self.solid.pattern.places(*pressure.places()) for pressure in self._followers]
-
-    @cached_property
-    def _moving_block(self) -> Block:
-        return Block.of(self.solid, self._moving_rows, self._moving_rows)
-
-    @cached_property
-    def _carrier_blocks(self) -> tuple[Block, ...]:
-        """Moving rows and slaved columns, slaved rows and moving columns, slaved rows and columns."""
-        moving, slaved = self._moving_rows, self._slaved_rows
-        return tuple(Block.of(self.solid, *places) for places in ((moving, slaved), (slaved, moving), (slaved, slaved)))
-
-    @cached_property
-    def _cut(self) -> np.ndarray:
-        """Entries of the moving block in a row or column of a held coordinate."""
-        held = np.zeros(self.count, dtype=bool)
-        held[self._held] = True
-        block = self._moving_block
-        return np.flatnonzero(held[block.rows] | held[block.indices])
-
-    @cached_property
-    def _cut_diagonal(self) -> np.ndarray:
-        block = self._moving_block
-        return self._cut[block.rows[self._cut] == block.indices[self._cut]]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Block:
-    """Rows and columns of the fixed tangent pattern as a matrix of its own.
-
-    Parameters
-    ----------
-    entries : ndarray of int
-        Positions among the values of the whole pattern.
-    indptr, indices : ndarray of int
-        CSR structure of the block.
-    columns : int
-        Number of columns.
-    """
-
-    entries: np.ndarray
-    indptr: np.ndarray
-    indices: np.ndarray
-    columns: int
-
-    @classmethod
-    def of(cls, solid: TotalLagrange, rows: np.ndarray, columns: np.ndarray) -> Block:
-        """Return the block of these rows and columns (ascending)."""
-        pattern = solid.pattern
-        numbered = pattern.matrix(np.arange(pattern.size, dtype=np.int64))
-        part = numbered[rows][:, columns].tocsr()
-        part.sort_indices()
-        return cls(entries=part.data, indptr=part.indptr, indices=part.indices, columns=len(columns))
-
-    @cached_property
-    def rows(self) -> np.ndarray:
-        """Row of every entry."""
-        return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
-
-    def matrix(self, values: np.ndarray) -> csr_matrix:
-        """Return the block with the given values of the whole pattern."""
-        shape = (len(self.indptr) - 1, self.columns)
-        return csr_matrix((values[self.entries], self.indices, self.indptr), shape=shape, copy=False)
+    def _follower_places(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        return [(rows.ravel(), columns.ravel()) for rows, columns in (s.places() for s in self._followers)]
 
 
 class BushFunctions:

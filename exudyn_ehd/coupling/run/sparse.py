@@ -16,11 +16,10 @@ over iterations and steps until convergence slows down (modified Newton).
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
 with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
 zero at the films' coordinates alone, solves ``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r; the bush
-deflects little under a film's short waves, so that some seven products do. What they tell of F preconditions the next
-iteration's (`exudyn_ehd.coupling.bush.linear`). Newton then takes the iterations it takes with a full Jacobian, and
-the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as a journal that turns, is
-small and has its factor anew in every iteration where only films join the two (`exudyn_ehd.coupling.bush.linear`). The
-matrix is put together in `system_matrix`.
+deflects little under a film's short waves, so that some seven products do. Newton then takes the iterations it takes
+with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as
+a journal that turns, is small and has its factor anew in every iteration where only films join the two
+(`exudyn_ehd.coupling.bush.linear`). The matrix is put together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
 Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend on coordinates.
@@ -30,13 +29,13 @@ from __future__ import annotations
 
 import time
 import weakref
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.bush.linear import RecycledSolver, SystemFactor
+from exudyn_ehd.coupling.bush.linear import SystemFactor
 from exudyn_ehd.coupling.bush.residual import BushResiduals, Solver
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
@@ -54,6 +53,7 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.solid.linear.solvers import solve_by_products
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
@@ -194,7 +194,7 @@ def SolveDynamicSparse(
         mbs.Assemble()
     run = SparseRun()
     before = user_function(mbs.GetPreNewtonResidualUserFunction())
-    matrix = SystemMatrix.of(mbs)
+    matrix = SystemMatrix(mbs)
     loop = _Newton(
         matrix=matrix,
         residual=BushResiduals(mbs, matrix.bushes),
@@ -246,7 +246,6 @@ class _Newton:
     reuse: FactorReuse
     run: SparseRun
     factor: SystemFactor | None = None
-    recycled: RecycledSolver = field(default_factory=RecycledSolver)
     step_size: float = 0.0
     baseline: int = 0
     excess: int = 0
@@ -311,7 +310,6 @@ class _Newton:
         """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
         start = time.perf_counter()
         self.factor = None
-        self.recycled.forget()
         index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
         system = self.matrix.assemble(mbs, solver, index2=index2)
         constraints = self.matrix.constraints
@@ -363,7 +361,7 @@ class _Newton:
             return z + forces(factor.solve(load))
 
         wanted = FILM_TOLERANCE * float(np.linalg.norm(residual))
-        load[touched] = self.recycled.solve(product, -forces(d), wanted, FILM_PRODUCTS)
+        load[touched] = solve_by_products(product, -forces(d), wanted, FILM_PRODUCTS)
         return d + factor.solve(load)
 
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
