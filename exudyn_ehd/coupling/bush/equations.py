@@ -73,14 +73,6 @@ class BushEquations:
         values[self._moving_rows] = q[: self.count]
         return values.reshape(-1, 3)
 
-    def inertia(self, q_tt: np.ndarray) -> np.ndarray:
-        """Return M q_tt of a bush without a carrier."""
-        acceleration = self._nodal(q_tt)
-        acceleration[self.held] = 0.0
-        result = self.solid.inertia(acceleration).ravel()[self._moving_rows]
-        result[self._held] = self._held_inertia * q_tt[self._held]
-        return result
-
     def force(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return the right-hand side of M q_tt = force, generalised forces [N], [Nm]."""
         u, v = self.motion(q, q_t)
@@ -155,7 +147,7 @@ class BushEquations:
         places = float(np.abs(self.carrier.positions()).max(initial=0.0))
         return math.hypot(self._rounding * size, self._carried_rounding * places)
 
-    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray | slice, time: float, name: str) -> None:
+    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
         start, data = START_OF_STEP, mbs.systemData
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
@@ -279,16 +271,11 @@ class BushFunctions:
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
         """Generalised force (n,), a list, which Exudyn reads fastest; raises if an element was inside out."""
-        self.watch(mbs, item)
-        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
-
-    def watch(self, mbs: exu.MainSystem, item: int, places: np.ndarray | slice | None = None) -> None:
-        """Raise if an element is inside out at the start of a step; ``places`` of the object's coordinates if known."""
         start = mbs.systemData.GetTime(START_OF_STEP)
         if start != self._watched:
             self._watched = start
-            known = np.array(mbs.systemData.GetObjectLTGODE2(item)) if places is None else places
-            self.equations.require_upright(mbs, known, start, self.name)
+            self.equations.require_upright(mbs, np.array(mbs.systemData.GetObjectLTGODE2(item)), start, self.name)
+        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
 
     def jacobian(
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float

@@ -9,9 +9,8 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
 
 with r = gamma / (beta h) in the rows of constraints that are solved for velocities and 1 in others, after which
 q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
-and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. Forces and
-inertia of bushes come to the residual beside Exudyn's sums (`exudyn_ehd.coupling.bush.residual`). The factor is kept
-over iterations and steps until convergence slows down (modified Newton).
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The factor
+is kept over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
 with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
@@ -30,13 +29,12 @@ from __future__ import annotations
 import time
 import weakref
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.bush.linear import SystemFactor
-from exudyn_ehd.coupling.bush.residual import BushResiduals, Solver
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
@@ -56,6 +54,8 @@ from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 from exudyn_ehd.status import InputError, require_integer, require_number
 
+# Exudyn's stubs lack the self of its solvers' methods.
+Solver: TypeAlias = Any
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
 # products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
@@ -197,7 +197,6 @@ def SolveDynamicSparse(
     matrix = SystemMatrix(mbs)
     loop = _Newton(
         matrix=matrix,
-        residual=BushResiduals(mbs, matrix.bushes),
         guess=start_guess(mbs, before or None),
         reuse=FactorReuse() if reuse is None else reuse,
         run=run,
@@ -241,7 +240,6 @@ class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
-    residual: BushResiduals
     guess: StartGuess
     reuse: FactorReuse
     run: SparseRun
@@ -251,16 +249,12 @@ class _Newton:
     excess: int = 0
 
     def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        with self.residual.without_masses(mbs, solver, settings):
-            return self._iterate(solver, mbs, settings)
-
-    def _iterate(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
         # Exudyn's Newton method forgets the multipliers of the step before, too
         data.SetAECoordinates([0.0] * self.matrix.constraints)
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
-        error = first = self.residual(solver, mbs, settings)
+        error = first = solver.ComputeNewtonResidual(mbs, settings)
         if turn > 0:
             # a contact has opened or closed
             self.factor = None
@@ -283,7 +277,7 @@ class _Newton:
             solver.it.newtonStepsCount += 1
             self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
-            previous, error = error, self.residual(solver, mbs, settings)
+            previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
             if error <= max(solver.newton.absoluteTolerance, solver.newton.relativeTolerance * first):
                 self.run.steps += 1
                 self.baseline = self.baseline or iteration
@@ -366,7 +360,7 @@ class _Newton:
 
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
-        d = self._solve(solver, mbs, self.residual.vector)
+        d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size

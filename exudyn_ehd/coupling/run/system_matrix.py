@@ -69,8 +69,6 @@ class SystemMatrix:
         One function (mbs, Factors) -> list of (rows, columns, values) per object.
     meshes : list
         The same of nodal bushes.
-    bushes : list
-        Their objects, the places of their coordinates, and their functions.
     mesh : (n,) array of bool
         Coordinates and equations that are those of bushes' nodes.
     films : list
@@ -87,7 +85,6 @@ class SystemMatrix:
         self.coordinates, self.constraints = len(data.GetODE2Coordinates()), len(data.GetAECoordinates())
         self.parts: list[Callable] = []
         self.meshes: list[Callable] = []
-        self.bushes: list[tuple[Index, np.ndarray, BushFunctions]] = []
         self.films: list[tuple[NodalFilmElement, np.ndarray]] = []
         self.mesh = np.zeros(self.coordinates + self.constraints, dtype=bool)
         for number in range(data.NumberOfNodes()):
@@ -118,7 +115,6 @@ class SystemMatrix:
             self.films.append((owner, places))
         elif isinstance(owner, BushFunctions):
             self.meshes.append(_generic(mbs, item, places))
-            self.bushes.append((item, places, owner))
             self.mesh[places[: owner.equations.count]] = True
         elif mbs.GetObject(item)["objectType"] == "GenericODE2":
             self.parts.append(_generic(mbs, item, places))
