@@ -58,7 +58,8 @@ class Carrier:
     def geometric(self, force: np.ndarray) -> np.ndarray:
         """d(Jp^T F + Jr^T M) / dx (n, n) at fixed loads in space: the force's arm turns."""
         change = np.zeros((self.places.size, self.places.size))
-        change[3:, 3:] = relative.skew(force) @ self._arm if change.size else 0.0
+        if self.node is not None:
+            change[3:, 3:] = relative.skew(force) @ self._arm
         return change
 
 
