@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from exudyn_ehd.coupling.bush.equations import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
-from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass
+from exudyn_ehd.coupling.items.object_mass import as_sparse, hidden_mass, is_hidden
 from exudyn_ehd.status import InputError
 
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
@@ -233,11 +233,8 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
         )
     # solved for velocities whatever the settings are
     by_rates = object_type == "JointRollingDisc" or bool(values.get("velocityLevel", False))
-    own_mass: Callable | None = None
-    if object_type.startswith("MassPoint") or object_type == "RigidBody2D":
-        # Exudyn keeps these mass matrices sparse and can't return them
+    if hidden := is_hidden(object_type):
         terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
-        own_mass = planar_mass(mbs, item) if object_type == "RigidBody2D" else point_mass(mbs, item, len(places))
     for what, _ in terms:
         try:
             mbs.ComputeItem(item, what)
@@ -252,7 +249,9 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
     rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
 
     def part(mbs, factors: Factors):
-        values = np.zeros((len(places), len(places))) if own_mass is None else factors.mass * own_mass(mbs)
+        values = np.zeros((len(places), len(places)))
+        if hidden:
+            values += factors.mass * hidden_mass(mbs, item, len(places))
         for what, i in terms:
             matrix = np.asarray(mbs.ComputeItem(item, what))
             if matrix.size:
