@@ -8,11 +8,16 @@ normalised, b = t x d. The cable's frame is [t, d, b]: t is what the cable knows
 stays as close to d0 as t allows. rho joint point in this frame relative to the centreline [m]; w = A rho its lever arm;
 a_loc joint frame to cable frame.
 
-With tau = t d0 and c = t x d0, the frame turns with omega = G ds/dt, G = U P, U = skew(t) - tau / (1 - tau^2) t c^T,
-P = (I - t t^T) / |s|. A change ds of the slope, dt = P ds, changes G v by (M P + U N) ds with x = P v, r = 1 - tau^2 and
+With tau = t d0, r = 1 - tau^2 and c = t x d0, the frame turns with omega = G ds/dt, where G = U P, U = skew(t) -
+tau / r t c^T and P = (I - t t^T) / |s|. A change ds of the slope changes G v by (M P + U N) ds, with x = P v,
 
     M = -skew(x) - (1 + tau^2) / r^2 (c x) t d0^T - tau / r ((c x) I + t (d0 x x)^T),
-    N = -(((t v) I + t v^T) P + x t^T) / |s|.
+    N = -(((t v) I + t v^T) P + x t^T) / |s|,
+
+and the product a G v of a fixed vector a by ds H v, with b = U^T a,
+
+    H = P (-skew(a) - (a t) (1 + tau^2) / r^2 d0 c^T - tau / r (a c^T + (a t) skew(d0))) P
+        - (P b t^T + (b t) P + t (P b)^T) / |s|.
 """
 
 from __future__ import annotations
@@ -25,6 +30,7 @@ from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
+_UNIT = np.eye(3)
 LARGEST_TURN = 0.9
 """|tau| from which the roll is undefined: the cable has turned by some 64 degrees towards its director."""
 
@@ -161,6 +167,7 @@ class SlopeSide:
         self.reference = reference
         self.size = reference.size
         self.place, self.slope, self.director = place, slope, director
+        self.across = skew(director)
         own = slope_rotation(self.slope @ reference, self.director)
         self.rho = own.T @ (point - self.place @ reference)
         self.rotation = own.T @ rotation
@@ -178,35 +185,39 @@ class SlopeSide:
             self.frame[:] = np.nan
             return
         self.length, self.tangent = length, s / length
-        t, tau = self.tangent, float(s @ self.director) / length
-        self.tau, self.normal = tau, skew(t) @ self.director
-        self.by_tangent = skew(t) - tau / (1.0 - tau**2) * np.outer(t, self.normal)
-        self.by_slope = (np.eye(3) - np.outer(t, t)) / length
-        axes = slope_rotation(s, self.director)
-        self.arm = skew(axes @ self.rho)
+        t, cross, tau = self.tangent, skew(self.tangent), float(s @ self.director) / length
+        self.tau, self.normal = tau, cross @ self.director
+        self.by_tangent = cross - tau / (1.0 - tau**2) * t[:, None] * self.normal
+        self.by_slope = (_UNIT - t[:, None] * t) / length
+        root = np.sqrt(1.0 - tau**2)
+        axes = np.array((t, (self.director - tau * t) / root, self.normal / root)).T
+        lever = axes @ self.rho
+        self.arm = skew(lever)
         self.jac[1] = self.by_tangent @ self.by_slope @ self.slope
         self.jac[0] = self.place - self.arm @ self.jac[1]
-        self.frame[:, :3], self.frame[:, 3] = axes @ self.rotation, self.place @ total + axes @ self.rho
+        self.frame[:, :3], self.frame[:, 3] = axes @ self.rotation, self.place @ total + lever
         self.frame[:, 4:] = (self.jac[:2] @ q_t).T
-
-    def _turn_change(self, v: np.ndarray) -> np.ndarray:
-        """Changes (3, n) of G v with the coordinates, for v (3,)."""
-        t, tau, x = self.tangent, self.tau, self.by_slope @ v
-        r, along = 1.0 - tau**2, float(self.normal @ x)
-        M = -skew(x) - (1.0 + tau**2) / r**2 * along * np.outer(t, self.director)
-        M -= tau / r * (along * np.eye(3) + np.outer(t, skew(self.director) @ x))
-        N = -(((t @ v) * np.eye(3) + np.outer(t, v)) @ self.by_slope + np.outer(x, t)) / self.length
-        return (M @ self.by_slope + self.by_tangent @ N) @ self.slope
 
     def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
-        self.jac[3] = self._turn_change(self.slope @ q_t)
+        t, tau, v = self.tangent, self.tau, self.slope @ q_t
+        x, r = self.by_slope @ v, 1.0 - tau**2
+        along = float(self.normal @ x)
+        M = -skew(x) - (1.0 + tau**2) / r**2 * along * t[:, None] * self.director
+        M -= tau / r * (along * _UNIT + t[:, None] * (self.across @ x))
+        N = ((t @ v) * _UNIT + t[:, None] * v) @ self.by_slope + x[:, None] * t
+        self.jac[3] = (M @ self.by_slope - self.by_tangent @ N / self.length) @ self.slope
         self.jac[2] = -self.arm @ self.jac[3] - skew(self.frame[:, 5]) @ self.arm @ self.jac[1]
 
     def geometric(
         self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
     ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        total = moment + self.arm @ force
-        out[:] = self.slope.T @ [total @ self._turn_change(unit) for unit in np.eye(3)]
-        out += self.jac[1].T @ skew(force) @ self.arm @ self.jac[1]
+        t, tau, total = self.tangent, self.tau, moment + self.arm @ force
+        r, along, pulled = 1.0 - tau**2, float(total @ t), total @ self.by_tangent
+        K = -skew(total) - along * (1.0 + tau**2) / r**2 * self.director[:, None] * self.normal
+        K -= tau / r * (total[:, None] * self.normal + along * self.across)
+        turned = self.by_slope @ pulled
+        H = turned[:, None] * t + (pulled @ t) * self.by_slope + t[:, None] * turned
+        H = self.by_slope @ K @ self.by_slope - H / self.length
+        out[:] = self.slope.T @ H.T @ self.slope + self.jac[1].T @ skew(force) @ self.arm @ self.jac[1]
