@@ -8,7 +8,7 @@ A bush that the carrier's own mass contains is taken off it again as a rigid bod
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import cached_property
 
 import exudyn as exu
@@ -28,7 +28,6 @@ HOLD = 1e9
 """Spring of a single supported direction over the stiffest entry of the mesh."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class BushEquations:
     """Force, Jacobian and mass of a bush object.
 
@@ -46,15 +45,35 @@ class BushEquations:
         Mass-proportional damping [1/s].
     contained : RigidPart or None
         The bush in the carrier's frame, if the carrier's mass contains it.
+
+    Attributes
+    ----------
+    count : int
+        Coordinates of the mesh's own nodes, which come first.
     """
 
-    solid: TotalLagrange
-    held: np.ndarray
-    slaved: np.ndarray
-    carrier: Carrier | None
-    loads: tuple[Load, ...]
-    mass_rate: float
-    contained: RigidPart | None = None
+    def __init__(
+        self,
+        *,
+        solid: TotalLagrange,
+        held: np.ndarray,
+        slaved: np.ndarray,
+        carrier: Carrier | None,
+        loads: Sequence[Load],
+        mass_rate: float,
+        contained: RigidPart | None,
+    ) -> None:
+        self.solid, self.held, self.slaved, self.carrier = solid, held, slaved, carrier
+        self.loads, self.mass_rate, self.contained = loads, mass_rate, contained
+        moving = ~slaved & ~held.all(axis=1)
+        self._moving_rows, self._slaved_rows = (np.flatnonzero(np.repeat(nodes, 3)) for nodes in (moving, slaved))
+        self.count = self._moving_rows.size
+        # coordinates held by a spring
+        self._held = np.flatnonzero(held[moving].ravel())
+        self._followers = [load for load in loads if isinstance(load, FollowerPressure)]
+        self._follower_places = [[x.ravel() for x in load.places()] for load in self._followers]
+        dead = [load for load in loads if not isinstance(load, FollowerPressure)]
+        self._dead_vectors = [(load, dead_forces(load, solid)) for load in dead]
 
     def motion(
         self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = CURRENT
@@ -142,10 +161,10 @@ class BushEquations:
         Nodes on a carrier have the round-off of their positions in the model at the last evaluation.
         """
         size = float(reach[: self.count].max(initial=0.0))
+        whole, carried = self._rounding
         if self.carrier is None:
-            return self._rounding * size
-        places = float(np.abs(self.carrier.positions()).max(initial=0.0))
-        return math.hypot(self._rounding * size, self._carried_rounding * places)
+            return whole * size
+        return math.hypot(whole * size, carried * float(np.abs(self.carrier.positions()).max(initial=0.0)))
 
     def require_upright(self, mbs: exu.MainSystem, places: np.ndarray, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
@@ -185,44 +204,19 @@ class BushEquations:
         return (free @ matrix @ free + value * diags(held)).tocsr()
 
     @cached_property
-    def _moving(self) -> np.ndarray:
-        return ~self.slaved & ~self.held.all(axis=1)
-
-    @cached_property
-    def count(self) -> int:
-        """Coordinates of the mesh's own nodes, which come first."""
-        return 3 * int(self._moving.sum())
-
-    @cached_property
-    def _moving_rows(self) -> np.ndarray:
-        return np.flatnonzero(np.repeat(self._moving, 3))
-
-    @cached_property
-    def _slaved_rows(self) -> np.ndarray:
-        return np.flatnonzero(np.repeat(self.slaved, 3))
-
-    @cached_property
-    def _held(self) -> np.ndarray:
-        """Coordinates held by a spring."""
-        return np.flatnonzero(self.held[self._moving].ravel())
-
-    @cached_property
     def _spring(self) -> float:
         return HOLD * float(self.solid.tangent(np.zeros(self.held.shape)).diagonal().max())
 
     @cached_property
-    def _rounding(self) -> float:
-        """Norm of the forces' round-off [N] per size of coordinates [m], if all nodes have the worst signs."""
-        return self._rounding_of(np.arange(self.held.size))
+    def _rounding(self) -> tuple[float, float]:
+        """Norms of the forces' round-off [N] per size of coordinates [m], if all nodes have the worst signs.
 
-    @cached_property
-    def _carried_rounding(self) -> float:
-        """Norm of the forces' round-off [N] per size of coordinates [m], of the carried nodes alone."""
-        return self._rounding_of(self._slaved_rows)
-
-    def _rounding_of(self, columns: np.ndarray) -> float:
-        rows = abs(self.solid.tangent(np.zeros(self.held.shape)))[:, columns].sum(axis=1)
-        return float(np.finfo(float).eps * np.linalg.norm(rows))
+        Of all nodes, and of the carried ones alone.
+        """
+        K = abs(self.solid.tangent(np.zeros(self.held.shape)))
+        norms = (np.linalg.norm(part.sum(axis=1)) for part in (K, K[:, self._slaved_rows]))
+        whole, carried = (float(np.finfo(float).eps * norm) for norm in norms)
+        return whole, carried
 
     @cached_property
     def _moving_mass(self) -> csr_matrix:
@@ -232,26 +226,13 @@ class BushEquations:
 
     @cached_property
     def _held_inertia(self) -> float:
-        """Mass [kg] of a coordinate held by a spring, which then swings far above every frequency of the mesh."""
-        return self._spring / (100.0 * self._highest_frequency_squared)
+        """Mass [kg] of a coordinate held by a spring, which then swings far above every frequency of the mesh.
 
-    @cached_property
-    def _highest_frequency_squared(self) -> float:
-        """An upper estimate [1/s^2]: largest row sum of K over a hundredth of the smallest diagonal of M."""
+        Upper estimate of the frequencies' squares: largest row sum of K over a hundredth of the smallest diagonal of M.
+        """
         K = self.solid.tangent(np.zeros(self.held.shape))
-        return 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
-
-    @cached_property
-    def _dead_vectors(self) -> list[tuple[Load, np.ndarray]]:
-        return [(s, dead_forces(s, self.solid)) for s in self.loads if not isinstance(s, FollowerPressure)]
-
-    @cached_property
-    def _followers(self) -> list[FollowerPressure]:
-        return [s for s in self.loads if isinstance(s, FollowerPressure)]
-
-    @cached_property
-    def _follower_places(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        return [(rows.ravel(), columns.ravel()) for rows, columns in (s.places() for s in self._followers)]
+        highest = 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
+        return self._spring / (100.0 * highest)
 
 
 class BushFunctions:

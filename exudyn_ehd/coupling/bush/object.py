@@ -364,7 +364,7 @@ def add_bush(
         held=held,
         slaved=slaved,
         carrier=carrier,
-        loads=tuple(loads),
+        loads=loads,
         mass_rate=mass_rate,
         contained=RigidPart(local, solid.scalar_mass) if mount is not None and mount.contains else None,
     )
