@@ -12,6 +12,7 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from exudyn_ehd.coupling.bush.equations import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.items.object_mass import as_sparse, hidden_mass, is_hidden
 from exudyn_ehd.status import InputError
 
@@ -110,7 +111,7 @@ class SystemMatrix:
 
     def _add(self, mbs: exu.MainSystem, item: Index, places: np.ndarray) -> None:
         """Look up an object with coordinates at ``places`` of the system's."""
-        owner = _owner(mbs, item)
+        owner = force_owner(mbs, int(item))
         if isinstance(owner, NodalFilmElement):
             self.films.append((owner, places))
         elif isinstance(owner, BushFunctions):
@@ -167,14 +168,6 @@ class SystemMatrix:
             idle = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
             system = (system + coo_matrix((np.full(len(idle), 1 / square), (idle, idle)), shape=(size, size))).tocsc()
         return system
-
-
-def _owner(mbs: exu.MainSystem, item: Index) -> object:
-    """Return the owner of an object's Jacobian function: a film's element, a bush's functions, or None."""
-    if mbs.GetObject(item)["objectType"] != "GenericODE2":
-        return None
-    jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")
-    return getattr(jacobian["function"], "__self__", None) if isinstance(jacobian, dict) else None
 
 
 def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
