@@ -119,6 +119,8 @@ class SpinningSystem:
         Coordinates of the state.
     spins : (r,) array
         Speeds of the rotors, rad/s.
+    spinning : list
+        Number of the rotor, node and its axis in its own frame, of all nodes that turn.
     ratios : dict
         Speed of a rotor's node over that of the first rotor, by its number.
     size : int
@@ -149,6 +151,8 @@ class SpinningSystem:
                 self.nodes[number] = TurningNode(TURNING[known["nodeType"]], places, reference, self.size)
                 plain[places] = False
                 self.size += 6
+        turning = [(k, *pair) for k, rotor in enumerate(rotors) for pair in zip(rotor.nodes, rotor.axes, strict=True)]
+        self.spinning = [(k, self.nodes[number], axis) for k, number, axis in turning]
         self.places = np.flatnonzero(plain)
         self.own = self.size + np.arange(self.places.size)
         self.size += self.places.size
@@ -159,26 +163,24 @@ class SpinningSystem:
         self._solver.InitializeSolver(mbs, settings)
         self.multipliers = np.zeros(self._solver.GetAEsize())
 
-    def axis(self, rotor: int, node: int) -> np.ndarray:
-        """Axis (3,) in space of a node of a rotor, counted within it."""
-        parts = self.rotors[rotor]
-        return self.nodes[parts.nodes[node]].turn(self.q) @ parts.axes[node]
+    def axis(self, rotor: int) -> np.ndarray:
+        """Axis (3,) in space of the driven node of a rotor."""
+        driven = self.rotors[rotor]
+        return self.nodes[driven.nodes[0]].turn(self.q) @ driven.axes[0]
 
     def spin(self) -> np.ndarray:
         """u (size,) of the state: the spins of the rotors."""
         u = np.zeros(self.size)
-        for k, rotor in enumerate(self.rotors):
-            for i, node in enumerate(rotor.nodes):
-                u[self.nodes[node].own][3:] = self.spins[k] * self.axis(k, i)
+        for rotor, node, axis in self.spinning:
+            u[node.own][3:] = self.spins[rotor] * (node.turn(self.q) @ axis)
         return u
 
     def turning(self) -> np.ndarray:
         """S (size, size) of the module's text at the state."""
         S, u = np.zeros((self.size, self.size)), self.spin()
-        for rotor in self.rotors:
-            for node in rotor.nodes:
-                own = slice(self.nodes[node].own.start + 3, self.nodes[node].own.stop)
-                S[own, own] = -skew(u[own])
+        for _, node, _ in self.spinning:
+            own = slice(node.own.start + 3, node.own.stop)
+            S[own, own] = -skew(u[own])
         return S
 
     def moved(self, x: np.ndarray, alone: int | None = None) -> np.ndarray:
@@ -264,16 +266,14 @@ class SpinningSystem:
         """Rows (r, size) of the angles that drives hold: those of the first nodes about their axes."""
         rows = np.zeros((len(self.rotors), self.size))
         for k, rotor in enumerate(self.rotors):
-            rows[k, self.nodes[rotor.nodes[0]].own][3:] = self.axis(k, 0)
+            rows[k, self.nodes[rotor.nodes[0]].own][3:] = self.axis(k)
         return rows
 
     def turned(self, angle: float) -> np.ndarray:
         """Coordinates (n,) of the state after all rotors have turned by an angle, rad."""
         q = self.q.copy()
-        for k, rotor in enumerate(self.rotors):
-            for i, number in enumerate(rotor.nodes):
-                axis = self.axis(k, i)
-                self.nodes[number].move(q, np.concatenate((np.zeros(3), angle * axis)))
+        for _, node, axis in self.spinning:
+            node.move(q, np.concatenate((np.zeros(3), angle * (node.turn(self.q) @ axis))))
         return q
 
     def _enter(self, q: np.ndarray, rates: np.ndarray) -> None:

@@ -120,7 +120,7 @@ class SystemMatrix:
         elif mbs.GetObject(item)["objectType"] == "GenericODE2":
             self.parts.append(_generic(mbs, item, places))
         else:
-            equations = self.coordinates + np.array(mbs.systemData.GetObjectLTGAE(item), dtype=np.int32)
+            equations = self.coordinates + np.array(mbs.systemData.GetObjectLTGAE(int(item)), dtype=np.int32)
             self.parts.append(_standard(mbs, item, places, equations))
 
     def film_operators(
