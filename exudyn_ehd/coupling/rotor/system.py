@@ -30,7 +30,6 @@ from typing import Any, TypeAlias, cast
 
 import exudyn as exu
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
 from exudyn_ehd.coupling.kinematics import rigid_nodes
@@ -91,16 +90,14 @@ class TurningNode:
         return B, rates[3:], -inverse @ (self._jac[3, :, 3:] @ rates[3:])
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
-        """Change the coordinates of the system by a displacement and a rotation vector in space (6,)."""
-        turn = Rotation.from_rotvec(x[3:]) * Rotation.from_matrix(self.turn(q))
-        if self.kind == rigid_nodes.TAIT_BRYAN:
-            theta = turn.as_euler("XYZ")
-        elif self.kind == rigid_nodes.ROTATION_VECTOR:
-            theta = turn.as_rotvec()
-        else:
-            theta = np.roll(turn.as_quat(), 1)
-            # of the two that are one rotation that next to the known one
-            theta = theta * np.copysign(1.0, theta @ (self.reference[3:] + q[self.places[3:]]))
+        """Change the coordinates of the system by a displacement and a rotation (6,), exact to the second order."""
+        theta = self.reference[3:] + q[self.places[3:]]
+        change = self.rates(q, x[3:])[1]
+        if self.kind == rigid_nodes.ROTATION_VECTOR:
+            change = _rotation_vector_rates(theta, change)
+        theta = theta + change
+        if self.kind == rigid_nodes.EULER_PARAMETERS:
+            theta /= np.linalg.norm(theta)
         q[self.places[:3]] += x[:3]
         q[self.places[3:]] = theta - self.reference[3:]
 
@@ -273,7 +270,15 @@ class SpinningSystem:
         """Coordinates (n,) of the state after all rotors have turned by an angle, rad."""
         q = self.q.copy()
         for _, node, axis in self.spinning:
-            node.move(q, np.concatenate((np.zeros(3), angle * (node.turn(self.q) @ axis))))
+            start = node.turn(self.q)
+            a = skew(start @ axis)
+            goal = (np.eye(3) + np.sin(angle) * a + (1.0 - np.cos(angle)) * a @ a) @ start
+            for _ in range(50):
+                rest = goal @ node.turn(q).T
+                x = 0.5 * np.array([0, 0, 0, rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]])
+                node.move(q, x)
+                if np.abs(x).max() < 1e-14:
+                    break
         return q
 
     def _enter(self, q: np.ndarray, rates: np.ndarray) -> None:
@@ -287,3 +292,13 @@ class SpinningSystem:
         self._solver.ComputeMassMatrix(self.mbs)
         n = self.q.size
         return np.array(self._solver.GetSystemMassMatrix())[:n, :n]
+
+
+def _rotation_vector_rates(theta: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Rates (3,) of a rotation vector theta (3,) for an angular velocity in the turned frame.
+
+    Inverse of ``omega = (I - (1 - cos t) / t^2 [theta] + (t - sin t) / t^3 [theta]^2) theta_t`` with t = |theta|.
+    """
+    t, a = float(np.linalg.norm(theta)), skew(theta)
+    factor = 1.0 / 12.0 if t < 1e-3 else (1.0 - 0.5 * t / np.tan(0.5 * t)) / t**2
+    return omega + 0.5 * a @ omega + factor * a @ a @ omega
