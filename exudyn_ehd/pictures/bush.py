@@ -17,6 +17,12 @@ from exudyn_ehd.solid.elements.faces import Face, face_of
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError
 
+# Coordinates along the picture's first, second and vertical axis: y is upright.
+ORDER = [2, 0, 1]
+# Camera angles, degrees.
+ELEVATION, AZIMUTH = 18.0, 25.0
+# Flat quadrilaterals along each side of an element's face.
+FACETS = 3
 # Type of a figure of several panels, pt.
 TYPE_SIZE = 10.0
 
@@ -39,30 +45,7 @@ class Frame:
     values: np.ndarray
 
 
-@dataclass(frozen=True, kw_only=True)
-class View:
-    """View of a bush in its pictures.
-
-    Parameters
-    ----------
-    axes : three ints
-        Coordinates along the picture's first, second and vertical axis; the default puts y upright.
-    elevation, azimuth : float
-        Camera angles [deg].
-    magnification : float
-        Factor on the displacements.
-    facets : int
-        Each element face is drawn as facets x facets flat quadrilaterals.
-    """
-
-    axes: tuple[int, int, int] = (2, 0, 1)
-    elevation: float = 18.0
-    azimuth: float = 25.0
-    magnification: float = 1.0
-    facets: int = 3
-
-
-def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view: View | None = None) -> Figure:
+def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Figure:
     """Return a figure of deformed shapes side by side with one colour scale.
 
     Parameters
@@ -71,25 +54,23 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view:
     frames : sequence of Frame
     label : str
         Label of the colour bar, with unit.
-    view : View, optional
     """
     if len(frames) == 0:
         raise InputError("contour_figure frames must hold at least one Frame, got none; pass what is to be drawn.")
-    view = View() if view is None else view
     columns = min(3, int(np.ceil(np.sqrt(len(frames)))))
     rows = -(-len(frames) // columns)
     low = min(float(np.min(frame.values)) for frame in frames)
     high = max(float(np.max(frame.values)) for frame in frames)
     norm = Normalize(low, high if high > low else low + 1.0)
     colours = matplotlib.colormaps["viridis"]
-    box = _box(mesh, frames, view)
+    box = _box(mesh, frames)
     plots = []
     with styled(TYPE_SIZE):
         figure = new_figure((3.4 * columns + 1.0, 3.3 * rows))
         for i, frame in enumerate(frames):
             axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
-            _draw(axes, mesh, frame, view, norm, colours)
-            look_at(axes, box, (view.elevation, view.azimuth), zoom=1.1)
+            _draw(axes, mesh, frame, norm, colours)
+            look_at(axes, box, (ELEVATION, AZIMUTH), zoom=1.1)
             axes.set_title(frame.title, y=1.0)
             plots.append(axes)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
@@ -97,25 +78,22 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view:
     return figure
 
 
-def _box(mesh: BushMesh, frames: Sequence[Frame], view: View) -> np.ndarray:
-    shapes = [mesh.nodes] + [mesh.nodes + view.magnification * frame.displacements for frame in frames]
-    points = np.concatenate(shapes)[:, list(view.axes)]
+def _box(mesh: BushMesh, frames: Sequence[Frame]) -> np.ndarray:
+    points = np.concatenate([mesh.nodes] + [mesh.nodes + frame.displacements for frame in frames])[:, ORDER]
     return np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
 
 
-def _draw(axes, mesh: BushMesh, frame: Frame, view: View, norm: Normalize, colours) -> None:
-    order = list(view.axes)
-    positions = (mesh.nodes + view.magnification * frame.displacements)[:, order]
+def _draw(axes, mesh: BushMesh, frame: Frame, norm: Normalize, colours) -> None:
+    positions = (mesh.nodes + frame.displacements)[:, ORDER]
     kind, faces = face_of(mesh.boundary), positions[mesh.boundary]
-    polygons, values = _facets(kind, faces, frame.values[mesh.boundary], view.facets)
+    polygons, values = _facets(kind, faces, frame.values[mesh.boundary])
     # closed polylines through the corners and mid-edge nodes
     outlines = faces[:, kind.outline]
-    elevation, azimuth = np.radians([view.elevation, view.azimuth])
+    elevation, azimuth = np.radians([ELEVATION, AZIMUTH])
     camera = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
-    sign = np.linalg.det(np.eye(3)[order])
     normals = _normals(polygons)
     # facets seen edge-on stay in: without them slits open along curved edges
-    toward = sign * normals @ camera > -0.1 * np.linalg.norm(normals, axis=1)
+    toward = normals @ camera > -0.1 * np.linalg.norm(normals, axis=1)
     polygons, values = polygons[toward], values[toward]
     # painter's order: far facets first
     nearness = np.argsort(polygons.mean(axis=1) @ camera)
@@ -124,18 +102,18 @@ def _draw(axes, mesh: BushMesh, frame: Frame, view: View, norm: Normalize, colou
         Poly3DCollection(polygons[nearness], facecolors=face_colours, edgecolors=face_colours, linewidths=0.3, zorder=1)
     )
     corners = faces[:, : kind.corners]
-    visible = (sign * _normals(corners) @ camera > 0) & _unhidden(corners, camera)
+    visible = (_normals(corners) @ camera > 0) & _unhidden(corners, camera)
     axes.add_collection3d(Line3DCollection(outlines[visible], colors="k", linewidths=0.25, zorder=2))
 
 
-def _facets(kind: Face, corners: np.ndarray, nodal: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _facets(kind: Face, corners: np.ndarray, nodal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Flat quadrilaterals (m, 4, 3) and their mean values (m,) of faces (f, a, 3)."""
-    ticks = np.linspace(-1, 1, count + 1)
+    ticks = np.linspace(-1, 1, FACETS + 1)
     r, s = np.meshgrid(ticks, ticks, indexing="ij")
     shapes, _ = kind.shapes(kind.from_square(np.stack([r.ravel(), s.ravel()], axis=1)))
     points = np.einsum("pa,fai->fpi", shapes, corners)
     fields = np.einsum("pa,fa->fp", shapes, nodal)
-    grids = (-1, count + 1, count + 1)
+    grids = (-1, FACETS + 1, FACETS + 1)
     return quads_of(points.reshape(*grids, 3)), quads_of(fields.reshape(*grids, 1)).mean(axis=1).ravel()
 
 

@@ -7,8 +7,9 @@ nothing about a mesh are passed over; those that would change it and are not rea
 from __future__ import annotations
 
 import pathlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -22,6 +23,7 @@ from exudyn_ehd.status import InputError, require_number
 _UNREAD = ("INCLUDE", "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY")
 _TYPES = {name: element for element in ELEMENTS for name in element.abaqus}
 _WHERE = "mesh_from_file"
+T = TypeVar("T")
 # First letters of the names of solid elements in meshio.
 _SOLIDS = ("tetra", "hexahedron", "wedge", "pyramid", "VTK_LAGRANGE")
 
@@ -96,10 +98,10 @@ def read_abaqus(where: str, path: pathlib.Path, instance: str | None = None) -> 
         raise InputError(f"{where}: a data line of {path.name} can't be read: {error}.") from None
     solid = {name: body for name, body in bodies.items() if body.elements}
     if instance is not None:
-        solid = {name: body for name, body in bodies.items() if name.lower() == instance.lower()}
-        if not solid:
+        if (named := _by_name(bodies, instance)) is None:
             known = sorted(name for name in bodies if name)
             raise InputError(f"{where}.instance: {path.name} has no {instance!r}, it has {known or 'none'}.")
+        solid = {instance: named}
     if len(solid) > 1:
         raise InputError(
             f"{where}: {path.name} has {len(solid)} bodies with solid elements, {sorted(solid)}; name the bush, e.g. "
@@ -168,14 +170,12 @@ class _Reader:
         return {**found, "": self.root} if self.root.elements or not found else found
 
     def _instance(self, options: dict[str, str], rows: list[list[str]]) -> _Body:
-        parts = {name.lower(): part for name, part in self.parts.items()}
-        name = options.get("PART", "").lower()
-        if name not in parts:
+        part, numbers = _by_name(self.parts, options.get("PART", "")), [[_number(x) for x in row] for row in rows]
+        if part is None:
             raise InputError(
                 f"{self.where}: the instance {options.get('NAME', '')!r} of {self.path.name} must have a PART of this "
                 f"file, got {options.get('PART')!r}; the parts are {sorted(self.parts) or 'none'}."
             )
-        part, numbers = parts[name], [[_number(x) for x in row] for row in rows]
         if [len(row) for row in numbers] not in ([], [3], [3, 7]):
             raise InputError(
                 f"{self.where}: the instance {options.get('NAME', '')!r} of {self.path.name} must have a line of three "
@@ -234,18 +234,23 @@ class _Reader:
         if member.lstrip("+-").isdigit():
             return [int(member)]
         for sets in places:
-            for name, nodes in sets.items():
-                if name.lower() == member.lower():
-                    return nodes
+            if (nodes := _by_name(sets, member)) is not None:
+                return nodes
         raise InputError(
             f"{self.where}: a node set of {self.path.name} names {member!r}, which is not defined before it."
         )
 
     def _named(self, instance: str) -> _Body:
-        for name, body in self.instances.items():
-            if name.lower() == instance.lower():
-                return body
-        raise InputError(f"{self.where}: {self.path.name} has a node set of {instance!r}, which is no instance of it.")
+        if (body := _by_name(self.instances, instance)) is None:
+            raise InputError(
+                f"{self.where}: {self.path.name} has a node set of {instance!r}, which is no instance of it."
+            )
+        return body
+
+
+def _by_name(known: Mapping[str, T], name: str) -> T | None:
+    """Return what has a name, or None: Abaqus does not tell upper from lower case."""
+    return {key.lower(): value for key, value in known.items()}.get(name.lower())
 
 
 def _number(text: str) -> float:
@@ -335,16 +340,14 @@ def mesh_from_file(
     else:
         mesh = _read_with_meshio(path)
     if isinstance(held, str):
-        # Abaqus does not tell upper from lower case
-        known = {name.lower(): nodes for name, nodes in mesh.sets.items()}
-        if held.lower() not in known:
+        if (nodes := _by_name(mesh.sets, held)) is None:
             raise InputError(
                 f"{_WHERE}.held: {path.name} has no node set {held!r}, it has {sorted(mesh.sets) or 'none'}; name one "
                 "of these, or give nodes, OnCylinder(...), OnPlane(...) or a function of the positions."
             )
-        held = known[held.lower()]
-    nodes = scale * mesh.nodes
-    return bush_mesh(nodes, mesh.elements, mesh.numbers, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
+        held = nodes
+    places = scale * mesh.nodes
+    return bush_mesh(places, mesh.elements, mesh.numbers, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
 
 
 def _read_with_meshio(path: pathlib.Path) -> FileMesh:

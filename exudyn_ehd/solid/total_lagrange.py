@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csr_matrix, triu
+from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.elements import blocks, kernels
 from exudyn_ehd.solid.elements.element import Element, Quadrature
@@ -242,18 +242,6 @@ class TotalLagrange:
         n = len(self.mesh.nodes)
         return csr_matrix((blocks.ravel(), (rows, columns)), shape=(n, n))
 
-    def inertia(self, a: np.ndarray) -> np.ndarray:
-        """Return the consistent mass times accelerations (n, 3) [m/s^2], shape (n, 3) [N]."""
-        M, out = self._upper_mass, np.empty(a.shape)
-        kernels.symmetric_product(M.indptr, M.indices, M.data, a, out)
-        return out
-
-    @cached_property
-    def _upper_mass(self) -> csr_matrix:
-        M = triu(self.scalar_mass, format="csr")
-        M.sort_indices()
-        return M
-
     @cached_property
     def mass(self) -> csr_matrix:
         """Constant consistent mass, shape (3 n, 3 n) [kg], coordinates ordered node by node as x, y, z."""
@@ -323,11 +311,6 @@ class Pattern:
         """Return the CSR matrix with these values; no copy."""
         order = len(self.indptr) - 1
         return csr_matrix((values, self.indices, self.indptr), shape=(order, order), copy=False)
-
-    def places(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Return the positions of entries (row, column) among the values; every entry must belong to the pattern."""
-        matrix = csr_matrix((np.arange(1, self.size + 1), self.indices, self.indptr))
-        return np.asarray(matrix[np.ravel(rows), np.ravel(columns)]).ravel().astype(np.int64) - 1
 
 
 def own_rule(where: str, element: Element, rule: Quadrature | None) -> Quadrature:

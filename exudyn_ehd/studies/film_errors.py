@@ -133,8 +133,8 @@ def motion_at(
     return motion
 
 
-def measure_motions(model: Model, motions: Motions) -> tuple[dict[str, np.ndarray], float, float]:
-    """Quantities over the motions in the frame of the eccentricity, iterations and film evaluations per motion.
+def measure_motions(model: Model, motions: Motions) -> dict[str, np.ndarray]:
+    """Quantities over the motions, in the frame of the eccentricity.
 
     Raises
     ------
@@ -142,16 +142,13 @@ def measure_motions(model: Model, motions: Motions) -> tuple[dict[str, np.ndarra
         If there is no film.
     """
     columns: dict[str, list[float | np.ndarray]] = {}
-    iterations, before = 0, _films(model)
     for motion in motions:
-        evaluation = _evaluate(model, motion)
+        evaluation = evaluate_at(model, motion)
         if evaluation.status is not Status.CONVERGED:
             raise FilmError(f"{evaluation.status.name}: {advice(evaluation.status, model.bearing)}")
-        iterations += evaluation.iterations
         for name, value in _quantities(model, evaluation, motion).items():
             columns.setdefault(name, []).append(value)
-    films = _films(model) - before
-    return {n: np.array(v) for n, v in columns.items()}, iterations / len(motions), films / len(motions)
+    return {name: np.array(values) for name, values in columns.items()}
 
 
 def time_of_sweep(model: Model, motions: Motions) -> float:
@@ -159,7 +156,7 @@ def time_of_sweep(model: Model, motions: Motions) -> float:
     rounds, start = 0, time.process_time()
     while True:
         for motion in motions:
-            _tangent(_evaluate(model, motion))
+            _tangent(evaluate_at(model, motion))
         rounds += 1
         spent = time.process_time() - start
         if spent > SHORTEST:
@@ -186,7 +183,7 @@ def _quantities(model: Model, evaluation: Evaluated, motion: np.ndarray) -> Valu
     return row
 
 
-def _evaluate(model: Model, motion: np.ndarray) -> Evaluated:
+def evaluate_at(model: Model, motion: np.ndarray) -> Evaluated:
     """Steady evaluation; a heated film and a flexible bore settle."""
     if isinstance(model, ImpedanceModel):
         return model.evaluate(motion)
@@ -195,8 +192,3 @@ def _evaluate(model: Model, motion: np.ndarray) -> Evaluated:
 
 def _tangent(evaluation: Evaluated) -> np.ndarray:
     return evaluation.steady_tangent() if isinstance(evaluation, Evaluation) else evaluation.tangent()
-
-
-def _films(model: Model) -> int:
-    """Films that a model has solved; a map solves none."""
-    return 0 if isinstance(model, ImpedanceModel) else int(model.parts.evaluations.count)

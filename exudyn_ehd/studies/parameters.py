@@ -328,13 +328,7 @@ def parameter_study(
     left = {index: point for index, point in enumerate(points) if index not in rows}
     if told and rows:
         print(f"{len(rows)} of {len(points)} rows are taken from {file}", flush=True)
-    if executor is not None:
-        computed = places.on_executor(function, left, executor)
-    elif processes > 1:
-        computed = places.in_processes(function, left, processes)
-    else:
-        computed = places.here(function, left)
-    for index, row in computed if left else ():
+    for index, row in places.rows_of(function, left, processes, executor) if left else ():
         rows[index] = row
         if kept is not None:
             kept.add(points[index], row)

@@ -1,6 +1,6 @@
 """Computation of the rows of a study in this process or by an executor.
 
-Each function is an iterator over ``(index, row)`` in the order in which rows are finished.
+Rows come as ``(index, row)`` in the order in which they are finished.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import math
 import pickle
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from contextlib import nullcontext
 from typing import Any
 
 from exudyn_ehd.status import InputError
@@ -21,19 +22,16 @@ _WHERE = "parameter_study"
 _MOST_PARTS = 512
 
 
-def here(function: Function, points: Mapping[int, Point]) -> Rows:
-    """Compute one row after the other in this process."""
-    for index, point in points.items():
-        yield index, evaluated(function, point)
+def rows_of(function: Function, points: Mapping[int, Point], processes: int, executor: Executor | None) -> Rows:
+    """Compute the rows by an executor, in processes of this machine, or one after the other in this process."""
+    if executor is None and processes == 1:
+        yield from ((index, evaluated(function, point)) for index, point in points.items())
+        return
+    with ProcessPoolExecutor(processes) if executor is None else nullcontext(executor) as pool:
+        yield from _on_executor(function, points, pool)
 
 
-def in_processes(function: Function, points: Mapping[int, Point], count: int) -> Rows:
-    """Compute the rows in ``count`` processes of this machine."""
-    with ProcessPoolExecutor(count) as executor:
-        yield from on_executor(function, points, executor)
-
-
-def on_executor(function: Function, points: Mapping[int, Point], executor: Executor) -> Rows:
+def _on_executor(function: Function, points: Mapping[int, Point], executor: Executor) -> Rows:
     """Compute the rows by an executor, which stays open; rows that have not begun are cancelled if the study ends.
 
     Many rows go in parts, so that sending them takes no share of the time.

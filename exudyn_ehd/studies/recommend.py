@@ -332,7 +332,7 @@ def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]
     levels = []
     for n, m in LEVELS:
         model = _model(dataclasses.replace(bearing, film=FiniteLength(n_theta=n, n_z=m), **options))
-        values = measure_motions(model, motions)[0]
+        values = measure_motions(model, motions)
         if float(values["load"].min()) < LEAST_LOAD * bearing.reference_force(motions[0][8]):
             raise FilmError(
                 "the film carries nothing, and errors relative to nothing mean nothing. With ElrodAdams a film that "
@@ -362,7 +362,7 @@ def _errors(
     """Bounds of the errors at every eccentricity; None for a film that the bearing or the place does not allow."""
     try:
         model = _model(dataclasses.replace(bearing, **options))
-        values = [measure_motions(model, block)[0][quantity] for block in motions]
+        values = [measure_motions(model, block)[quantity] for block in motions]
     except EHDError:
         return None
     if not all(np.all(np.isfinite(value)) for value in values):

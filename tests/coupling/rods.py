@@ -99,7 +99,7 @@ def total(mbs, modes=(), matrix=None):
     the `SystemMatrix`."""
     q_t = np.array(mbs.systemData.GetODE2Coordinates_t())
     n, flow = len(q_t), np.zeros(len(q_t))
-    matrix = SystemMatrix.of(mbs) if matrix is None else matrix
+    matrix = SystemMatrix(mbs) if matrix is None else matrix
     for part in matrix.parts + matrix.meshes:
         for rows, columns, values in part(mbs, Factors(1.0, 0.0, 0.0, 1.0, 1.0)):
             own = (rows < n) & (columns < n)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.pictures.bush import Frame, View, contour_figure
+from exudyn_ehd.pictures.bush import Frame, contour_figure
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.status import InputError
 from tests.solid_tetrahedra import tet_mesh
@@ -17,7 +17,7 @@ def test_figure_has_one_panel_per_frame_and_a_labelled_bar(tmp_path, MESH):
     frames = [
         Frame(title=f"t = {t} s", displacements=0.1 * t * MESH.nodes, values=t * MESH.nodes[:, 0]) for t in (1, 2, 3)
     ]
-    figure = contour_figure(MESH, frames, label="x in m", view=View(facets=2))
+    figure = contour_figure(MESH, frames, label="x in m")
     titles = [axes.get_title() for axes in figure.axes]
     assert titles[:3] == ["t = 1 s", "t = 2 s", "t = 3 s"]
     assert figure.axes[3].get_ylabel() == "x in m"

@@ -54,10 +54,9 @@ def readable_force(solid, u):
     return force
 
 
-def test_inertia_and_the_least_volume_ratio_equal_theirs():
+def test_the_least_volume_ratio_equals_theirs():
     solid = TotalLagrange(mesh=SMALL, material=SOFT)
     u = 0.002 * np.random.default_rng(6).standard_normal(SMALL.nodes.shape)
-    np.testing.assert_allclose(solid.inertia(u), solid.scalar_mass @ u, rtol=1e-12, atol=1e-15)
     elements, _, G, _ = solid._geometry
     ratios = np.linalg.det(np.eye(3) + np.einsum("eai,eqja->eqij", u[elements], G)).min(axis=1)
     least, row = smallest_volume_ratio(solid._blocks[0], solid._blocks[2], elements, u)

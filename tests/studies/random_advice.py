@@ -103,7 +103,7 @@ def true_error(question: Question, advice: ehd.Recommendation) -> float:
     place = SPEED, question.eccentricity_ratio, question.tilt_ratio
     angles = 2.0 * np.pi * (np.arange(DIRECTIONS) + rng.uniform(0.0, 1.0, DIRECTIONS)) / DIRECTIONS
     motions = [motion_at(bearing, *place, float(a)) for a in angles]
-    value, truth = (measure_motions(build_model(b), motions)[0][question.quantity] for b in (bearing, fine))
+    value, truth = (measure_motions(build_model(b), motions)[question.quantity] for b in (bearing, fine))
     return float(np.max(np.abs(value - truth))) / scale_of(question.quantity, truth)
 
 

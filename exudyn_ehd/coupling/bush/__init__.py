@@ -5,6 +5,5 @@ Module map
 object     CreateFlexibleBush
 equations  its forces, matrices and Jacobians, and what Exudyn asks of it
 rigid_part what its housing has of it
-residual   of a system with bushes
-linear     the factor of a system with bushes; linear equations with a film's operator
+linear     the factor of a system with bushes
 """

@@ -8,12 +8,12 @@ A bush that the carrier's own mass contains is taken off it again as a rigid bod
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import cached_property
 
 import exudyn as exu
 import numpy as np
-from scipy.sparse import bmat, csr_matrix, identity
+from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
@@ -28,7 +28,6 @@ HOLD = 1e9
 """Spring of a single supported direction over the stiffest entry of the mesh."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class BushEquations:
     """Force, Jacobian and mass of a bush object.
 
@@ -46,15 +45,35 @@ class BushEquations:
         Mass-proportional damping [1/s].
     contained : RigidPart or None
         The bush in the carrier's frame, if the carrier's mass contains it.
+
+    Attributes
+    ----------
+    count : int
+        Coordinates of the mesh's own nodes, which come first.
     """
 
-    solid: TotalLagrange
-    held: np.ndarray
-    slaved: np.ndarray
-    carrier: Carrier | None
-    loads: tuple[Load, ...]
-    mass_rate: float
-    contained: RigidPart | None = None
+    def __init__(
+        self,
+        *,
+        solid: TotalLagrange,
+        held: np.ndarray,
+        slaved: np.ndarray,
+        carrier: Carrier | None,
+        loads: Sequence[Load],
+        mass_rate: float,
+        contained: RigidPart | None,
+    ) -> None:
+        self.solid, self.held, self.slaved, self.carrier = solid, held, slaved, carrier
+        self.loads, self.mass_rate, self.contained = loads, mass_rate, contained
+        moving = ~slaved & ~held.all(axis=1)
+        self._moving_rows, self._slaved_rows = (np.flatnonzero(np.repeat(nodes, 3)) for nodes in (moving, slaved))
+        self.count = self._moving_rows.size
+        # coordinates held by a spring
+        self._held = np.flatnonzero(held[moving].ravel())
+        self._followers = [load for load in loads if isinstance(load, FollowerPressure)]
+        self._follower_places = [[x.ravel() for x in load.places()] for load in self._followers]
+        dead = [load for load in loads if not isinstance(load, FollowerPressure)]
+        self._dead_vectors = [(load, dead_forces(load, solid)) for load in dead]
 
     def motion(
         self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = CURRENT
@@ -72,14 +91,6 @@ class BushEquations:
         values = np.zeros(self.held.size)
         values[self._moving_rows] = q[: self.count]
         return values.reshape(-1, 3)
-
-    def inertia(self, q_tt: np.ndarray) -> np.ndarray:
-        """Return M q_tt of a bush without a carrier."""
-        acceleration = self._nodal(q_tt)
-        acceleration[self.held] = 0.0
-        result = self.solid.inertia(acceleration).ravel()[self._moving_rows]
-        result[self._held] = self._held_inertia * q_tt[self._held]
-        return result
 
     def force(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return the right-hand side of M q_tt = force, generalised forces [N], [Nm]."""
@@ -102,7 +113,7 @@ class BushEquations:
     def jacobian(
         self, t: float, q: np.ndarray, q_t: np.ndarray, position_factor: float, velocity_factor: float
     ) -> csr_matrix:
-        """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t) on a fixed pattern.
+        """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t).
 
         Exact without carrier and without viscosity; mass-proportional damping is exact too. Left out: a viscosity's
         change with the strain rate (see `TotalLagrange.tangent`), and with a carrier the change of the slaved
@@ -110,23 +121,24 @@ class BushEquations:
         takes more iterations; its result is the same.
         """
         u, v = self.motion(q, q_t)
-        values = self.solid.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
-        self._add_follower_stiffness(values, t, u, position_factor)
-        K = self._moving_block.matrix(values)
+        whole = self.solid.tangent(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
+        for pressure, (rows, columns) in zip(self._followers, self._follower_places, strict=True):
+            block = position_factor * factor(pressure, t) * pressure.stiffness(self.solid.mesh.nodes + u)
+            whole = whole + csr_matrix((block.ravel(), (rows, columns)), shape=whole.shape)
+        moving = whole[self._moving_rows]
+        own = moving[:, self._moving_rows]
         if self.mass_rate:
-            K.data += velocity_factor * self.mass_rate * self._mass_values
-        K.data[self._cut] = 0.0
-        K.data[self._cut_diagonal] = position_factor * self._spring
+            own = own + velocity_factor * self.mass_rate * self._moving_mass
+        K = self._without_held(own, position_factor * self._spring)
         if self.carrier is None:
             return K
-        qc = q[self.count :]
+        qc, slaved = q[self.count :], whole[self._slaved_rows]
         B = self.carrier.jacobian()
-        coupling, transposed, slaved = (block.matrix(values) for block in self._carrier_blocks)
-        along, across = coupling @ B, (transposed.T @ B).T
+        along, across = moving[:, self._slaved_rows] @ B, (slaved[:, self._moving_rows].T @ B).T
         along[self._held] = across[:, self._held] = 0.0
         turn = self.carrier.force_derivative(qc, q_t[self.count :], self._nodal_forces(t, u, v)[self.slaved])
-        own = B.T @ (slaved @ B) - position_factor * turn
-        return bmat([[K, along], [across, own]], format="csr")
+        carried = B.T @ (slaved[:, self._slaved_rows] @ B) - position_factor * turn
+        return bmat([[K, along], [across, carried]], format="csr")
 
     def mass(self, q: np.ndarray | None) -> csr_matrix:
         """Return the mass matrix: constant without a carrier, else T^T M T at the carrier's coordinates."""
@@ -149,12 +161,12 @@ class BushEquations:
         Nodes on a carrier have the round-off of their positions in the model at the last evaluation.
         """
         size = float(reach[: self.count].max(initial=0.0))
+        whole, carried = self._rounding
         if self.carrier is None:
-            return self._rounding * size
-        places = float(np.abs(self.carrier.positions()).max(initial=0.0))
-        return math.hypot(self._rounding * size, self._carried_rounding * places)
+            return whole * size
+        return math.hypot(whole * size, carried * float(np.abs(self.carrier.positions()).max(initial=0.0)))
 
-    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray | slice, time: float, name: str) -> None:
+    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
         start, data = START_OF_STEP, mbs.systemData
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
@@ -182,151 +194,45 @@ class BushEquations:
             total -= self.mass_rate * (self.solid.scalar_mass @ v)
         return total
 
-    def _add_follower_stiffness(self, values: np.ndarray, t: float, u: np.ndarray, scale: float) -> None:
-        for pressure, places in zip(self._followers, self._follower_places, strict=True):
-            block = pressure.stiffness(self.solid.mesh.nodes + u)
-            np.add.at(values, places, scale * factor(pressure, t) * block.ravel())
-
-    @cached_property
-    def _moving(self) -> np.ndarray:
-        return ~self.slaved & ~self.held.all(axis=1)
-
-    @cached_property
-    def count(self) -> int:
-        """Coordinates of the mesh's own nodes, which come first."""
-        return 3 * int(self._moving.sum())
-
-    @cached_property
-    def _moving_rows(self) -> np.ndarray:
-        return np.flatnonzero(np.repeat(self._moving, 3))
-
-    @cached_property
-    def _slaved_rows(self) -> np.ndarray:
-        return np.flatnonzero(np.repeat(self.slaved, 3))
-
-    @cached_property
-    def _held(self) -> np.ndarray:
-        """Coordinates held by a spring."""
-        return np.flatnonzero(self.held[self._moving].ravel())
+    def _without_held(self, matrix: csr_matrix, value: float) -> csr_matrix:
+        """Return a matrix of the mesh's own coordinates with ``value`` alone in the rows and columns of held ones."""
+        if not len(self._held):
+            return matrix
+        held = np.zeros(self.count)
+        held[self._held] = 1.0
+        free = diags(1.0 - held)
+        return (free @ matrix @ free + value * diags(held)).tocsr()
 
     @cached_property
     def _spring(self) -> float:
         return HOLD * float(self.solid.tangent(np.zeros(self.held.shape)).diagonal().max())
 
     @cached_property
-    def _rounding(self) -> float:
-        """Norm of the forces' round-off [N] per size of coordinates [m], if all nodes have the worst signs."""
-        return self._rounding_of(np.arange(self.held.size))
+    def _rounding(self) -> tuple[float, float]:
+        """Norms of the forces' round-off [N] per size of coordinates [m], if all nodes have the worst signs.
 
-    @cached_property
-    def _carried_rounding(self) -> float:
-        """Norm of the forces' round-off [N] per size of coordinates [m], of the carried nodes alone."""
-        return self._rounding_of(self._slaved_rows)
-
-    def _rounding_of(self, columns: np.ndarray) -> float:
-        rows = abs(self.solid.tangent(np.zeros(self.held.shape)))[:, columns].sum(axis=1)
-        return float(np.finfo(float).eps * np.linalg.norm(rows))
+        Of all nodes, and of the carried ones alone.
+        """
+        K = abs(self.solid.tangent(np.zeros(self.held.shape)))
+        norms = (np.linalg.norm(part.sum(axis=1)) for part in (K, K[:, self._slaved_rows]))
+        whole, carried = (float(np.finfo(float).eps * norm) for norm in norms)
+        return whole, carried
 
     @cached_property
     def _moving_mass(self) -> csr_matrix:
-        M = self.solid.mass[self._moving_rows][:, self._moving_rows].tocsr()
-        keep = np.ones(self.count)
-        keep[self._held] = 0.0
-        mask = csr_matrix((keep, (np.arange(self.count), np.arange(self.count))))
-        M = (mask @ M @ mask).tocsr()
+        M = self._without_held(self.solid.mass[self._moving_rows][:, self._moving_rows], self._held_inertia)
         M.eliminate_zeros()
-        return (M + self._held_inertia * (identity(self.count, format="csr") - mask)).tocsr()
+        return M
 
     @cached_property
     def _held_inertia(self) -> float:
-        """Mass [kg] of a coordinate held by a spring, which then swings far above every frequency of the mesh."""
-        return self._spring / (100.0 * self._highest_frequency_squared)
+        """Mass [kg] of a coordinate held by a spring, which then swings far above every frequency of the mesh.
 
-    @cached_property
-    def _mass_values(self) -> np.ndarray:
-        """The mass on the pattern of the moving block."""
-        block = self._moving_block
-        return np.asarray(self._moving_mass[block.rows, block.indices]).ravel()
-
-    @cached_property
-    def _highest_frequency_squared(self) -> float:
-        """An upper estimate [1/s^2]: largest row sum of K over a hundredth of the smallest diagonal of M."""
+        Upper estimate of the frequencies' squares: largest row sum of K over a hundredth of the smallest diagonal of M.
+        """
         K = self.solid.tangent(np.zeros(self.held.shape))
-        return 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
-
-    @cached_property
-    def _dead_vectors(self) -> list[tuple[Load, np.ndarray]]:
-        return [(s, dead_forces(s, self.solid)) for s in self.loads if not isinstance(s, FollowerPressure)]
-
-    @cached_property
-    def _followers(self) -> list[FollowerPressure]:
-        return [s for s in self.loads if isinstance(s, FollowerPressure)]
-
-    @cached_property
-    def _follower_places(self) -> list[np.ndarray]:
-        return [self.solid.pattern.places(*pressure.places()) for pressure in self._followers]
-
-    @cached_property
-    def _moving_block(self) -> Block:
-        return Block.of(self.solid, self._moving_rows, self._moving_rows)
-
-    @cached_property
-    def _carrier_blocks(self) -> tuple[Block, ...]:
-        """Moving rows and slaved columns, slaved rows and moving columns, slaved rows and columns."""
-        moving, slaved = self._moving_rows, self._slaved_rows
-        return tuple(Block.of(self.solid, *places) for places in ((moving, slaved), (slaved, moving), (slaved, slaved)))
-
-    @cached_property
-    def _cut(self) -> np.ndarray:
-        """Entries of the moving block in a row or column of a held coordinate."""
-        held = np.zeros(self.count, dtype=bool)
-        held[self._held] = True
-        block = self._moving_block
-        return np.flatnonzero(held[block.rows] | held[block.indices])
-
-    @cached_property
-    def _cut_diagonal(self) -> np.ndarray:
-        block = self._moving_block
-        return self._cut[block.rows[self._cut] == block.indices[self._cut]]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Block:
-    """Rows and columns of the fixed tangent pattern as a matrix of its own.
-
-    Parameters
-    ----------
-    entries : ndarray of int
-        Positions among the values of the whole pattern.
-    indptr, indices : ndarray of int
-        CSR structure of the block.
-    columns : int
-        Number of columns.
-    """
-
-    entries: np.ndarray
-    indptr: np.ndarray
-    indices: np.ndarray
-    columns: int
-
-    @classmethod
-    def of(cls, solid: TotalLagrange, rows: np.ndarray, columns: np.ndarray) -> Block:
-        """Return the block of these rows and columns (ascending)."""
-        pattern = solid.pattern
-        numbered = pattern.matrix(np.arange(pattern.size, dtype=np.int64))
-        part = numbered[rows][:, columns].tocsr()
-        part.sort_indices()
-        return cls(entries=part.data, indptr=part.indptr, indices=part.indices, columns=len(columns))
-
-    @cached_property
-    def rows(self) -> np.ndarray:
-        """Row of every entry."""
-        return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
-
-    def matrix(self, values: np.ndarray) -> csr_matrix:
-        """Return the block with the given values of the whole pattern."""
-        shape = (len(self.indptr) - 1, self.columns)
-        return csr_matrix((values[self.entries], self.indices, self.indptr), shape=shape, copy=False)
+        highest = 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
+        return self._spring / (100.0 * highest)
 
 
 class BushFunctions:
@@ -346,16 +252,11 @@ class BushFunctions:
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
         """Generalised force (n,), a list, which Exudyn reads fastest; raises if an element was inside out."""
-        self.watch(mbs, item)
-        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
-
-    def watch(self, mbs: exu.MainSystem, item: int, places: np.ndarray | slice | None = None) -> None:
-        """Raise if an element is inside out at the start of a step; ``places`` of the object's coordinates if known."""
         start = mbs.systemData.GetTime(START_OF_STEP)
         if start != self._watched:
             self._watched = start
-            known = np.array(mbs.systemData.GetObjectLTGODE2(item)) if places is None else places
-            self.equations.require_upright(mbs, known, start, self.name)
+            self.equations.require_upright(mbs, np.array(mbs.systemData.GetObjectLTGODE2(item)), start, self.name)
+        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
 
     def jacobian(
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float

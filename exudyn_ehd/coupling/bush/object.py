@@ -151,10 +151,7 @@ class FlexibleBush:
         return self._motion(configuration)[1]
 
     def _motion(self, configuration: exu.ConfigurationType) -> tuple[np.ndarray, np.ndarray]:
-        data = self.mbs.systemData
-        places = np.array(data.GetObjectLTGODE2(int(self.objectNumber)))
-        values = data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration)
-        q, q_t = (np.asarray(x)[places] for x in values)
+        q, q_t = self.coordinates(configuration), self.coordinates_t(configuration)
         return self.equations.motion(q, q_t, configuration)
 
     @property
@@ -364,7 +361,7 @@ def add_bush(
         held=held,
         slaved=slaved,
         carrier=carrier,
-        loads=tuple(loads),
+        loads=loads,
         mass_rate=mass_rate,
         contained=RigidPart(local, solid.scalar_mass) if mount is not None and mount.contains else None,
     )

@@ -11,7 +11,7 @@ markers, sensors, loads and drawing go on. An ObjectGenericODE2 on the same two 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import exudyn as exu
@@ -140,35 +140,27 @@ def object_mass(mbs: exu.MainSystem, item: Index) -> np.ndarray | csc_matrix | N
             return body.mass(mbs, 0.0, int(item), q.tolist(), [])
         matrix = as_sparse(data["massMatrix"])
         return None if matrix is None or matrix.nnz == 0 else matrix.tocsc()
-    if data["objectType"].startswith("MassPoint"):
-        return point_mass(mbs, item, len(mbs.systemData.GetObjectLTGODE2(int(item))))(mbs)
-    if data["objectType"] == "RigidBody2D":
-        return planar_mass(mbs, item)(mbs)
+    if is_hidden(data["objectType"]):
+        return hidden_mass(mbs, item, len(mbs.systemData.GetObjectLTGODE2(int(item))))
     if exu.ComputeItemType.MassMatrix not in mbs.ComputeItem(item):
         return None
     matrix = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassMatrix))
     return matrix if matrix.size else None
 
 
-def point_mass(mbs: exu.MainSystem, item: Index, size: int) -> Callable:
-    """Mass matrix of a mass point: density times position Jacobian."""
-    mass = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:size]
-    return lambda mbs: mass
+def is_hidden(object_type: str) -> bool:
+    """Return whether Exudyn keeps the mass matrix of such an object sparse and can't return it."""
+    return object_type.startswith("MassPoint") or object_type == "RigidBody2D"
 
 
-def planar_mass(mbs: exu.MainSystem, item: Index) -> Callable:
-    """Mass matrix of a planar rigid body.
+def hidden_mass(mbs: exu.MainSystem, item: Index, size: int) -> np.ndarray:
+    """Mass matrix (n, n) of a mass point or a planar rigid body: density times position Jacobian.
 
-    Density times position Jacobian are its first two rows, also with the centre of mass off the node.
+    Of a planar body these are the first two rows, also with the centre of mass off the node.
     """
-    inertia = float(mbs.GetObjectParameter(item, "inertia"))
-
-    def mass(mbs: exu.MainSystem) -> np.ndarray:
-        out = np.zeros((3, 3))
-        out[:2] = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:2]
-        out[2, :2], out[2, 2] = out[:2, 2], inertia
-        return out
-
+    mass = np.array(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:size]
+    if mass.shape[1] == 3 and "inertia" in mbs.GetObject(item):
+        mass[2, :2], mass[2, 2] = mass[:2, 2], float(mbs.GetObjectParameter(item, "inertia"))
     return mass
 
 

@@ -14,6 +14,7 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.coupling.run.newton_limits import allowed_part
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
@@ -57,7 +58,8 @@ class Carrier:
     def geometric(self, force: np.ndarray) -> np.ndarray:
         """d(Jp^T F + Jr^T M) / dx (n, n) at fixed loads in space: the force's arm turns."""
         change = np.zeros((self.places.size, self.places.size))
-        change[3:, 3:] = relative.skew(force) @ self._arm if change.size else 0.0
+        if self.node is not None:
+            change[3:, 3:] = relative.skew(force) @ self._arm
         return change
 
 
@@ -95,6 +97,7 @@ class RotorFilm:
         self.bearing = self.model.bearing
         housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
         self.housing, self.journal = housing, journal
+        self.frames, self.jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
         turning = [system.ratios.get(int(side.nodes[0]), 0.0) if side.nodes else 0.0 for side in joint.element.sides]
         self.ratio = turning[1]
         if turning[0] or not turning[1]:
@@ -112,9 +115,8 @@ class RotorFilm:
         """Bring the journal's motion to a state."""
         for side in (self.housing, self.journal):
             side.update(q, u)
-        frames = self.housing.frame, self.journal.frame
-        self.motion = relative.motion_of(*frames)
-        self._on_faces = None if self.faces is None else self.faces.at(frames, self.motion)
+        self.motion = relative.motion_of(*self.frames)
+        self._on_faces = None if self.faces is None else self.faces.at(self.frames, self.motion)
 
     def evaluate(self) -> Evaluation | None:
         """The film at the motion; None if there is none, or none on an end face."""
@@ -126,8 +128,7 @@ class RotorFilm:
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
         """Return the generalized force of a wrench (6,) with tangent (6, 10) in the directions, and its derivatives."""
-        frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
-        h, n = self.housing.places.size, self.places.size
+        frames, jacobians, h, n = self.frames, self.jacobians, self.housing.places.size, self.places.size
         loads, force = np.empty((4, 3)), np.empty(n)
         relative.global_loads(*frames, wrench, loads)
         relative.generalized_force(*jacobians, loads, force)
@@ -145,9 +146,8 @@ class RotorFilm:
             return film
         by_motion = found.tangent()
         faces = self.loads(found.wrench, by_motion[:, :10])
-        frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
-        turned = relative.wrench_map(*frames, *jacobians)
-        along = self.faces.position_change(frames, jacobians, self.motion, film.motion_by_place)
+        turned = relative.wrench_map(*self.frames, *self.jacobians)
+        along = self.faces.position_change(self.frames, self.jacobians, self.motion, film.motion_by_place)
         by_place = faces.by_place + np.outer(turned @ by_motion[:, 10], along)
         return FilmLoads(
             film.force + faces.force, film.by_place + by_place, film.by_rate + faces.by_rate, film.motion_by_place
@@ -177,28 +177,20 @@ class RotorFilm:
         return first_guess(self.bearing, float(self.motion[8]), load, self.motion[2:4])
 
     def room(self, x: np.ndarray) -> float:
-        """Largest part of a step x (size,) that uses up at most 60 % of the gap at either end; `update` has run."""
-        change = self.loads(np.zeros(6), np.zeros((6, 10))).motion_by_place @ x[self.places]
-        c, half, part = self.bearing.radial_clearance, 0.5 * self.bearing.length, self.room_of_faces(x)
+        """Largest part of a step x (size,) that leaves half of the gaps; `update` has run."""
+        change = relative.variation_of(*self.frames, *self.jacobians)[0] @ x[self.places]
+        c, part = self.bearing.radial_clearance, self.room_of_faces(x)
         if self.model.effects.contacts:
             return min(part, 0.3 * c / max(float(np.hypot(*change[:2])), 1e-300))
-        for s in (-half, half):
-            e, d = self.motion[:2] + s * self.motion[2:4], change[:2] + s * change[2:4]
-            near, far = float(np.hypot(*e)), float(np.hypot(*d))
-            allowed = near + 0.6 * max(c - near, 0.0)
-            along, square = float(e @ d), allowed**2 - near**2
-            if far > 0.0:
-                part = min(part, (-along + math.sqrt(along**2 + far**2 * square)) / far**2)
-        return part
+        return min(part, float(allowed_part(self.motion, self.motion + change, c, self.bearing.length)))
 
     def room_of_faces(self, x: np.ndarray) -> float:
         """Largest part of a step x (size,) that uses up at most 60 % of the gaps of the end faces; `update` has run."""
         thrust = self.bearing.thrust
         if self.faces is None or self._on_faces is None or thrust is None:
             return 1.0
-        frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
-        by_place = self.loads(np.zeros(6), np.zeros((6, 10))).motion_by_place
-        along = self.faces.position_change(frames, jacobians, self.motion, by_place) @ x[self.places]
+        by_place = relative.variation_of(*self.frames, *self.jacobians)[0]
+        along = self.faces.position_change(self.frames, self.jacobians, self.motion, by_place) @ x[self.places]
         turn = by_place[2:4] @ x[self.places]
         closed = abs(float(along)) + thrust.outer_radius * float(np.hypot(*turn))
         gap = min(state.minimum_gap for state in self._on_faces.states)
@@ -216,7 +208,7 @@ class RotorFilm:
         self._told = self._told or (evaluation.film is not None and warn_of_grid(evaluation.film, where))
         angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
         rows = np.zeros((2, self.size))
-        rows[:, self.places] = self.loads(evaluation.wrench, tangent).motion_by_place[:2]
+        rows[:, self.places] = relative.variation_of(*self.frames, *self.jacobians)[0][:2]
         coefficients = -_SIGNS[:, None] * tangent[_LOADS]
         return {
             "motion": self.motion.copy(),

@@ -196,7 +196,7 @@ class EquilibriumSearch:
         for k, rotor in enumerate(system.rotors):
             own = slice(system.nodes[rotor.nodes[0]].own.start + 3, system.nodes[rotor.nodes[0]].own.stop)
             # the driving torque follows the axis of its node
-            K[own, own] -= self.torques[k] * skew(system.axis(k, 0))
+            K[own, own] -= self.torques[k] * skew(system.axis(k))
         held = np.vstack((system.constraints(), system.drives()))
         left, values, right = np.linalg.svd(held)
         rank = int(np.sum(values > RANK * values[0]))

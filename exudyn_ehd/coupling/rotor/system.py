@@ -116,6 +116,8 @@ class SpinningSystem:
         Coordinates of the state.
     spins : (r,) array
         Speeds of the rotors, rad/s.
+    spinning : list
+        Number of the rotor, node and its axis in its own frame, of all nodes that turn.
     ratios : dict
         Speed of a rotor's node over that of the first rotor, by its number.
     size : int
@@ -146,6 +148,8 @@ class SpinningSystem:
                 self.nodes[number] = TurningNode(TURNING[known["nodeType"]], places, reference, self.size)
                 plain[places] = False
                 self.size += 6
+        turning = [(k, *pair) for k, rotor in enumerate(rotors) for pair in zip(rotor.nodes, rotor.axes, strict=True)]
+        self.spinning = [(k, self.nodes[number], axis) for k, number, axis in turning]
         self.places = np.flatnonzero(plain)
         self.own = self.size + np.arange(self.places.size)
         self.size += self.places.size
@@ -156,26 +160,24 @@ class SpinningSystem:
         self._solver.InitializeSolver(mbs, settings)
         self.multipliers = np.zeros(self._solver.GetAEsize())
 
-    def axis(self, rotor: int, node: int) -> np.ndarray:
-        """Axis (3,) in space of a node of a rotor, counted within it."""
-        parts = self.rotors[rotor]
-        return self.nodes[parts.nodes[node]].turn(self.q) @ parts.axes[node]
+    def axis(self, rotor: int) -> np.ndarray:
+        """Axis (3,) in space of the driven node of a rotor."""
+        driven = self.rotors[rotor]
+        return self.nodes[driven.nodes[0]].turn(self.q) @ driven.axes[0]
 
     def spin(self) -> np.ndarray:
         """u (size,) of the state: the spins of the rotors."""
         u = np.zeros(self.size)
-        for k, rotor in enumerate(self.rotors):
-            for i, node in enumerate(rotor.nodes):
-                u[self.nodes[node].own][3:] = self.spins[k] * self.axis(k, i)
+        for rotor, node, axis in self.spinning:
+            u[node.own][3:] = self.spins[rotor] * (node.turn(self.q) @ axis)
         return u
 
     def turning(self) -> np.ndarray:
         """S (size, size) of the module's text at the state."""
         S, u = np.zeros((self.size, self.size)), self.spin()
-        for rotor in self.rotors:
-            for node in rotor.nodes:
-                own = slice(self.nodes[node].own.start + 3, self.nodes[node].own.stop)
-                S[own, own] = -skew(u[own])
+        for _, node, _ in self.spinning:
+            own = slice(node.own.start + 3, node.own.stop)
+            S[own, own] = -skew(u[own])
         return S
 
     def moved(self, x: np.ndarray, alone: int | None = None) -> np.ndarray:
@@ -261,25 +263,22 @@ class SpinningSystem:
         """Rows (r, size) of the angles that drives hold: those of the first nodes about their axes."""
         rows = np.zeros((len(self.rotors), self.size))
         for k, rotor in enumerate(self.rotors):
-            rows[k, self.nodes[rotor.nodes[0]].own][3:] = self.axis(k, 0)
+            rows[k, self.nodes[rotor.nodes[0]].own][3:] = self.axis(k)
         return rows
 
     def turned(self, angle: float) -> np.ndarray:
         """Coordinates (n,) of the state after all rotors have turned by an angle, rad."""
         q = self.q.copy()
-        for k, rotor in enumerate(self.rotors):
-            for i, number in enumerate(rotor.nodes):
-                node = self.nodes[number]
-                a = skew(self.axis(k, i))
-                goal = (np.eye(3) + np.sin(angle) * a + (1.0 - np.cos(angle)) * a @ a) @ node.turn(self.q)
-                for _ in range(50):
-                    rest = goal @ node.turn(q).T
-                    x = 0.5 * np.array(
-                        [0, 0, 0, rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]]
-                    )
-                    node.move(q, x)
-                    if np.abs(x).max() < 1e-14:
-                        break
+        for _, node, axis in self.spinning:
+            start = node.turn(self.q)
+            a = skew(start @ axis)
+            goal = (np.eye(3) + np.sin(angle) * a + (1.0 - np.cos(angle)) * a @ a) @ start
+            for _ in range(50):
+                rest = goal @ node.turn(q).T
+                x = 0.5 * np.array([0, 0, 0, rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]])
+                node.move(q, x)
+                if np.abs(x).max() < 1e-14:
+                    break
         return q
 
     def _enter(self, q: np.ndarray, rates: np.ndarray) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
+from exudyn_ehd.coupling.kinematics import rigid_nodes
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, motion_between, read_state
 from exudyn_ehd.joint.balance.film import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
@@ -41,7 +41,7 @@ def place(
         )
     force = require_vector(f"{_WHERE}: load", load, 2, "N")
     q, q_t = (np.array(v) for v in read_state(mbs, element.sides, INITIAL))
-    motion = _motion(mbs, element, q, q_t)
+    motion = motion_between(mbs, element.sides, q, q_t, INITIAL)
     if speed is not None:
         motion[8] = require_number(f"{_WHERE}: speed", speed, "rad/s")
     if motion[8] == 0.0:
@@ -76,14 +76,6 @@ def place(
     at_rest[:2], at_rest[4:8] = result.position, 0.0
     element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), _memory(element.model, at_rest, result))
     return result
-
-
-def _motion(mbs: exu.MainSystem, element: FilmElement, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-    """Motion (10,) of the rigid surfaces in the initial state."""
-    n = element.sides[0].size
-    for side, part in zip(element.sides, (slice(0, n), slice(n, n + element.sides[1].size)), strict=True):
-        side.update(mbs, q[part], q_t[part], INITIAL)
-    return relative.motion_of(element.sides[0].frame, element.sides[1].frame)
 
 
 def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) -> History | None:

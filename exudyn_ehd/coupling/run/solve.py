@@ -170,7 +170,8 @@ def SolveDynamic(
         better, progress = _better_start(mbs, simulationSettings), progress_of(mbs, simulationSettings)
         for part in (control, better, refusing(mbs), own_errors(mbs, "SolveDynamic"), progress):
             around.enter_context(part)
-        good = bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
+        # films ask the stored solver for step size, rule and whether it runs
+        good = bool(mbs.SolveDynamic(simulationSettings, **options | {"storeSolver": True}))
     return good if watch is None else watch.last_cycle(mbs)
 
 
@@ -211,7 +212,7 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     require_settings("SolveStatic", simulationSettings)
     require_items(mbs)
     with own_errors(mbs, "SolveStatic"):
-        return bool(mbs.SolveStatic(simulationSettings, **_stored(options)))
+        return bool(mbs.SolveStatic(simulationSettings, **options | {"storeSolver": True}))
 
 
 def _refuse_inactive(mbs: exu.MainSystem) -> None:
@@ -225,11 +226,6 @@ def _refuse_inactive(mbs: exu.MainSystem) -> None:
                 "(ReplaceJoint switches joints off and leaves them in the model); take an implicit solver, or a model "
                 "without that joint and CreateLubricatedJoint."
             )
-
-
-def _stored(options: dict[str, object]) -> dict[str, object]:
-    """A run's options with its solver stored in ``mbs.sys``: films ask it for step size, rule and whether it runs."""
-    return options | {"storeSolver": True}
 
 
 def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:

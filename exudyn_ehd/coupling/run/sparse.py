@@ -9,18 +9,16 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
 
 with r = gamma / (beta h) in the rows of constraints that are solved for velocities and 1 in others, after which
 q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
-and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. Forces and
-inertia of bushes come to the residual beside Exudyn's sums (`exudyn_ehd.coupling.bush.residual`). The factor is kept
-over iterations and steps until convergence slows down (modified Newton).
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The factor
+is kept over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
 with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
 zero at the films' coordinates alone, solves ``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r; the bush
-deflects little under a film's short waves, so that some seven products do. What they tell of F preconditions the next
-iteration's (`exudyn_ehd.coupling.bush.linear`). Newton then takes the iterations it takes with a full Jacobian, and
-the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as a journal that turns, is
-small and has its factor anew in every iteration where only films join the two (`exudyn_ehd.coupling.bush.linear`). The
-matrix is put together in `system_matrix`.
+deflects little under a film's short waves, so that some seven products do. Newton then takes the iterations it takes
+with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as
+a journal that turns, is small and has its factor anew in every iteration where only films join the two
+(`exudyn_ehd.coupling.bush.linear`). The matrix is put together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
 Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend on coordinates.
@@ -30,14 +28,13 @@ from __future__ import annotations
 
 import time
 import weakref
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.bush.linear import RecycledSolver, SystemFactor
-from exudyn_ehd.coupling.bush.residual import BushResiduals, Solver
+from exudyn_ehd.coupling.bush.linear import SystemFactor
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
@@ -54,8 +51,11 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.solid.linear.solvers import solve_by_products
 from exudyn_ehd.status import InputError, require_integer, require_number
 
+# Exudyn's stubs lack the self of its solvers' methods.
+Solver: TypeAlias = Any
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
 # products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
@@ -194,10 +194,9 @@ def SolveDynamicSparse(
         mbs.Assemble()
     run = SparseRun()
     before = user_function(mbs.GetPreNewtonResidualUserFunction())
-    matrix = SystemMatrix.of(mbs)
+    matrix = SystemMatrix(mbs)
     loop = _Newton(
         matrix=matrix,
-        residual=BushResiduals(mbs, matrix.bushes),
         guess=start_guess(mbs, before or None),
         reuse=FactorReuse() if reuse is None else reuse,
         run=run,
@@ -241,27 +240,21 @@ class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
-    residual: BushResiduals
     guess: StartGuess
     reuse: FactorReuse
     run: SparseRun
     factor: SystemFactor | None = None
-    recycled: RecycledSolver = field(default_factory=RecycledSolver)
     step_size: float = 0.0
     baseline: int = 0
     excess: int = 0
 
     def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        with self.residual.without_masses(mbs, solver, settings):
-            return self._iterate(solver, mbs, settings)
-
-    def _iterate(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
         # Exudyn's Newton method forgets the multipliers of the step before, too
         data.SetAECoordinates([0.0] * self.matrix.constraints)
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
-        error = first = self.residual(solver, mbs, settings)
+        error = first = solver.ComputeNewtonResidual(mbs, settings)
         if turn > 0:
             # a contact has opened or closed
             self.factor = None
@@ -284,7 +277,7 @@ class _Newton:
             solver.it.newtonStepsCount += 1
             self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
-            previous, error = error, self.residual(solver, mbs, settings)
+            previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
             if error <= max(solver.newton.absoluteTolerance, solver.newton.relativeTolerance * first):
                 self.run.steps += 1
                 self.baseline = self.baseline or iteration
@@ -311,7 +304,6 @@ class _Newton:
         """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
         start = time.perf_counter()
         self.factor = None
-        self.recycled.forget()
         index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
         system = self.matrix.assemble(mbs, solver, index2=index2)
         constraints = self.matrix.constraints
@@ -363,12 +355,12 @@ class _Newton:
             return z + forces(factor.solve(load))
 
         wanted = FILM_TOLERANCE * float(np.linalg.norm(residual))
-        load[touched] = self.recycled.solve(product, -forces(d), wanted, FILM_PRODUCTS)
+        load[touched] = solve_by_products(product, -forces(d), wanted, FILM_PRODUCTS)
         return d + factor.solve(load)
 
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
-        d = self._solve(solver, mbs, self.residual.vector)
+        d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import exudyn as exu
@@ -13,8 +12,8 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from exudyn_ehd.coupling.bush.equations import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
-from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass
-from exudyn_ehd.solid.linear.triplets import Triplets
+from exudyn_ehd.coupling.element.presence import force_owner
+from exudyn_ehd.coupling.items.object_mass import as_sparse, hidden_mass, is_hidden
 from exudyn_ehd.status import InputError
 
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
@@ -55,46 +54,40 @@ class Factors(NamedTuple):
     velocity: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class SystemMatrix:
     """The system's iteration matrix, assembled object by object.
 
     Parameters
     ----------
+    mbs : exudyn.MainSystem
+        Assembled.
+
+    Attributes
+    ----------
     coordinates, constraints : int
         Second-order coordinates and algebraic equations.
-    parts : tuple
+    parts : list
         One function (mbs, Factors) -> list of (rows, columns, values) per object.
-    meshes : tuple
+    meshes : list
         The same of nodal bushes.
-    bushes : list
-        Their objects, the places of their coordinates, and their functions.
     mesh : (n,) array of bool
         Coordinates and equations that are those of bushes' nodes.
-    films : tuple
+    films : list
         Films on nodal bushes, and the places of their coordinates.
-    triplets : Triplets
-        Sums of all parts' entries.
     """
 
-    coordinates: int
-    constraints: int
-    parts: tuple[Callable, ...]
-    meshes: tuple[Callable, ...]
-    bushes: list[tuple[Index, np.ndarray, BushFunctions]]
-    mesh: np.ndarray
-    films: tuple[tuple[NodalFilmElement, np.ndarray], ...]
-    triplets: Triplets = field(default_factory=Triplets)
-
-    @classmethod
-    def of(cls, mbs: exu.MainSystem) -> SystemMatrix:
-        """Look up the objects of an assembled model."""
+    def __init__(self, mbs: exu.MainSystem) -> None:
         data = mbs.systemData
         if mbs.NumberOfGeneralContacts():
             raise InputError(
                 "SolveDynamicSparse mbs must have no GeneralContact, whose stiffness Exudyn does not return; use "
                 "contact objects (ObjectContact...), or mbs.SolveDynamic."
             )
+        self.coordinates, self.constraints = len(data.GetODE2Coordinates()), len(data.GetAECoordinates())
+        self.parts: list[Callable] = []
+        self.meshes: list[Callable] = []
+        self.films: list[tuple[NodalFilmElement, np.ndarray]] = []
+        self.mesh = np.zeros(self.coordinates + self.constraints, dtype=bool)
         for number in range(data.NumberOfNodes()):
             kind = mbs.GetNode(NodeIndex(number))["nodeType"]
             if "LG" in kind or "LieGroup" in kind:
@@ -103,16 +96,8 @@ class SystemMatrix:
                     "create rigid bodies with nodeType=exu.NodeType.RotationEulerParameters or RotationRxyz, or use "
                     "mbs.SolveDynamic."
                 )
-        n = len(data.GetODE2Coordinates())
-        films: list[tuple[NodalFilmElement, np.ndarray]] = []
-        meshes: list[Callable] = []
-        bushes: list[tuple[Index, np.ndarray, BushFunctions]] = []
-        mesh = np.zeros(n + len(data.GetAECoordinates()), dtype=bool)
-        parts: list[Callable] = [
-            _euler_parameters(mbs, NodeIndex(number), n)
-            for number in range(data.NumberOfNodes())
-            if mbs.GetNode(NodeIndex(number))["nodeType"] == "RigidBodyEP"
-        ]
+            if kind == "RigidBodyEP":
+                self.parts.append(_euler_parameters(mbs, NodeIndex(number), self.coordinates))
         if len(data.GetODE1Coordinates()):
             raise InputError(
                 "SolveDynamicSparse mbs must have second-order coordinates only, got "
@@ -121,28 +106,22 @@ class SystemMatrix:
         for number in range(data.NumberOfObjects()):
             item = ObjectIndex(number)
             places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
-            if len(places) == 0:
-                continue
-            owner = _owner(mbs, item)
-            if isinstance(owner, NodalFilmElement):
-                films.append((owner, places))
-            elif isinstance(owner, BushFunctions):
-                meshes.append(_generic(mbs, item, places))
-                bushes.append((item, places, owner))
-                mesh[places[: owner.equations.count]] = True
-            elif mbs.GetObject(item)["objectType"] == "GenericODE2":
-                parts.append(_generic(mbs, item, places))
-            else:
-                parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
-        return cls(
-            coordinates=n,
-            constraints=len(data.GetAECoordinates()),
-            parts=tuple(parts),
-            meshes=tuple(meshes),
-            bushes=bushes,
-            mesh=mesh,
-            films=tuple(films),
-        )
+            if len(places):
+                self._add(mbs, item, places)
+
+    def _add(self, mbs: exu.MainSystem, item: Index, places: np.ndarray) -> None:
+        """Look up an object with coordinates at ``places`` of the system's."""
+        owner = force_owner(mbs, int(item))
+        if isinstance(owner, NodalFilmElement):
+            self.films.append((owner, places))
+        elif isinstance(owner, BushFunctions):
+            self.meshes.append(_generic(mbs, item, places))
+            self.mesh[places[: owner.equations.count]] = True
+        elif mbs.GetObject(item)["objectType"] == "GenericODE2":
+            self.parts.append(_generic(mbs, item, places))
+        else:
+            equations = self.coordinates + np.array(mbs.systemData.GetObjectLTGAE(int(item)), dtype=np.int32)
+            self.parts.append(_standard(mbs, item, places, equations))
 
     def film_operators(
         self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder
@@ -181,21 +160,14 @@ class SystemMatrix:
             scales = (-square, -factors.damping, -square)
             added = as_sparse(own["function"](mbs, mbs.systemData.GetTime(), *scales))
             if added is not None:
-                triplets.append(_Placed(np.arange(size))(1.0, added))
-        system = (self.triplets if meshes else Triplets()).matrix(triplets, size)
+                triplets.append(_placed(np.arange(size), 1.0, added))
+        rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
+        system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
         if self.constraints:
             # rows of inactive constraints are lambda = 0
             idle = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
             system = (system + coo_matrix((np.full(len(idle), 1 / square), (idle, idle)), shape=(size, size))).tocsc()
         return system
-
-
-def _owner(mbs: exu.MainSystem, item: Index) -> object:
-    """Return the owner of an object's Jacobian function: a film's element, a bush's functions, or None."""
-    if mbs.GetObject(item)["objectType"] != "GenericODE2":
-        return None
-    jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")
-    return getattr(jacobian["function"], "__self__", None) if isinstance(jacobian, dict) else None
 
 
 def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
@@ -217,8 +189,6 @@ def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
         )
     mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
 
-    placed = [_Placed(places) for _ in range(5)]
-
     def part(mbs, factors: Factors):
         fM, fK, fD = factors[:3]
         data = mbs.systemData
@@ -230,25 +200,15 @@ def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
             terms.append((1.0, as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
         if mass_function is not None:
             terms.append((fM, as_sparse(mass_function(mbs, t, int(item), q, q_t))))
-        return [place(f, m) for place, (f, m) in zip(placed, terms) if m is not None]
+        return [_placed(places, factor, matrix) for factor, matrix in terms if matrix is not None]
 
     return part
 
 
-class _Placed:
-    """Triplets of a matrix at an object's places in the system, found once while its pattern stays."""
-
-    def __init__(self, places: np.ndarray) -> None:
-        self.places, self.pattern = places, [np.empty(0)]
-        self.rows = self.columns = np.empty(0, dtype=np.int32)
-
-    def __call__(self, factor: float, matrix: csr_matrix) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        pattern = [matrix.indptr, matrix.indices]
-        # a user's function may change its arrays
-        if not all(np.array_equal(a, b) for a, b in zip(pattern, self.pattern)):
-            self.pattern, entries = [x.copy() for x in pattern], matrix.tocoo()
-            self.rows, self.columns = self.places[entries.row], self.places[entries.col]
-        return self.rows, self.columns, factor * matrix.data
+def _placed(places: np.ndarray, factor: float, matrix: csr_matrix) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Triplets of a matrix at an object's places in the system."""
+    entries = matrix.tocoo()
+    return places[entries.row], places[entries.col], factor * entries.data
 
 
 def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: np.ndarray) -> Callable:
@@ -266,11 +226,8 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
         )
     # solved for velocities whatever the settings are
     by_rates = object_type == "JointRollingDisc" or bool(values.get("velocityLevel", False))
-    own_mass: Callable | None = None
-    if object_type.startswith("MassPoint") or object_type == "RigidBody2D":
-        # Exudyn keeps these mass matrices sparse and can't return them
+    if hidden := is_hidden(object_type):
         terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
-        own_mass = planar_mass(mbs, item) if object_type == "RigidBody2D" else point_mass(mbs, item, len(places))
     for what, _ in terms:
         try:
             mbs.ComputeItem(item, what)
@@ -285,7 +242,9 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
     rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
 
     def part(mbs, factors: Factors):
-        values = np.zeros((len(places), len(places))) if own_mass is None else factors.mass * own_mass(mbs)
+        values = np.zeros((len(places), len(places)))
+        if hidden:
+            values += factors.mass * hidden_mass(mbs, item, len(places))
         for what, i in terms:
             matrix = np.asarray(mbs.ComputeItem(item, what))
             if matrix.size:

@@ -254,27 +254,3 @@ def tangent_parallel(G, w, elements, colours, size, u, v, law, geometric, materi
             for e in range(first + chunk * count // chunks, first + (chunk + 1) * count // chunks):
                 _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K)
                 _scatter(K, elements[e], size, stride, slot[e], data_out)
-
-
-@njit(cache=True, fastmath=FAST)
-def symmetric_product(indptr, indices, values, x, out):
-    """out (n, 3) of a symmetric matrix and x (n, 3); the diagonal and what is right of it, in compressed rows."""
-    out[:] = 0.0
-    for i in range(len(indptr) - 1):
-        first = indptr[i]
-        if first == indptr[i + 1]:
-            continue
-        a0, a1, a2 = x[i, 0], x[i, 1], x[i, 2]
-        x0, x1, x2 = values[first] * a0, values[first] * a1, values[first] * a2
-        for p in range(first + 1, indptr[i + 1]):
-            # without a sign no index is counted from the end
-            j, value = np.uint64(indices[p]), values[p]
-            x0 += value * x[j, 0]
-            x1 += value * x[j, 1]
-            x2 += value * x[j, 2]
-            out[j, 0] += value * a0
-            out[j, 1] += value * a1
-            out[j, 2] += value * a2
-        out[i, 0] += x0
-        out[i, 1] += x1
-        out[i, 2] += x2

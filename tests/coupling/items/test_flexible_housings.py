@@ -79,7 +79,7 @@ class Run:
         # the body's scene brings a constant load of its own
         self.dead_marker = exu.MarkerIndex(int(mbs.GetLoad(0)["markerNumber"]))
         self.dead = np.array(mbs.GetLoad(0)["loadVector"])[:2]
-        self.rows, self.matrix = [], SystemMatrix.of(mbs)
+        self.rows, self.matrix = [], SystemMatrix(mbs)
         mbs.SetPostStepUserFunction(self.record)
         self.count = PERIODS * fine if steps is None else steps
         # the trapezoid of the loads misses (gamma - 1/2) h times the change of m a, five times as much at 0.6

@@ -137,7 +137,7 @@ def _end(mbs):
 )
 def test_same_matrix_and_same_run_as_exudyns_own_solver(build, index2):
     mbs, settings, pairs = _system(build), _settings(index2), []
-    matrix = SystemMatrix.of(mbs)
+    matrix = SystemMatrix(mbs)
 
     def newton(solver, mbs, settings):
         solver.ComputeNewtonUpdate(mbs, settings, True)

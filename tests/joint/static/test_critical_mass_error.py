@@ -30,7 +30,7 @@ def _masses(closure, ratio, eccentricity_ratio, n, m):
     angles = 0.3 + np.radians(22.5) * count + np.radians(7.5) * (0.618 * count % 1.0)
     values = measure_motions(
         build_model(bearing), [motion_at(bearing, SPEED, eccentricity_ratio, 0.0, a) for a in angles]
-    )[0]
+    )
     found = zip(values["stiffness"], values["damping"], strict=True)
     return values["critical mass"], np.array([critical_mass_error(bearing, K, C) for K, C in found])
 

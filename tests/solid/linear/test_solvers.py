@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_matrix, diags, random_array
 
-from exudyn_ehd.solid.linear.solvers import SingleFactor, rough_factor, solve_by_products, sparse_factor
+from exudyn_ehd.solid.linear.solvers import solve_by_products, sparse_factor
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -24,50 +24,24 @@ def test_factors_of_random_matrices(seed):
 def test_a_singular_matrix_raises():
     with pytest.raises(RuntimeError):
         sparse_factor(csc_matrix((3, 3)))
-    with pytest.raises(RuntimeError):
-        rough_factor(csc_matrix((3, 3)), 1e-5)
-    # singular in single precision alone
-    tiny = rough_factor(csc_matrix(1e-60 * np.eye(3)), 1e-5)
-    assert np.allclose(tiny.solve(np.ones(3)), 1e60)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_single_precision_only_where_it_is_enough(seed):
-    """Condition numbers from 10 to 1e9; sizes of matrix and right-hand side of many orders."""
-    rng = np.random.default_rng(seed)
-    kinds = []
-    for condition in np.geomspace(10.0, 1e9, 9):
-        Q = np.linalg.qr(rng.standard_normal((30, 30)))[0]
-        size = 10.0 ** rng.uniform(-15.0, 15.0)
-        A = csc_matrix(size * Q * np.geomspace(1.0, condition, 30) @ Q.T)
-        factor, right = rough_factor(A, 1e-4), 10.0 ** rng.uniform(-30.0, 30.0) * rng.standard_normal((30, 2))
-        exact = sparse_factor(A).solve(right)
-        kinds.append(isinstance(factor, SingleFactor))
-        # the probe's error stands for others to a factor of thirty
-        assert np.linalg.norm(factor.solve(right) - exact) < 3e-3 * np.linalg.norm(exact)
-    assert kinds[0] and not kinds[-1]
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-10])
 @pytest.mark.parametrize("seed", range(4))
 def test_equations_known_by_products(seed, tolerance):
-    """The residual is below the tolerance, also with a preconditioner, which takes fewer products."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(20, 120))
     A, right = np.diag(np.geomspace(1.0, 100.0, n)) + 0.1 * rng.standard_normal((n, n)), rng.standard_normal(n)
-    counts = []
-    for near in (None, lambda b: b / np.diag(A)):
-        asked = []
+    asked = []
 
-        def product(x, asked=asked):
-            asked.append(x)
-            return A @ x
+    def product(x):
+        asked.append(x)
+        return A @ x
 
-        x = solve_by_products(product, right, tolerance, n, near)
-        # round-off of the residual that is updated, over the true one
-        assert np.linalg.norm(right - A @ x) < 1.01 * tolerance
-        counts.append(len(asked))
-    assert counts[1] < counts[0] <= n
+    x = solve_by_products(product, right, tolerance, n)
+    # round-off of the residual that is updated, over the true one
+    assert np.linalg.norm(right - A @ x) < 1.01 * tolerance
+    assert len(asked) <= n
 
 
 @pytest.mark.parametrize("right", [np.zeros(3), np.full(3, np.nan)])
