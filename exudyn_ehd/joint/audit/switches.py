@@ -150,9 +150,8 @@ def thinning(bearing: JournalBearing) -> JournalBearing:
 
 def untouching(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing without contact and wear."""
-    return replace(
-        bearing, **dict.fromkeys([name for name in ("asperity", "contact", "wear") if getattr(bearing, name)])
-    )
+    given = [name for name in ("asperity", "contact", "wear") if getattr(bearing, name) is not None]
+    return replace(bearing, **dict.fromkeys(given))  # type: ignore[arg-type]
 
 
 def roughness_height(bearing: JournalBearing) -> float:
