@@ -30,7 +30,7 @@ from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.reynolds.links import LinkFlux
 from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT
 from exudyn_ehd.joint.heat.temperature import ViscosityField
-from exudyn_ehd.joint.heat.walls import Between, WalledTemperature
+from exudyn_ehd.joint.heat.walls import Between, FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 
@@ -89,7 +89,8 @@ class PairBetween(Between):
         self.given[0] += (kept + self.follows) * (self.old - self.supply)
         self.given[1] += kept / 3.0 * across[0]
 
-    def _pass(self, kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        assert kappa is not None
         self.surface, self.through, lost = surfaces(kappa, area, outward)
         self.by = [[-self.through[a, ..., 2 + b] for b in (0, 1)] for a in (0, 1)]
         self.own = lost / self.scale
@@ -183,13 +184,13 @@ def _of(linear: np.ndarray, fields: np.ndarray) -> np.ndarray:
     return np.einsum("...c,...c", linear, fields)
 
 
-class CubicTemperature(WalledTemperature):
+class CubicTemperature(FilmTemperature):
     """`FilmEnergy` with two temperatures across the film, of one bearing model.
 
     Parameters
     ----------
     spec, bearing, shape
-        As for `WalledTemperature`.
+        As for `FilmTemperature`.
     field : FluidityField
         Takes the viscosity of the temperatures to the film.
     """

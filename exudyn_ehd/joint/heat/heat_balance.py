@@ -51,7 +51,7 @@ class BandSolver:
 
 
 class HeatedOil(Protocol):
-    """Part of `exudyn_ehd.joint.heat.temperature.FilmTemperature` that the heat balance uses."""
+    """Part of `exudyn_ehd.joint.heat.walls.FilmTemperature` that the heat balance uses."""
 
     supply: float
     flow_capacity: float

@@ -1,4 +1,4 @@
-"""Walls that conduct: the temperatures of bush and journal with those of the film, and what the walls grow by.
+"""Temperatures of the film, with those of bush and journal where they conduct, and the growth of such walls.
 
 A state (n, m + k) has the film's temperatures in its first m columns, behind them those of the bush's rings, from the
 bore outward, and the journal's, from its surface inward and the same in every row; K.
@@ -17,7 +17,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Passage, Rings, Walls
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
 from exudyn_ehd.joint.heat.heat_balance import HeatBalance
-from exudyn_ehd.joint.heat.temperature import FilmTemperature, ViscosityField
+from exudyn_ehd.joint.heat.temperature import HeatedFilm, ViscosityField
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 
@@ -32,7 +32,7 @@ class Between(HeatBalance):
 
     Parameters
     ----------
-    thermal : WalledTemperature
+    thermal : FilmTemperature
     film, step
         As for `HeatBalance`.
 
@@ -42,12 +42,15 @@ class Between(HeatBalance):
         Heat that the temperatures outside give to both sides, at held unknowns, W/K.
     """
 
-    def __init__(self, thermal: WalledTemperature, film: SolvedFilm, step: float) -> None:
+    def __init__(self, thermal: FilmTemperature, film: SolvedFilm, step: float) -> None:
         super().__init__(thermal, film, step, thermal.heat(film))
         self._pass(*thermal.passage(film))
 
-    def _pass(self, kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
-        self.passage = Passage(kappa, area, outward)
+    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        if kappa is None or outward == (0.0, 0.0):
+            self.passage: Passage = EvenPassage(area, outward)
+        else:
+            self.passage = Passage(kappa, area, outward)
         self.by = self.passage.by
 
     def solve(self) -> None:
@@ -73,6 +76,15 @@ class Between(HeatBalance):
     def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
         """Heat in, convected and stored, W, with unknowns ``x`` at the end."""
         return self.sums(x)
+
+
+class EvenPassage(Passage):
+    """`Passage` of a film of one temperature over its height, between surfaces with coefficients, W/(m2 K)."""
+
+    def __init__(self, area: np.ndarray, coefficients: tuple[float | None, float | None]) -> None:
+        self.to = [(U or 0.0) * area for U in coefficients]
+        self.by = [[self.to[0], np.zeros_like(area)], [np.zeros_like(area), self.to[1]]]
+        self.transfer = self.to[0] + self.to[1]
 
 
 class _Wall:
@@ -103,13 +115,13 @@ class _Wall:
         return float(np.sum(self.rings.loss * (T - self.ambient))), stored
 
 
-class WalledTemperature(FilmTemperature):
-    """`FilmEnergy` with a bush or journal that conducts, of one bearing model.
+class FilmTemperature(HeatedFilm):
+    """`FilmEnergy` of one bearing model, between surfaces of given temperatures or walls that conduct.
 
     Parameters
     ----------
     spec, bearing, field
-        As for `FilmTemperature`.
+        As for `HeatedFilm`.
     shape : (int, int)
         Shape of the film's grid.
     """
@@ -132,6 +144,7 @@ class WalledTemperature(FilmTemperature):
         self.conducting = [wall for wall in self.sides if wall is not None]
         self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
         self.grows = any(wall.expands > 0.0 for wall in self.conducting)
+        self._start: np.ndarray | None = None
         self._last_state: np.ndarray | None = None
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
@@ -142,8 +155,10 @@ class WalledTemperature(FilmTemperature):
                 self._start[:, wall.columns] = wall.initial
         return self._start
 
-    def split(self, temperature: float | np.ndarray) -> tuple[np.ndarray, Walls]:
-        """The film's own temperatures (n, m) of a state, and its walls."""
+    def split(self, temperature: float | np.ndarray) -> tuple[float | np.ndarray, Walls | None]:
+        """The film's own temperatures (n, m) of a state, and its walls; None where nothing stands behind the film's."""
+        if self.size == self.shape[1]:
+            return temperature, None
         if temperature is not self._last_state:
             self._last_state = T = np.asarray(temperature)
             (bush, journal), m = self.sides, self.shape[1]
@@ -254,10 +269,10 @@ class WalledTemperature(FilmTemperature):
         """Return the equations of a solved film over a step, s; 0: steady state."""
         return Between(self, film, step)
 
-    def passage(self, film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, tuple[float | None, float | None]]:
-        """Return the arguments of `Passage` for a solved film."""
-        assert self.spec.conductivity is not None
-        kappa = self.spec.conductivity / (self.clearance * film.solver.H)
+    def passage(self, film: SolvedFilm) -> tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | None]]:
+        """Return the arguments of `Passage` for a solved film; without a conductivity no k / h."""
+        k = self.spec.conductivity
+        kappa = None if k is None else k / (self.clearance * film.solver.H)
         area = film.solver.area * film.grid.reference_length**2
         bush, journal = (U if wall is None else None for wall, (U, _) in zip(self.sides, self.walls, strict=True))
         return kappa, area, (bush, journal)
@@ -295,7 +310,7 @@ class WalledTemperature(FilmTemperature):
 class Growth:
     """Growth of the walls as a gap term: uniform, with the temperatures at the start of a step."""
 
-    def __init__(self, thermal: WalledTemperature) -> None:
+    def __init__(self, thermal: FilmTemperature) -> None:
         self.thermal, self.last = thermal, np.full(thermal.shape, np.nan)
 
     def field(self, history: History | None) -> np.ndarray:
