@@ -3,6 +3,7 @@
 Module map
 ----------
 temperature   one temperature of a film; viscosity and heat of a field
+band          banded systems at a film's vertices
 heat_balance  energy equation of one solved film
 across        two temperatures across the film
 walls         field of temperatures; bush and journal that conduct, store heat and grow

@@ -17,7 +17,7 @@ from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
-from exudyn_ehd.joint.heat.heat_balance import BandSolver, temperature_of
+from exudyn_ehd.joint.heat.band import BandSolver
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, powers
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
@@ -26,6 +26,12 @@ NO_FLOW = 1e-11
 # 1/K; no oil thins faster with the temperature.
 STEEPEST = 0.2
 Field = float | np.ndarray
+
+
+def temperature_of(film: SolvedFilm) -> np.ndarray:
+    """Temperature of a film, K: one for all of it, or a field (n, m)."""
+    assert film.temperature is not None
+    return np.asarray(film.temperature)
 
 
 class _Temperature:
@@ -108,23 +114,20 @@ class LumpedTemperature(_Temperature):
 
     def advance(self, film: SolvedFilm) -> float:
         """Temperature at the end of a solved film's step."""
-        T = float(temperature_of(film))
-        if film.step <= 0.0:
-            return T
-        heat, flow = self._rates(film)
-        store, G = self.capacity / film.step, self.spec.housing_conductance
-        follows = float(self.follows(T, heat, store))
-        rise = heat + flow * self.supply + G * self.housing + (store + follows) * T
-        return rise / (store + flow + G + follows)
+        return self._settled(film, self.capacity / film.step) if film.step > 0.0 else float(temperature_of(film))
 
     def steady_temperature(self, film: SolvedFilm) -> float:
         """Temperature in balance with the heat of a solved film; inf without a way out for the heat."""
-        T, (heat, flow) = float(temperature_of(film)), self._rates(film)
-        G = self.spec.housing_conductance
-        if flow + G <= 0.0:
+        return self._settled(film, 0.0)
+
+    def _settled(self, film: SolvedFilm, store: float) -> float:
+        """Temperature at the end of a step that stores so much, W/K."""
+        T, (heat, flow), G = float(temperature_of(film)), self._rates(film), self.spec.housing_conductance
+        if store + flow + G <= 0.0:
             return math.inf if heat > 0.0 else T
-        follows = float(self.follows(T, heat, 0.0))
-        return (heat + flow * self.supply + G * self.housing + follows * T) / (flow + G + follows)
+        follows = float(self.follows(T, heat, store))
+        rise = heat + flow * self.supply + G * self.housing + (store + follows) * T
+        return rise / (store + flow + G + follows)
 
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""

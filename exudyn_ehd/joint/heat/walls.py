@@ -14,77 +14,15 @@ import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.conduction import Passage, Rings, Walls
+from exudyn_ehd.film.heat.conduction import Rings, Walls
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
-from exudyn_ehd.joint.heat.heat_balance import HeatBalance
+from exudyn_ehd.joint.heat.heat_balance import HeatBalance, PassageData
 from exudyn_ehd.joint.heat.temperature import HeatedFilm, ViscosityField
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 
 # Share of the heat to which what the film gives and what the walls take agree.
 AGREED = 1e-13
-
-
-class Between(HeatBalance):
-    """Energy equation of a film's mean temperature between surfaces that have temperatures outside, K.
-
-    ``at`` lists those of both sides as (n, 1) or (1, 1) arrays. Unknowns are temperatures (n, m), K.
-
-    Parameters
-    ----------
-    thermal : FilmTemperature
-    film, step
-        As for `HeatBalance`.
-
-    Attributes
-    ----------
-    by : lists of lists of (n, m) arrays
-        Heat that the temperatures outside give to both sides, at held unknowns, W/K.
-    """
-
-    def __init__(self, thermal: FilmTemperature, film: SolvedFilm, step: float) -> None:
-        super().__init__(thermal, film, step, thermal.heat(film))
-        self._pass(*thermal.passage(film))
-
-    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
-        if kappa is None or outward == (0.0, 0.0):
-            self.passage: Passage = EvenPassage(area, outward)
-        else:
-            self.passage = Passage(kappa, area, outward)
-        self.by = self.passage.by
-
-    def solve(self) -> None:
-        """Factor the system, which `between` and `change` use."""
-        self.factor(self.passage.transfer / self.scale)
-
-    def between(self, at: list[np.ndarray]) -> np.ndarray:
-        """Unknowns with temperatures ``at`` outside."""
-        return self.temperatures(self.passage.gain([a - self.supply for a in at]) / self.scale)
-
-    def change(self, at: list[np.ndarray]) -> np.ndarray:
-        """Change of `between` by a change outside."""
-        return self.response(self.passage.gain(at) / self.scale)
-
-    def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
-        """Heat into both sides (n, m), W."""
-        return self.passage.heat(x, at)
-
-    def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-        """Blocks of the film in a state."""
-        return x
-
-    def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
-        """Heat in, convected and stored, W, with unknowns ``x`` at the end."""
-        return self.sums(x)
-
-
-class EvenPassage(Passage):
-    """`Passage` of a film of one temperature over its height, between surfaces with coefficients, W/(m2 K)."""
-
-    def __init__(self, area: np.ndarray, coefficients: tuple[float | None, float | None]) -> None:
-        self.to = [(U or 0.0) * area for U in coefficients]
-        self.by = [[self.to[0], np.zeros_like(area)], [np.zeros_like(area), self.to[1]]]
-        self.transfer = self.to[0] + self.to[1]
 
 
 class _Wall:
@@ -243,7 +181,7 @@ class FilmTemperature(HeatedFilm):
                 state[:, side.columns] = rise + side.ambient
         return state
 
-    def _surfaces_change(self, between: Between, old: np.ndarray, heat: list[np.ndarray]) -> np.ndarray:
+    def _surfaces_change(self, between: HeatBalance, old: np.ndarray, heat: list[np.ndarray]) -> np.ndarray:
         """Change (k,) of the walls' surface temperatures from ``old``, at which the film gives ``heat``, W, to where
         the walls take what it gives.
 
@@ -265,12 +203,12 @@ class FilmTemperature(HeatedFilm):
         enough = AGREED * float(np.linalg.norm(lu_solve(lead, given)))
         return solve_by_products(led, lu_solve(lead, missing + given), enough, self.unknowns)
 
-    def equations(self, film: SolvedFilm, step: float) -> Between:
+    def equations(self, film: SolvedFilm, step: float) -> HeatBalance:
         """Return the equations of a solved film over a step, s; 0: steady state."""
-        return Between(self, film, step)
+        return HeatBalance(self, film, step, self.passage(film))
 
-    def passage(self, film: SolvedFilm) -> tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | None]]:
-        """Return the arguments of `Passage` for a solved film; without a conductivity no k / h."""
+    def passage(self, film: SolvedFilm) -> PassageData:
+        """Return the passage of heat from a solved film to both sides."""
         k = self.spec.conductivity
         kappa = None if k is None else k / (self.clearance * film.solver.H)
         area = film.solver.area * film.grid.reference_length**2
