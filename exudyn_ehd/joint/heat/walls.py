@@ -126,21 +126,21 @@ class FilmTemperature(HeatedFilm):
 
     def advance(self, film: SolvedFilm) -> np.ndarray:
         """State at the end of a solved film's step."""
-        old = self._old(film)
+        old = self.state_of(film.history)
         return old if film.step <= 0.0 else self._settled(film, film.step, old)
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """State in balance with the heat of a solved film; not finite without a way out for the heat."""
         if not self._has_way_out(film):
             return np.full((self.shape[0], self.size), np.inf)
-        return self._settled(film, 0.0, self._old(film))
+        return self._settled(film, 0.0, self.state_of(film.history))
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, convected, conducted to ambient or given walls, and stored, W, of a step that ends at a state.
 
         Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them.
         """
-        T, old, film_only = self._of_film(temperature), self._old(film), self.equations(film, film.step)
+        T, old, film_only = self._of_film(temperature), self.state_of(film.history), self.equations(film, film.step)
         at = [self._surface(side, temperature) for side in (0, 1)]
         out, q = film_only.totals(T, at), film_only.passed(T, at)
         out["conducted"] = 0.0
@@ -154,8 +154,9 @@ class FilmTemperature(HeatedFilm):
             out["stored"] += stored
         return out | {"bush": float(q[0].sum()), "journal": float(q[1].sum())}
 
-    def _old(self, film: SolvedFilm) -> np.ndarray:
-        known = None if film.history is None else film.history.temperature
+    def state_of(self, history: History | None) -> np.ndarray:
+        """State that a history keeps, that of the start without one."""
+        known = None if history is None else history.temperature
         return self.initial_temperature(self.shape) if known is None else np.asarray(known)
 
     def _surface(self, side: int, state: np.ndarray) -> np.ndarray:
@@ -253,9 +254,7 @@ class Growth:
 
     def field(self, history: History | None) -> np.ndarray:
         """Scaled addition to the gap (n, m)."""
-        known = None if history is None else history.temperature
-        state = self.thermal.initial_temperature(self.thermal.shape) if known is None else np.asarray(known)
-        opening = self.thermal.opening(state) / self.thermal.clearance
+        opening = self.thermal.opening(self.thermal.state_of(history)) / self.thermal.clearance
         if self.last[0, 0] != opening:
             self.last = np.full(self.thermal.shape, opening)
         return self.last

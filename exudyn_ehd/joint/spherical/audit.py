@@ -21,7 +21,7 @@ from exudyn_ehd.film.peak import refined_peak
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.joint.audit import assumptions, indicators, oil, surfaces
 from exudyn_ehd.joint.audit.audit import Audit, Kind, audit_states
-from exudyn_ehd.joint.audit.changes import MATTERS, MOST_STEPS, STARTS, TOLERANCE, Comparison
+from exudyn_ehd.joint.audit.changes import MOST_STEPS, STARTS, TOLERANCE, Comparison
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, Limit, finding
 from exudyn_ehd.joint.audit.indicators import Indicator
 from exudyn_ehd.joint.audit.samples import TENSION, FilmState, RecordedSteps, Sample, rate_of_squeeze
@@ -258,12 +258,9 @@ def _grid(case: Case, name: str, count: str, effect: str) -> Finding:
     indicator = f"intervals across the peak at half its height, {name} = {size}"
     finer = cast(Switch, partial(replace, **{name: 2 * size}))
     change = None if value > 2.0 * assumptions.SURELY_FINE * ACROSS[count].value else case.films.change(finer)
-    found = replace(finding(effect, indicator, value, None, limit=ACROSS[count]), change=change)
-    if change is not None and change.found:
-        found = replace(found, matters=change.size > MATTERS)
-    if not found.matters:
-        return found
-    return replace(found, advice=f"the pressure peak is too narrow for the grid: {name}={2 * size}.", remedy=finer)
+    advice = f"the pressure peak is too narrow for the grid: {name}={2 * size}."
+    limit = ACROSS[count]
+    return finding(effect, indicator, value, None, limit=limit, mattering=advice, change=change, switch=finer)
 
 
 _ROWS: tuple[Callable[[Case], Finding | None], ...] = (
