@@ -45,10 +45,11 @@ CLOSED = 1e-3
 def settled_history(model: BearingModel, motion: np.ndarray, near: History | None = None) -> History | None:
     """History whose temperature is in balance with the steady film at ``motion``; None for an isothermal bearing.
 
-    Anderson acceleration of ``T -> heat balance(film(T))``, of one temperature or a field, started where plain rounds,
-    damped as needed, have brought the change below 5 K, and anew from the best temperature when it makes no progress.
-    It ends when the temperature changes by less than 1e-11 of its rise (behind 200 rounds 1e-9), or at a film that has
-    no solution, which the caller then finds.
+    One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant
+    method inside a bracket. A field: Anderson acceleration of ``T -> heat balance(film(T))``, started where plain
+    rounds, damped as needed, have brought the change below 5 K, and anew from the best field when it makes no
+    progress. Both end when the temperature changes by less than 1e-11 of its rise (a field behind 200 rounds 1e-9), or
+    at a film that has no solution, which the caller then finds.
 
     Parameters
     ----------
@@ -66,32 +67,73 @@ def settled_history(model: BearingModel, motion: np.ndarray, near: History | Non
     thermal = model.effects.thermal
     if thermal is None:
         return None
-    cold = np.asarray(thermal.initial_temperature(model.grid.shape))
-    start = cold if near is None or near.temperature is None else np.asarray(near.temperature)
-    T = _settled(model, thermal, motion, start, cold)
-    return History(temperature=T if T.ndim else float(T))
+    cold = thermal.initial_temperature(model.grid.shape)
+    start = cold if near is None or near.temperature is None else near.temperature
+    if isinstance(cold, np.ndarray):
+        return _settle_field(model, thermal, motion, np.asarray(start), cold)
+    return _settle_number(model, thermal, motion, float(start), float(cold))
 
 
-def _settled(
+def _target(
+    model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, T: float | np.ndarray
+) -> np.ndarray | None:
+    """Temperature in balance with the heat of the film at T; None without a film."""
+    # a flexible bore settles under the film of every temperature that is tried
+    film = model.evaluate_steady(motion, History(temperature=T)).film
+    return None if film is None else np.asarray(thermal.steady_temperature(film))
+
+
+def _require_way_out(T: float) -> None:
+    if not T < DIVERGED:
+        what = (
+            f"beyond {DIVERGED:g} K, {NO_OIL}"
+            if math.isfinite(T)
+            else f"heated, and its heat has no way out; {WAY_OUT}"
+        )
+        raise FilmError(f"steady temperature: the film is {what}")
+
+
+def _settle_number(
+    model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: float, cold: float
+) -> History:
+    lower, upper = -math.inf, math.inf
+    T, slope, previous, f_previous = start, -1.0, math.nan, math.nan
+    for _ in range(MAX_ROUNDS):
+        target = _target(model, thermal, motion, T)
+        if target is None:
+            return History(temperature=T)
+        _require_way_out(T if math.isfinite(float(target)) else math.inf)
+        f = float(target) - T
+        if abs(f) <= SETTLED * max(abs(T - cold), abs(f), 1e-3):
+            return History(temperature=T)
+        lower, upper = (T, upper) if f > 0.0 else (lower, T)
+        if previous != T and not math.isnan(previous):
+            slope = (f - f_previous) / (T - previous)
+        guess = T - f / slope if slope < 0.0 else T + f
+        if not lower < guess < upper:
+            guess = 0.5 * (lower + upper) if math.isfinite(lower + upper) else T + f
+        previous, f_previous, T = T, f, min(guess, 1.5 * T)
+    raise _unsettled(abs(f))
+
+
+def _settle_field(
     model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: np.ndarray, cold: np.ndarray
-) -> np.ndarray:
-    """Temperature in balance with the heat of its film, or one without a film; as `settled_history`."""
+) -> History:
     T = best = start
     past: list[tuple[np.ndarray, np.ndarray]] = []
     smallest, damping, patience = math.inf, 1.0, 0
     for _ in range(MAX_ROUNDS):
-        # a flexible bore settles under the film of every temperature that is tried
-        film = model.evaluate_steady(motion, History(temperature=T)).film
-        if film is None:
+        target = _target(model, thermal, motion, T)
+        if target is None:
             if T is best or float(np.abs(T - best).max()) < CLOSED_BY:
-                return T
+                return History(temperature=T)
             T, past = 0.5 * (T + best), []  # growing walls have closed the gap of a film on the way
             continue
-        change = np.asarray(thermal.steady_temperature(film)) - T
+        change = target - T
         size = float(np.abs(change).max())
         _require_way_out(float(T.max()) if math.isfinite(size) else math.inf)
         if is_settled(T, change, cold):
-            return T
+            return History(temperature=T)
         near = size < ACCELERATED
         patience = 0 if size < 0.9 * smallest else patience + 1
         if size < smallest:
@@ -108,21 +150,8 @@ def _settled(
             step = step * min(1.0, 4.0 * size / float(np.abs(step).max()))
         T = T + step
     if smallest <= NEARLY * max(float(np.ptp(best)), float(np.abs(best - cold).max())):
-        return best
-    raise FilmError(
-        f"steady temperature: not settled after {MAX_ROUNDS} rounds, last change {size:.3g} K; the heating is too "
-        "strong for a steady film, check speed, clearance and the temperature law."
-    )
-
-
-def _require_way_out(T: float) -> None:
-    if not T < DIVERGED:
-        what = (
-            f"beyond {DIVERGED:g} K, {NO_OIL}"
-            if math.isfinite(T)
-            else f"heated, and its heat has no way out; {WAY_OUT}"
-        )
-        raise FilmError(f"steady temperature: the film is {what}")
+        return History(temperature=best)
+    raise _unsettled(size)
 
 
 def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) -> np.ndarray:
@@ -140,6 +169,14 @@ def is_settled(T: float | np.ndarray, change: float | np.ndarray, cold: float | 
     """Return whether a change of a temperature field is negligible."""
     rise = max(float(np.ptp(T + change)), float(np.abs(T - cold).max()), 1e-3)
     return float(np.abs(change).max()) <= SETTLED * rise
+
+
+def _unsettled(change: float) -> FilmError:
+    return FilmError(
+        f"steady temperature: not settled after {MAX_ROUNDS} rounds, last change {change:.3g} K; the heating is too "
+        "strong for a "
+        "steady film, check speed, clearance and the temperature law."
+    )
 
 
 def lacks_oil(bearing: JournalBearing) -> bool:
