@@ -274,12 +274,14 @@ class LubricatedSphericalJoint(Joint):
                 f"LubricatedSphericalJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
             )
         # imported here: runs need none of it
-        from exudyn_ehd.joint.spherical.audit import RecordedBall, audit_ball
+        from exudyn_ehd.joint.audit.samples import RecordedSteps
+        from exudyn_ehd.joint.spherical.audit import audit_ball
 
         motion = np.zeros((h.time.size, SIZE))
         motion[:, PLACE], motion[:, VELOCITY], motion[:, SPIN] = h.place, h.velocity, h.angular_velocity
-        names = [field.name for field in dataclasses.fields(RecordedBall) if field.name != "motion"]
-        record = RecordedBall(motion=motion, **{name: getattr(h, name) for name in names})
+        unknown = np.full(h.time.size, np.nan)
+        names = [field.name for field in dataclasses.fields(RecordedSteps) if field.name != "motion"]
+        record = RecordedSteps(motion=motion, **{name: getattr(h, name, unknown) for name in names})
         return audit_ball(self.bearing, [], record)
 
     def AddSensor(

@@ -13,7 +13,6 @@ from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.samples import squeeze_rate
 from exudyn_ehd.joint.audit.switches import laminar, on_film, refined, turbulent
 from exudyn_ehd.joint.step_error import enough_steps
 
@@ -29,14 +28,15 @@ NARROWS = 1.6
 INERTIA = "rho w c^2 / mu, w of spin or squeeze"
 
 
-def _reynolds(case: Case) -> float:
+def reynolds(case: Case) -> float:
+    """Largest Reynolds number of the Couette flow."""
     b = case.bearing
     return max(b.lubricant.density * s.speed * b.radial_clearance / s.viscosity for s in case.samples)
 
 
 def vortices(case: Case) -> Finding:
     """Taylor number."""
-    value = _reynolds(case) * math.sqrt(case.bearing.clearance_ratio)
+    value = reynolds(case) * math.sqrt(case.bearing.clearance_ratio)
     return finding(
         "Taylor vortices",
         "Re sqrt(c / R)",
@@ -53,7 +53,7 @@ def turbulence(case: Case) -> Finding:
         case,
         "turbulence",
         "Re = rho U c / mu",
-        _reynolds(case),
+        reynolds(case),
         on,
         laminar if on else turbulent,
         mattering="beyond the laminar film, friction and load are too low here: turbulence=NgPan().",
@@ -64,7 +64,7 @@ def turbulence(case: Case) -> Finding:
 def inertia(case: Case) -> Finding:
     """Reynolds number of the rate at which the flow changes: by the spin in the gap, or by the squeeze."""
     b, r, samples = case.bearing, case.record, case.samples
-    run = None if r is None else squeeze_rate(b, r.motion, r.time)
+    run = None if r is None else case.films.squeeze_rate(r.motion, r.time)
     rates = [max(s.speed / b.journal_radius, s.squeeze_rate if run is None else run) for s in samples]
     oscillating = max(rate / s.viscosity for rate, s in zip(rates, samples, strict=True))
     return finding(
@@ -158,7 +158,7 @@ def time_step(case: Case) -> Finding | None:
     record = case.record
     if record is None or not np.any(np.isfinite(record.step_error)):
         return None
-    needed = enough_steps(record.time, record.motion[:, 8], record.step_error)
+    needed = enough_steps(record.time, case.films.spin(record.motion), record.step_error)
     return finding(
         "time step",
         "estimated error of the gap / minimum film thickness",
@@ -173,7 +173,7 @@ def ringing(case: Case) -> Finding | None:
     record, b = case.record, case.bearing
     if record is None:
         return None
-    watch = watched(record.time, record.force[:, :2], 2.0 * b.journal_radius * b.length)
+    watch = watched(record.time, record.force[:, : case.films.axes], 2.0 * b.journal_radius * b.length)
     when = (
         ""
         if watch.most == 0

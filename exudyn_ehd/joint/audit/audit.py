@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.joint.audit.changes import Comparison
 from exudyn_ehd.joint.audit.findings import Case, Finding
 from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
-from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
+from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sample, recorded_states, take_sample
 from exudyn_ehd.joint.audit.switches import turbulent, two_dimensional
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
@@ -139,6 +139,18 @@ class Audit:
         return bearing
 
 
+@dataclass(frozen=True)
+class Kind:
+    """A kind of bearings: how one of its films is sampled and compared with others, and the rows of its audit."""
+
+    sample: Callable[[BearingModel, FilmState, RecordedSteps | None], Sample | None]
+    comparison: type[Comparison]
+    indicators: tuple[Indicator, ...]
+
+
+JOURNALS = Kind(take_sample, Comparison, INDICATORS)
+
+
 def _row(f: Finding) -> tuple[str, ...]:
     verdict = (
         "neglected" if f.matters and f.on is False else "matters" if f.matters else "unneeded" if f.unneeded else ""
@@ -159,6 +171,7 @@ def audit_states(
     liner: ElasticLiner | None = None,
     faces: ThrustFaces | None = None,
     measure_time: bool = False,
+    kind: Kind = JOURNALS,
 ) -> Audit:
     """Audit a bearing by its films at some states.
 
@@ -174,6 +187,8 @@ def audit_states(
         Thrust faces in the record.
     measure_time : bool
         Measure the share of the time that every effect takes which is on and can be left out.
+    kind : Kind
+        Kind of the bearing.
 
     Raises
     ------
@@ -181,15 +196,15 @@ def audit_states(
         If there is no film at any state.
     """
     require_type("audit: liner", liner, ElasticLiner, type(None))
-    samples = take_samples(model, states, record)
+    samples = [sample for state in states if (sample := kind.sample(model, state, record)) is not None]
     if not samples:
         raise FilmError(
             "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result "
             "of `steady`."
         )
-    case = Case(model.bearing, samples, Comparison(model, states, record), record, liner, faces)
+    case = Case(model.bearing, samples, kind.comparison(model, states, record), record, liner, faces)
     findings = []
-    for indicator in INDICATORS:
+    for indicator in kind.indicators:
         finding = indicator.find(case)
         if finding is None:
             continue

@@ -16,7 +16,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states
+from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, squeeze_rate
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch
 from exudyn_ehd.joint.model.build import build_study_model
@@ -72,30 +72,63 @@ class Change:
 class Comparison:
     """Films of a bearing at the audited states, to compare others with.
 
+    Bearings of another kind have a subclass, with the methods that depend on how they move.
+
     Parameters
     ----------
     model : BearingModel
     states : sequence of FilmState
     record : RecordedSteps, optional
         Record that the states come from.
+
+    Attributes
+    ----------
+    axes : int
+        Components of the force that the film carries.
+    surface : str
+        Name of the surface around the film, for messages.
     """
+
+    axes, surface = 2, "bore"
 
     def __init__(self, model: BearingModel, states: Sequence[FilmState], record: RecordedSteps | None) -> None:
         self.model, self.states, self.record = model, states, record
         if isinstance(model.bearing.film, ImpedanceMap):
-            self.model = build_study_model(two_dimensional(model.bearing), float(model.grid.x[0]))
+            self.model = self.build(two_dimensional(model.bearing))
+
+    def build(self, bearing: JournalBearing) -> BearingModel:
+        """Model of another bearing, with the grid's start of this one."""
+        return build_study_model(bearing, float(self.model.grid.x[0]))
+
+    def spin(self, motions: np.ndarray) -> np.ndarray:
+        """Spin of the journal, rad/s, (n,) of motions (n, k)."""
+        return motions[:, 8]
+
+    def squeeze_rate(self, motions: np.ndarray, time: np.ndarray) -> float:
+        """`exudyn_ehd.joint.audit.samples.rate_of_squeeze`, 1/s, of a run's motions (n, k)."""
+        return squeeze_rate(self.model.bearing, motions, time)
+
+    def force_unit(self, motion: np.ndarray) -> float:
+        """Unit of the film's force at a motion, of spin and squeeze, N."""
+        b = self.model.bearing
+        rates = float(np.max(np.abs(motion[4:6]))) + 0.5 * b.length * float(np.max(np.abs(motion[6:8])))
+        return b.reference_force(abs(float(motion[8])) + rates / b.radial_clearance)
+
+    def numbers(self, evaluation: Evaluation) -> tuple[float, float, float]:
+        """Minimum film thickness, m, refined peak pressure, Pa, and loss, W."""
+        q, film = evaluation.quantities(), evaluation.film
+        assert film is not None
+        return q["minimum_gap"], refined_peak(film)[0], q["power_loss"]
 
     def change(self, switch: Switch) -> Change | None:
         """Worst change by a switch; None where no state could be compared."""
         try:
-            other = build_study_model(switch(self.model.bearing), float(self.model.grid.x[0]))
+            other = self.build(switch(self.model.bearing))
         except InputError:
             return None
         states: Sequence[FilmState] = self.states
         remembers = self.record is not None and (other.remembers or self.model.remembers or self.model.needs_spin)
-        # without a memory of its own to add, another bearing takes that of this one
-        own = (other.remembers_mass and not self.model.remembers_mass) or other.grid.shape != self.model.grid.shape
-        if self.record is not None and remembers and own:
+        if self.record is not None and remembers and self._has_own_memory(other):
             if other.flexible:  # tens of steps before every state, each a search for the bore's balance: seconds
                 return None
             states = recorded_states(other, self.record)
@@ -103,16 +136,42 @@ class Comparison:
         changes = [change for change in found if change is not None]
         return max(changes, key=lambda change: change.size, default=None)
 
+    def _has_own_memory(self, other: BearingModel) -> bool:
+        """Return whether another bearing remembers what this one does not; without, it takes the memory of this one."""
+        gains = other.remembers_mass and not self.model.remembers_mass
+        return gains or other.grid.shape != self.model.grid.shape
+
     def _at(self, other: BearingModel, mine: FilmState, its: FilmState, remembers: bool) -> Change | None:
         film = mine.evaluate(self.model)
         if film.status is not Status.CONVERGED:
             return None
-        force, q = film.wrench[:2].copy(), _numbers(film)
-        if not np.hypot(*force) > NO_LOAD * _reference(self.model.bearing, mine.motion):
+        force, q = film.wrench[: self.axes].copy(), self.numbers(film)
+        size = float(np.linalg.norm(force))
+        if not size > NO_LOAD * self.force_unit(mine.motion):
             return None
         if remembers:
             motion = its.motion[:MOTION_SIZE]
-            return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
+            found = other.evaluate_steady(motion, its.history, its.step, its.spin)
+            return self._same_motion(found, size, q) if found.status is Status.CONVERGED else None
+        load, moved = self.same_load(other, mine, force)
+        share = load / size - 1.0
+        if moved is None:
+            return Change(load=share, minimum_gap=math.nan, peak_pressure=math.nan, power_loss=math.nan)
+        gap, peak, loss = (
+            new / old - 1.0 if old > 0.0 else 0.0 for new, old in zip(self.numbers(moved), q, strict=True)
+        )
+        return Change(load=share, minimum_gap=gap, peak_pressure=peak, power_loss=loss)
+
+    def _same_motion(self, evaluation: Evaluation, size: float, q: tuple[float, float, float]) -> Change:
+        """Change of a film that remembers, whose step can't be taken again elsewhere, from a force, N, and numbers."""
+        share = max(float(np.hypot(*evaluation.wrench[:2])) / size, 1e-12)
+        pairs = zip(self.numbers(evaluation), q, strict=True)
+        gap, peak, loss = (new / old if old > 0.0 else 1.0 for new, old in pairs)
+        gap, peak = gap * math.sqrt(share), peak / share
+        return Change(load=share - 1.0, minimum_gap=gap - 1.0, peak_pressure=peak - 1.0, power_loss=loss - 1.0)
+
+    def same_load(self, other: BearingModel, mine: FilmState, force: np.ndarray) -> tuple[float, Evaluation | None]:
+        """Load of another bearing at a state, N, nan without a film, and its film with this force; None without one."""
         # the temperature is held where both have the same: what else changes it is of second order; one that is a
         # field settles anew on another grid
         own = self.model.bearing
@@ -122,26 +181,12 @@ class Comparison:
         if other.flexible and other.bearing.bush is own.bush and other.bearing.journal is own.journal:
             other.evaluate(mine.motion, held)  # the search for its bore's shape starts from this one's
         search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)
-        load = _load_at(search, mine.motion[:MOTION_SIZE])
-        moved, share = _same_load(search, mine.motion[:MOTION_SIZE]), load / float(np.hypot(*force)) - 1.0
-        if moved is None:
-            return Change(load=share, minimum_gap=math.nan, peak_pressure=math.nan, power_loss=math.nan)
-        p = _numbers(moved)
-        gap, peak, loss = (new / old - 1.0 if old > 0.0 else 0.0 for new, old in zip(p, q, strict=True))
-        return Change(load=share, minimum_gap=gap, peak_pressure=peak, power_loss=loss)
-
-
-def _reference(bearing: JournalBearing, motion: np.ndarray) -> float:
-    """Unit of the film's force, of spin and squeeze, N."""
-    rates = float(np.max(np.abs(motion[4:6]))) + 0.5 * bearing.length * float(np.max(np.abs(motion[6:8])))
-    return bearing.reference_force(abs(float(motion[8])) + rates / bearing.radial_clearance)
-
-
-def _numbers(evaluation: Evaluation) -> tuple[float, float, float]:
-    """Minimum film thickness, m, refined peak pressure, Pa, and loss, W."""
-    q, film = evaluation.quantities(), evaluation.film
-    assert film is not None
-    return q["minimum_gap"], refined_peak(film)[0], q["power_loss"]
+        motion = mine.motion[:MOTION_SIZE]
+        try:
+            load = float(np.hypot(*search.at(motion).evaluation.wrench[:2]))
+        except FilmError:
+            load = math.nan
+        return load, _same_load(search, motion)
 
 
 class _HeldSearch(LoadSearch):
@@ -164,14 +209,6 @@ class _HeldSearch(LoadSearch):
         return reached
 
 
-def _load_at(search: LoadSearch, motion: np.ndarray) -> float:
-    """Force of the steady film at a motion, N; nan without one."""
-    try:
-        return float(np.hypot(*search.at(motion).evaluation.wrench[:2]))
-    except FilmError:
-        return math.nan
-
-
 def _same_load(search: LoadSearch, motion: np.ndarray) -> Evaluation | None:
     """The film that carries the load, near a motion; None if it is not found."""
     for start in STARTS:
@@ -186,13 +223,3 @@ def _same_load(search: LoadSearch, motion: np.ndarray) -> Evaluation | None:
                 found = search.at(found.motion)
             return found.evaluation
     return None
-
-
-def _same_motion(evaluation: Evaluation, force: np.ndarray, q: tuple[float, float, float]) -> Change | None:
-    """Change of a film that remembers, whose step can't be taken again elsewhere."""
-    if evaluation.status is not Status.CONVERGED:
-        return None
-    share = max(float(np.hypot(*evaluation.wrench[:2])) / float(np.hypot(*force)), 1e-12)
-    gap, peak, loss = (new / old if old > 0.0 else 1.0 for new, old in zip(_numbers(evaluation), q, strict=True))
-    gap, peak = gap * math.sqrt(share), peak / share
-    return Change(load=share - 1.0, minimum_gap=gap - 1.0, peak_pressure=peak - 1.0, power_loss=loss - 1.0)

@@ -95,13 +95,17 @@ def cavitation(case: Case) -> Finding:
     if np.isinf(case.bearing.cavitation.cavity_pressure):
         return finding(
             "cavitation",
-            "share of the bore below -1e5 Pa",
+            f"share of the {case.films.surface} below -1e5 Pa",
             case.largest("tension"),
             False,
             mattering="oil does not carry such tension: cavitation=SwiftStieber().",
             switch=swift_stieber,
         )
-    return finding("cavitation", "cavitated share of the bore", case.largest("cavitated"), True)
+    return finding("cavitation", _cavitated(case), case.largest("cavitated"), True)
+
+
+def _cavitated(case: Case) -> str:
+    return f"cavitated share of the {case.films.surface}"
 
 
 def rupture(case: Case) -> Finding | None:
@@ -111,7 +115,7 @@ def rupture(case: Case) -> Finding | None:
     return judged(
         case,
         "rupture",
-        "cavitated share of the bore",
+        _cavitated(case),
         case.largest("cavitated"),
         False,
         swift_stieber,
@@ -124,7 +128,7 @@ def mass_conservation(case: Case) -> Finding | None:
     closure = case.bearing.cavitation
     if np.isinf(closure.cavity_pressure):
         return None
-    indicator, value = "cavitated share of the bore", case.largest("cavitated")
+    indicator, value = _cavitated(case), case.largest("cavitated")
     if closure.conserves_mass:
         needless = f"cavities hardly matter: cavitation=SwiftStieber(cavity_pressure={closure.cavity_pressure:g})."
         return judged(case, "mass conservation", indicator, value, True, swift_stieber, needless=needless)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -71,10 +70,15 @@ class RecordedSteps:
         """
         tilt = np.array([tilt_loss(bearing, m) for m in self.motion])
         squeeze = np.array([squeeze_share(bearing, m) for m in self.motion])
-        speed = np.abs(self.motion[:, 8])
         deflected = self.bore_displacement / np.maximum(self.minimum_gap, 1e-3 * bearing.radial_clearance)
-        loss = np.abs(self.power_loss)
-        keys = (-self.minimum_gap, self.peak_pressure, loss, self.contact_load, tilt, squeeze, speed, deflected)
+        return self.extremes(tilt, squeeze, np.abs(self.motion[:, 8]), deflected)
+
+    def extremes(self, *more: np.ndarray) -> list[int]:
+        """Steps, sorted, with the thinnest film, the highest pressure, loss and contact load, and the most of others.
+
+        ``more``: (n,) arrays.
+        """
+        keys = (-self.minimum_gap, self.peak_pressure, np.abs(self.power_loss), self.contact_load, *more)
         return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
 
 
@@ -162,7 +166,7 @@ def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> Histor
     return replace(history, temperature=film)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Sample:
     """Numbers of one evaluated film.
 
@@ -173,7 +177,7 @@ class Sample:
     minimum_gap, peak_pressure, load : float
         m, Pa, N (film and contact).
     contact_load, power_loss, flow : float
-        N, W, m3/s (out of the ends or out of the supply, the larger one).
+        N, W, m3/s (out of the ends or out of the supply, the larger one; of a ball the oil that it moves).
     viscosity : float
         Smallest in the film at ambient pressure, Pa s.
     rise : float
@@ -181,7 +185,7 @@ class Sample:
     to_bush, to_journal : float
         Shares of the film's heat that walls take up.
     cavitated, tension : float
-        Shares of the bore.
+        Shares of the bore or socket.
     tilt_loss, squeeze_share, squeeze_rate : float
         See the functions of these names.
     deflection, shape : float
@@ -198,21 +202,24 @@ class Sample:
     power_loss: float
     flow: float
     viscosity: float
-    rise: float
-    to_bush: float
-    to_journal: float
     cavitated: float
     tension: float
-    tilt_loss: float
     squeeze_share: float
     squeeze_rate: float
     deflection: float
-    shape: float
     resolution: Resolution
+    rise: float = 0.0
+    to_bush: float = 0.0
+    to_journal: float = 0.0
+    tilt_loss: float = 0.0
+    shape: float = 0.0
 
 
-def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
-    """Evaluate a state and read its numbers; None if there is no film."""
+def take_sample(model: BearingModel, state: FilmState, record: RecordedSteps | None) -> Sample | None:
+    """Evaluate a state and read its numbers; None if there is no film.
+
+    On a flexible bore, which settles here, a record has the numbers of the bore in motion.
+    """
     evaluation = state.evaluate(model)
     film = evaluation.film
     if film is None:
@@ -223,7 +230,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
     thermal = b.thermal
     to_bush, to_journal = _wall_shares(model, film)
-    return Sample(
+    sample = Sample(
         speed=math.hypot(g.reference_length * w.omega, w.axial_speed),
         minimum_gap=max(q["minimum_gap"], 1e-6 * b.radial_clearance),
         peak_pressure=q["peak_pressure"],
@@ -244,22 +251,9 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         shape=_shape(film),
         resolution=resolution(film),
     )
-
-
-def take_samples(model: BearingModel, states: Iterable[FilmState], record: RecordedSteps | None = None) -> list[Sample]:
-    """Samples of all states that have a film; on a flexible bore with what the record knows of it in motion."""
-    samples = []
-    for state in states:
-        sample = take_sample(model, state)
-        if sample is not None and record is not None and state.recorded is not None and model.flexible:
-            sample = _as_recorded(sample, record, state.recorded)
-        if sample is not None:
-            samples.append(sample)
-    return samples
-
-
-def _as_recorded(sample: Sample, record: RecordedSteps, k: int) -> Sample:
-    """The sample of a settled bore with the numbers of the bore in motion."""
+    if record is None or state.recorded is None or not model.flexible:
+        return sample
+    k = state.recorded
     return replace(
         sample,
         minimum_gap=max(float(record.minimum_gap[k]), 1e-9 * float(np.max(record.minimum_gap))),

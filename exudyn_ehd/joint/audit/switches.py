@@ -148,6 +148,12 @@ def thinning(bearing: JournalBearing) -> JournalBearing:
     return _oil(bearing, shear_law=law)
 
 
+def untouching(bearing: JournalBearing) -> JournalBearing:
+    """Return the bearing without contact and wear."""
+    given = [name for name in ("asperity", "contact", "wear") if getattr(bearing, name) is not None]
+    return replace(bearing, **dict.fromkeys(given))  # type: ignore[arg-type]
+
+
 def roughness_height(bearing: JournalBearing) -> float:
     """Composite roughness that a bearing names, m, or a typical one."""
     if bearing.asperity is not None:
@@ -204,7 +210,6 @@ rigid_journal: Switch = partial(replace, journal=None)
 isoviscous: Switch = partial(_oil, pressure_law=None)
 newtonian: Switch = partial(_oil, shear_law=None)
 smooth: Switch = partial(replace, roughness=None)
-untouching: Switch = partial(replace, asperity=None, contact=None, wear=None)
 unworn: Switch = partial(replace, wear=None)
 turbulent: Switch = partial(replace, turbulence=NgPan())
 laminar: Switch = partial(replace, turbulence=None)

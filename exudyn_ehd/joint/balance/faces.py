@@ -79,13 +79,10 @@ class FacesUnderLoad:
         """
         found = self._found(motion, float(wrench[2]))
         own = found.tangent()
-        return FacesShare(found, own, self._slope(own, tangent))
-
-    def _slope(self, own: np.ndarray, film: np.ndarray) -> np.ndarray:
-        """`FacesShare.slope` of what the faces add to the tangent (6, >= 4) of the film."""
-        if self.load is None or own[2, 10] == 0.0:
-            return np.asarray(own[:2, :2])
-        return np.asarray(own[:2, :2] - np.outer(own[:2, 10], own[2, :2] + film[2, :2]) / own[2, 10])
+        slope = own[:2, :2]
+        if self.load is not None and own[2, 10] != 0.0:
+            slope = slope - np.outer(own[:2, 10], own[2, :2] + tangent[2, :2]) / own[2, 10]
+        return FacesShare(found, own, slope)
 
     def _found(self, motion: np.ndarray, film: float) -> ThrustEvaluation:
         """The films at the given place or that of the load, beside a film with this axial force, N."""

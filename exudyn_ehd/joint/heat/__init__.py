@@ -2,9 +2,10 @@
 
 Module map
 ----------
-temperature   history and balance of heat
+temperature   one temperature of a film; viscosity and heat of a field
+band          banded systems at a film's vertices
 heat_balance  energy equation of one solved film
 across        two temperatures across the film
-walls         bush and journal that conduct, store heat and grow
+walls         field of temperatures; bush and journal that conduct, store heat and grow
 power         mechanical power that film and contacts keep; oil that enters and leaves
 """

@@ -28,9 +28,9 @@ from exudyn_ehd.film.heat.across import (
 from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT
+from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT, HeatBalance
 from exudyn_ehd.joint.heat.temperature import ViscosityField
-from exudyn_ehd.joint.heat.walls import Between, WalledTemperature
+from exudyn_ehd.joint.heat.walls import FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 
@@ -61,7 +61,7 @@ class FluidityField(ViscosityField):
                 carrier *= factor
 
 
-class PairBetween(Between):
+class PairBalance(HeatBalance):
     """Energy equations of mean and tilt of a solved film over a step, or in the steady state with a step of 0.
 
     Unknowns are mean and tilt (2, n, m), K.
@@ -70,11 +70,11 @@ class PairBetween(Between):
     ----------
     thermal : CubicTemperature
     film, step
-        As for `Between`.
+        As for `HeatBalance`.
     """
 
     def __init__(self, thermal: CubicTemperature, film: SolvedFilm, step: float) -> None:
-        super().__init__(thermal, film, step)
+        super().__init__(thermal, film, step, thermal.passage(film))
         assert film.walls is not None and film.walls.across is not None
         self.pairs, across, largest = thermal.band(film.grid.shape, 2), film.walls.across, self.largest()
         largest_lost = float(np.abs(self.own).max())
@@ -89,7 +89,8 @@ class PairBetween(Between):
         self.given[0] += (kept + self.follows) * (self.old - self.supply)
         self.given[1] += kept / 3.0 * across[0]
 
-    def _pass(self, kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        assert kappa is not None
         self.surface, self.through, lost = surfaces(kappa, area, outward)
         self.by = [[-self.through[a, ..., 2 + b] for b in (0, 1)] for a in (0, 1)]
         self.own = lost / self.scale
@@ -168,7 +169,7 @@ class PairBetween(Between):
         """Heat in, convected and stored, W, with mean and tilt ``x`` (2, n, m) at the end."""
         rise = _fields(x, at) - np.array([self.supply, 0.0, self.supply, self.supply])
         leaving, lost = (_of(takes, rise) for takes in self.takes)
-        out, flows = self.sums(x[0]), self.flows
+        out, flows = super().totals(x[0], at), self.flows
         convected = float(np.sum(flows.leaving * leaving + flows.lost * lost))
         return out | {"convected": self.scale * (convected - flows.back * self._mixed(rise) * flows.total_found)}
 
@@ -183,13 +184,13 @@ def _of(linear: np.ndarray, fields: np.ndarray) -> np.ndarray:
     return np.einsum("...c,...c", linear, fields)
 
 
-class CubicTemperature(WalledTemperature):
+class CubicTemperature(FilmTemperature):
     """`FilmEnergy` with two temperatures across the film, of one bearing model.
 
     Parameters
     ----------
     spec, bearing, shape
-        As for `WalledTemperature`.
+        As for `FilmTemperature`.
     field : FluidityField
         Takes the viscosity of the temperatures to the film.
     """
@@ -227,9 +228,9 @@ class CubicTemperature(WalledTemperature):
         power = film.parts.flow_scale * film.scales.pressure
         return power * (self.sheared(film) * sliding + flow * pressed + crossed)
 
-    def equations(self, film: SolvedFilm, step: float) -> PairBetween:
+    def equations(self, film: SolvedFilm, step: float) -> PairBalance:
         """Return the equations of a solved film over a step, s; 0: steady state."""
-        return PairBetween(self, film, step)
+        return PairBalance(self, film, step)
 
     def _blocks(self, state: np.ndarray) -> np.ndarray:
         """Mean, tilt and both surfaces (4, n, m) of a state."""

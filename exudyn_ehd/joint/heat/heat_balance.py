@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Protocol
-
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.banded.lu import factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.substitution import solve_lu
-from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.heat.conduction import Passage
 from exudyn_ehd.film.heat.energy import transport_slopes
 from exudyn_ehd.joint.heat.power import OilFlows
+from exudyn_ehd.joint.heat.temperature import HeatedFilm, temperature_of
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
@@ -23,62 +18,35 @@ STAGNANT = 1e-14
 MIXED = 1e4
 
 
-class BandSolver:
-    """Systems of ``unknowns`` at every vertex of a film grid (n, m); its buffers stay."""
-
-    def __init__(self, shape: tuple[int, int], unknowns: int) -> None:
-        n, m = shape
-        self.number, self.order = np.zeros(shape, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
-        _, width = number_cells(np.ones(shape, dtype=np.bool_), np.ones(shape), self.order, self.number)
-        self.unknowns, self.size, self.width = unknowns, unknowns * n * m, unknowns * (width + 1) - 1
-        self.lower, self.upper = np.zeros((2, self.size, self.width + 1 + PAD))
-        self.inverse = np.zeros(self.size)
-
-    def factor(self) -> None:
-        """Factor what ``lower`` and ``upper`` hold."""
-        self.regular = factor_lu(self.lower, self.upper, self.size, self.width, self.inverse)
-
-    def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Fields of each right-hand side's unknowns in turn (k, n, m), as ``rhs``; inf for a singular system."""
-        if not self.regular:
-            return np.full(rhs.shape, np.inf)
-        sides = rhs.reshape(-1, self.unknowns, self.order.size)
-        x = np.ascontiguousarray(sides[:, :, self.order].swapaxes(1, 2)).reshape(len(sides), -1)
-        solve_lu(self.lower, self.upper, self.inverse, self.size, self.width, x)
-        out = np.empty_like(sides)
-        out[:, :, self.order] = x.reshape(len(sides), -1, self.unknowns).swapaxes(1, 2)
-        return out.reshape(rhs.shape)
+# k / h, W/(m2 K), None without a conductivity; m2 of the vertices; coefficients of both sides, W/(m2 K), of walls None.
+PassageData = tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | None]]
 
 
-class HeatedOil(Protocol):
-    """Part of `exudyn_ehd.joint.heat.temperature.FilmTemperature` that the heat balance uses."""
+class EvenPassage(Passage):
+    """`Passage` of a film of one temperature over its height, between surfaces with coefficients, W/(m2 K)."""
 
-    supply: float
-    flow_capacity: float
-    carry_over: float
-    band: Callable[[tuple[int, int], int], BandSolver]
-
-    def follows(self, T: np.ndarray, heat: np.ndarray, store: np.ndarray) -> float | np.ndarray:
-        """Return the decrease of the heat per kelvin within a step."""
-
-
-def temperature_of(film: SolvedFilm) -> np.ndarray:
-    """Temperature of a film, K: one for all of it, or a field (n, m)."""
-    assert film.temperature is not None
-    return np.asarray(film.temperature)
+    def __init__(self, area: np.ndarray, coefficients: tuple[float | None, float | None]) -> None:
+        self.to = [(U or 0.0) * area for U in coefficients]
+        self.by = [[self.to[0], np.zeros_like(area)], [np.zeros_like(area), self.to[1]]]
+        self.transfer = self.to[0] + self.to[1]
 
 
 class HeatBalance:
-    """Heat balance of a solved film over a step, or in the steady state with a step of 0; fields (n, m).
+    """Energy equation of a film's mean temperature between surfaces that have temperatures outside, K.
+
+    Over a step, or in the steady state with a step of 0. ``at`` lists the temperatures of both sides as (n, 1) or (1,
+    1) arrays. Unknowns are temperatures (n, m), K.
 
     Attributes
     ----------
     scale : float
-        W/K per scaled flow, in which heat transfer to the walls is given.
+        W/K per scaled flow, the unit of the equations.
+    by : lists of lists of (n, m) arrays
+        Heat that the temperatures outside give to both sides, at held unknowns, W/K.
     """
 
-    def __init__(self, thermal: HeatedOil, film: SolvedFilm, step: float, heat: np.ndarray) -> None:
-        area, shape = film.solver.area, film.grid.shape
+    def __init__(self, thermal: HeatedFilm, film: SolvedFilm, step: float, passage: PassageData) -> None:
+        area, shape, heat = film.solver.area, film.grid.shape, thermal.heat(film)
         self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
         self.old = temperature_of(film)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
@@ -86,6 +54,14 @@ class HeatBalance:
         self.weight = self.flows.lost / (self.flows.total_lost or 1.0)
         self.store = area * self.flows.content / step if step > 0.0 else np.zeros(shape)
         self.follows = thermal.follows(self.old, heat / self.scale, self.store)
+        self._pass(*passage)
+
+    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        if kappa is None or outward == (0.0, 0.0):
+            self.passage: Passage = EvenPassage(area, outward)
+        else:
+            self.passage = Passage(kappa, area, outward)
+        self.by = self.passage.by
 
     def largest(self) -> float:
         """Largest of the flows and of the storage."""
@@ -99,9 +75,9 @@ class HeatBalance:
             links[1, :, :-1] += area[:, :-1] & area[:, 1:]
         return MIXED * self.flows.largest * links
 
-    def factor(self, walls: np.ndarray) -> None:
-        """Factor the system with heat transfer ``walls`` to the surfaces, in units of ``scale``."""
-        flows, store = self.flows, self.store
+    def solve(self) -> None:
+        """Factor the system, which `between` and `change` use."""
+        flows, store, walls = self.flows, self.store, self.passage.transfer / self.scale
         rigid = STAGNANT * self.largest()
         diagonal = self.follows + store + flows.entering + flows.found + walls + rigid
         held = store if self.step > 0.0 else np.full(store.shape, np.inf)
@@ -117,23 +93,32 @@ class HeatBalance:
         band.factor()
         self.given = self.heat / self.scale + (store + rigid + self.follows) * (self.old - self.supply)
 
-    def temperatures(self, gain: np.ndarray) -> np.ndarray:
-        """Temperatures where the surfaces give ``gain``, in K times ``scale``, to a film at the supply temperature."""
+    def between(self, at: list[np.ndarray]) -> np.ndarray:
+        """Unknowns with temperatures ``at`` outside."""
+        gain = self.passage.gain([a - self.supply for a in at]) / self.scale
         T0, self.returning = self.band.solve(np.array([self.given + gain, self.flows.back * self.flows.found]))
         mixed = 0.0
         if self.flows.back > 0.0:
             mixed = float(np.sum(self.weight * T0)) / (1.0 - float(np.sum(self.weight * self.returning)))
         return self.supply + T0 + mixed * self.returning
 
-    def response(self, gain: np.ndarray) -> np.ndarray:
-        """Change of `temperatures`, which have been asked for, by a change of ``gain``."""
-        change = self.band.solve(gain[None])[0]
+    def change(self, at: list[np.ndarray]) -> np.ndarray:
+        """Change of `between`, which has been asked for, by a change outside."""
+        change = self.band.solve(self.passage.gain(at)[None] / self.scale)[0]
         if self.flows.back > 0.0:
             mixed = float(np.sum(self.weight * change)) / (1.0 - float(np.sum(self.weight * self.returning)))
             change += mixed * self.returning
         return change
 
-    def sums(self, T: np.ndarray) -> dict[str, float]:
+    def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
+        """Heat into both sides (n, m), W."""
+        return self.passage.heat(x, at)
+
+    def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+        """Blocks of the film in a state."""
+        return x
+
+    def totals(self, T: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
         """Heat in, convected and stored, W, with these temperatures at the end."""
         rise, area, flows = T - self.supply, self.film.solver.area, self.flows
         mixed = float(np.sum(self.weight * rise))

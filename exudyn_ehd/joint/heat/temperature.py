@@ -17,7 +17,7 @@ from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
-from exudyn_ehd.joint.heat.heat_balance import BandSolver, HeatBalance, temperature_of
+from exudyn_ehd.joint.heat.band import BandSolver
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, powers
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
@@ -26,6 +26,12 @@ NO_FLOW = 1e-11
 # 1/K; no oil thins faster with the temperature.
 STEEPEST = 0.2
 Field = float | np.ndarray
+
+
+def temperature_of(film: SolvedFilm) -> np.ndarray:
+    """Temperature of a film, K: one for all of it, or a field (n, m)."""
+    assert film.temperature is not None
+    return np.asarray(film.temperature)
 
 
 class _Temperature:
@@ -108,23 +114,20 @@ class LumpedTemperature(_Temperature):
 
     def advance(self, film: SolvedFilm) -> float:
         """Temperature at the end of a solved film's step."""
-        T = float(temperature_of(film))
-        if film.step <= 0.0:
-            return T
-        heat, flow = self._rates(film)
-        store, G = self.capacity / film.step, self.spec.housing_conductance
-        follows = float(self.follows(T, heat, store))
-        rise = heat + flow * self.supply + G * self.housing + (store + follows) * T
-        return rise / (store + flow + G + follows)
+        return self._settled(film, self.capacity / film.step) if film.step > 0.0 else float(temperature_of(film))
 
     def steady_temperature(self, film: SolvedFilm) -> float:
         """Temperature in balance with the heat of a solved film; inf without a way out for the heat."""
-        T, (heat, flow) = float(temperature_of(film)), self._rates(film)
-        G = self.spec.housing_conductance
-        if flow + G <= 0.0:
+        return self._settled(film, 0.0)
+
+    def _settled(self, film: SolvedFilm, store: float) -> float:
+        """Temperature at the end of a step that stores so much, W/K."""
+        T, (heat, flow), G = float(temperature_of(film)), self._rates(film), self.spec.housing_conductance
+        if store + flow + G <= 0.0:
             return math.inf if heat > 0.0 else T
-        follows = float(self.follows(T, heat, 0.0))
-        return (heat + flow * self.supply + G * self.housing + follows * T) / (flow + G + follows)
+        follows = float(self.follows(T, heat, store))
+        rise = heat + flow * self.supply + G * self.housing + (store + follows) * T
+        return rise / (store + flow + G + follows)
 
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
@@ -172,8 +175,8 @@ class ViscosityField(FluxEffect):
         ratio_v_out[:] = 0.0
 
 
-class FilmTemperature(_Temperature):
-    """`FilmEnergy` of one bearing model.
+class HeatedFilm(_Temperature):
+    """Viscosity and heat of a film with a field of temperatures, `FilmEnergy` of one bearing model.
 
     Parameters
     ----------
@@ -190,15 +193,8 @@ class FilmTemperature(_Temperature):
         bush, journal = self._or_supply(spec.bush_temperature), self._or_supply(spec.journal_temperature)
         self.transfer = spec.bush_coefficient + spec.journal_coefficient
         self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
-        self._start: np.ndarray | None = None
         self._last: np.ndarray | None = None
         self.band: Callable[[tuple[int, int], int], BandSolver] = functools.cache(BandSolver)
-
-    def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
-        """(n, m) array, K, at the start of a motion."""
-        if self._start is None:
-            self._start = np.full(shape, float(self.initial))
-        return self._start
 
     def set_viscosity(self, temperature: float | np.ndarray) -> float:
         """Bring the viscosity field to a temperature field, K; the film shares no other factor than 1."""
@@ -207,43 +203,10 @@ class FilmTemperature(_Temperature):
             self.field.set(self.viscosity_ratio(self._last))
         return 1.0
 
-    def advance(self, film: SolvedFilm) -> np.ndarray:
-        """Temperatures at the end of a solved film's step (n, m)."""
-        return temperature_of(film) if film.step <= 0.0 else self._solve(film, film.step)[0]
-
-    def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
-        """Temperatures in balance with the heat of a solved film (n, m); not finite without a way out for the heat.
-
-        The heat follows the temperature, see `follows`; the fixed point is that of the heat itself.
-        """
-        return self._solve(film, 0.0)[0] if self._has_way_out(film) else np.full(film.grid.shape, np.inf)
-
     def _has_way_out(self, film: SolvedFilm) -> bool:
         flows = OilFlows(film, self.carry_over)
         stagnant = flows.exchanged <= NO_FLOW * float(np.abs(flows.x).max())
         return not (self.transfer == 0.0 and stagnant and self.heat(film).max() > 0.0)
-
-    def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
-        """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
-        return self._solve(film, film.step, temperature)[1]
-
-    def _wall(self, film: SolvedFilm) -> tuple[float | np.ndarray, float | np.ndarray]:
-        """Heat transfer to both surfaces, W/(m2 K), and their mean temperature, K.
-
-        Floats, or (n, m) with a conductivity.
-
-        A parabola across the film with mean T and the surfaces' s_1, s_2 passes
-        ``k/h (6 T - 4 s_1 - 2 s_2) = U_1 (s_1 - T_1)``, and the like on the other side; both solved for the surfaces.
-        """
-        (U1, T1), (U2, T2) = self.walls
-        if self.spec.conductivity is None or self.transfer == 0.0:
-            return self.transfer, (U1 * T1 + U2 * T2) / max(self.transfer, 1e-300)
-        oil = self.spec.conductivity / (film.parts.bearing.radial_clearance * film.solver.H)
-        both = U1 * U2 + oil * self.transfer
-        return (
-            12.0 * oil * both / (U1 * U2 + 4.0 * oil * self.transfer + 12.0 * oil**2),
-            (0.5 * U1 * U2 * (T1 + T2) + oil * (U1 * T1 + U2 * T2)) / both,
-        )
 
     def heat(self, film: SolvedFilm) -> np.ndarray:
         """Heat at the vertices, W (n, m): shear, pressure flow and contact friction.
@@ -292,15 +255,3 @@ class FilmTemperature(_Temperature):
         if film.loads.recess is not None:
             density += film.loads.recess.density
         return film.scales.shear / flow_power * speed2 * R**2 * density
-
-    def _solve(
-        self, film: SolvedFilm, step: float, known: np.ndarray | None = None
-    ) -> tuple[np.ndarray, dict[str, float]]:
-        """Temperatures (n, m) and their balance; ``known`` skips the solution and balances given ones."""
-        balance = HeatBalance(self, film, step, self.heat(film))
-        transfer, wall = self._wall(film)
-        walls = transfer * film.solver.area * film.grid.reference_length**2 / balance.scale
-        if known is None:
-            balance.factor(walls)
-            known = balance.temperatures(walls * (wall - self.supply))
-        return known, balance.sums(known) | {"conducted": balance.scale * float(np.sum(walls * (known - wall)))}

@@ -1,4 +1,4 @@
-"""Walls that conduct: the temperatures of bush and journal with those of the film, and what the walls grow by.
+"""Temperatures of the film, with those of bush and journal where they conduct, and the growth of such walls.
 
 A state (n, m + k) has the film's temperatures in its first m columns, behind them those of the bush's rings, from the
 bore outward, and the journal's, from its surface inward and the same in every row; K.
@@ -14,65 +14,15 @@ import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.conduction import Passage, Rings, Walls
+from exudyn_ehd.film.heat.conduction import Rings, Walls
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
-from exudyn_ehd.joint.heat.heat_balance import HeatBalance
-from exudyn_ehd.joint.heat.temperature import FilmTemperature, ViscosityField
+from exudyn_ehd.joint.heat.heat_balance import HeatBalance, PassageData
+from exudyn_ehd.joint.heat.temperature import HeatedFilm, ViscosityField
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 
 # Share of the heat to which what the film gives and what the walls take agree.
 AGREED = 1e-13
-
-
-class Between(HeatBalance):
-    """Energy equation of a film's mean temperature between surfaces that have temperatures outside, K.
-
-    ``at`` lists those of both sides as (n, 1) or (1, 1) arrays. Unknowns are temperatures (n, m), K.
-
-    Parameters
-    ----------
-    thermal : WalledTemperature
-    film, step
-        As for `HeatBalance`.
-
-    Attributes
-    ----------
-    by : lists of lists of (n, m) arrays
-        Heat that the temperatures outside give to both sides, at held unknowns, W/K.
-    """
-
-    def __init__(self, thermal: WalledTemperature, film: SolvedFilm, step: float) -> None:
-        super().__init__(thermal, film, step, thermal.heat(film))
-        self._pass(*thermal.passage(film))
-
-    def _pass(self, kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
-        self.passage = Passage(kappa, area, outward)
-        self.by = self.passage.by
-
-    def solve(self) -> None:
-        """Factor the system, which `between` and `change` use."""
-        self.factor(self.passage.transfer / self.scale)
-
-    def between(self, at: list[np.ndarray]) -> np.ndarray:
-        """Unknowns with temperatures ``at`` outside."""
-        return self.temperatures(self.passage.gain([a - self.supply for a in at]) / self.scale)
-
-    def change(self, at: list[np.ndarray]) -> np.ndarray:
-        """Change of `between` by a change outside."""
-        return self.response(self.passage.gain(at) / self.scale)
-
-    def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
-        """Heat into both sides (n, m), W."""
-        return self.passage.heat(x, at)
-
-    def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-        """Blocks of the film in a state."""
-        return x
-
-    def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
-        """Heat in, convected and stored, W, with unknowns ``x`` at the end."""
-        return self.sums(x)
 
 
 class _Wall:
@@ -103,13 +53,13 @@ class _Wall:
         return float(np.sum(self.rings.loss * (T - self.ambient))), stored
 
 
-class WalledTemperature(FilmTemperature):
-    """`FilmEnergy` with a bush or journal that conducts, of one bearing model.
+class FilmTemperature(HeatedFilm):
+    """`FilmEnergy` of one bearing model, between surfaces of given temperatures or walls that conduct.
 
     Parameters
     ----------
     spec, bearing, field
-        As for `FilmTemperature`.
+        As for `HeatedFilm`.
     shape : (int, int)
         Shape of the film's grid.
     """
@@ -132,6 +82,7 @@ class WalledTemperature(FilmTemperature):
         self.conducting = [wall for wall in self.sides if wall is not None]
         self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
         self.grows = any(wall.expands > 0.0 for wall in self.conducting)
+        self._start: np.ndarray | None = None
         self._last_state: np.ndarray | None = None
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
@@ -142,8 +93,10 @@ class WalledTemperature(FilmTemperature):
                 self._start[:, wall.columns] = wall.initial
         return self._start
 
-    def split(self, temperature: float | np.ndarray) -> tuple[np.ndarray, Walls]:
-        """The film's own temperatures (n, m) of a state, and its walls."""
+    def split(self, temperature: float | np.ndarray) -> tuple[float | np.ndarray, Walls | None]:
+        """The film's own temperatures (n, m) of a state, and its walls; None where nothing stands behind the film's."""
+        if self.size == self.shape[1]:
+            return temperature, None
         if temperature is not self._last_state:
             self._last_state = T = np.asarray(temperature)
             (bush, journal), m = self.sides, self.shape[1]
@@ -173,21 +126,21 @@ class WalledTemperature(FilmTemperature):
 
     def advance(self, film: SolvedFilm) -> np.ndarray:
         """State at the end of a solved film's step."""
-        old = self._old(film)
+        old = self.state_of(film.history)
         return old if film.step <= 0.0 else self._settled(film, film.step, old)
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """State in balance with the heat of a solved film; not finite without a way out for the heat."""
         if not self._has_way_out(film):
             return np.full((self.shape[0], self.size), np.inf)
-        return self._settled(film, 0.0, self._old(film))
+        return self._settled(film, 0.0, self.state_of(film.history))
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, convected, conducted to ambient or given walls, and stored, W, of a step that ends at a state.
 
         Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them.
         """
-        T, old, film_only = self._of_film(temperature), self._old(film), self.equations(film, film.step)
+        T, old, film_only = self._of_film(temperature), self.state_of(film.history), self.equations(film, film.step)
         at = [self._surface(side, temperature) for side in (0, 1)]
         out, q = film_only.totals(T, at), film_only.passed(T, at)
         out["conducted"] = 0.0
@@ -201,8 +154,9 @@ class WalledTemperature(FilmTemperature):
             out["stored"] += stored
         return out | {"bush": float(q[0].sum()), "journal": float(q[1].sum())}
 
-    def _old(self, film: SolvedFilm) -> np.ndarray:
-        known = None if film.history is None else film.history.temperature
+    def state_of(self, history: History | None) -> np.ndarray:
+        """State that a history keeps, that of the start without one."""
+        known = None if history is None else history.temperature
         return self.initial_temperature(self.shape) if known is None else np.asarray(known)
 
     def _surface(self, side: int, state: np.ndarray) -> np.ndarray:
@@ -228,7 +182,7 @@ class WalledTemperature(FilmTemperature):
                 state[:, side.columns] = rise + side.ambient
         return state
 
-    def _surfaces_change(self, between: Between, old: np.ndarray, heat: list[np.ndarray]) -> np.ndarray:
+    def _surfaces_change(self, between: HeatBalance, old: np.ndarray, heat: list[np.ndarray]) -> np.ndarray:
         """Change (k,) of the walls' surface temperatures from ``old``, at which the film gives ``heat``, W, to where
         the walls take what it gives.
 
@@ -250,14 +204,14 @@ class WalledTemperature(FilmTemperature):
         enough = AGREED * float(np.linalg.norm(lu_solve(lead, given)))
         return solve_by_products(led, lu_solve(lead, missing + given), enough, self.unknowns)
 
-    def equations(self, film: SolvedFilm, step: float) -> Between:
+    def equations(self, film: SolvedFilm, step: float) -> HeatBalance:
         """Return the equations of a solved film over a step, s; 0: steady state."""
-        return Between(self, film, step)
+        return HeatBalance(self, film, step, self.passage(film))
 
-    def passage(self, film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, tuple[float | None, float | None]]:
-        """Return the arguments of `Passage` for a solved film."""
-        assert self.spec.conductivity is not None
-        kappa = self.spec.conductivity / (self.clearance * film.solver.H)
+    def passage(self, film: SolvedFilm) -> PassageData:
+        """Return the passage of heat from a solved film to both sides."""
+        k = self.spec.conductivity
+        kappa = None if k is None else k / (self.clearance * film.solver.H)
         area = film.solver.area * film.grid.reference_length**2
         bush, journal = (U if wall is None else None for wall, (U, _) in zip(self.sides, self.walls, strict=True))
         return kappa, area, (bush, journal)
@@ -295,14 +249,12 @@ class WalledTemperature(FilmTemperature):
 class Growth:
     """Growth of the walls as a gap term: uniform, with the temperatures at the start of a step."""
 
-    def __init__(self, thermal: WalledTemperature) -> None:
+    def __init__(self, thermal: FilmTemperature) -> None:
         self.thermal, self.last = thermal, np.full(thermal.shape, np.nan)
 
     def field(self, history: History | None) -> np.ndarray:
         """Scaled addition to the gap (n, m)."""
-        known = None if history is None else history.temperature
-        state = self.thermal.initial_temperature(self.thermal.shape) if known is None else np.asarray(known)
-        opening = self.thermal.opening(state) / self.thermal.clearance
+        opening = self.thermal.opening(self.thermal.state_of(history)) / self.thermal.clearance
         if self.last[0, 0] != opening:
             self.last = np.full(self.thermal.shape, opening)
         return self.last

@@ -18,7 +18,7 @@ from exudyn_ehd.film.surfaces.average_gap import AverageGap
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
-from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature, ViscosityField
+from exudyn_ehd.joint.heat.temperature import LumpedTemperature, ViscosityField
 from exudyn_ehd.joint.model.parts import grid_of
 from exudyn_ehd.joint.seams import Effects, GapTerm, PressureLaw, Wear, shear_product
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
@@ -116,14 +116,12 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
         shear_factor=shear_product(field, effects.shear_factor),
         uneven_drag=field.changes_carriers,
     )
-    if thermal.across == 1 and thermal.bush is None and thermal.journal is None:
-        return replace(effects, thermal=FilmTemperature(thermal, bearing, field))
-    # imported here: other films need no walls
-    from exudyn_ehd.joint.heat.walls import Growth, WalledTemperature
+    # imported here: other films have no field of temperatures
+    from exudyn_ehd.joint.heat.walls import FilmTemperature, Growth
 
-    kind = WalledTemperature if thermal.across == 1 else CubicTemperature
-    walled = kind(thermal, bearing, field, grid_of(bearing).shape)
-    return replace(effects, thermal=walled, gap_terms=(Growth(walled),) if walled.grows else ())
+    kind = FilmTemperature if thermal.across == 1 else CubicTemperature
+    heated = kind(thermal, bearing, field, grid_of(bearing).shape)
+    return replace(effects, thermal=heated, gap_terms=(Growth(heated),) if heated.grows else ())
 
 
 def transform_law(lubricant: Lubricant) -> PressureLaw | None:

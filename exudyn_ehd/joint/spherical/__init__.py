@@ -7,5 +7,4 @@ patch    the film grid of a patch of a sphere
 model    loads on the ball and their exact tangent
 steady   prescribed position
 audit    what mattered in its films, and what they leave out
-changes  films with and without an effect at the same load
 """

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -20,13 +20,7 @@ from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.static.dynamic_stiffness import (
-    FilmOnBoreResponse,
-    FilmResponse,
-    YieldingResponse,
-    threshold,
-    yielding_response,
-)
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmOnBoreResponse, FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
@@ -109,7 +103,7 @@ class EquilibriumResult:
     iterations: int
     film: SteadyResult = field(repr=False)
     frequency: float = 0.0
-    response: FilmResponse | YieldingResponse | None = field(default=None, repr=False)
+    response: FilmResponse | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         angle, mass = shown("angle", self.attitude_angle), f"{self.critical_mass:.3g} kg"
@@ -264,7 +258,13 @@ def equilibrium(
     motion[:2] = first_guess(bearing, omega, force, b)
     search = LoadSearch(model, force, "equilibrium", faces=faces, size=size)
     found = steadiest(search, search.find(motion))
-    small = _small_motions(model, found)
+    K, C, response = _small_motions(model, found)
+    ratio, mass = whirl_threshold(K, C, abs(omega)) if response is None else threshold(response.at, abs(omega))
+    frequency = abs(omega) * (0.5 if math.isnan(ratio) else ratio)
+    Z = K + 1j * frequency * C if response is None else response.at(frequency)
+    there = Z.real, Z.imag / frequency
+    if not model.remembers_mass:
+        frequency = 0.0
     film = result_at(model, found.motion, "equilibrium", found.film.history)
     if found.faces is not None:
         from exudyn_ehd.joint.static.thrust import result_of
@@ -274,56 +274,50 @@ def equilibrium(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
         attitude_angle=film.attitude_angle,
-        **small._asdict(),
+        stiffness=there[0] if model.remembers_mass else K,
+        damping=there[1] if model.remembers_mass else C,
+        frequency=frequency,
+        whirl_ratio=ratio,
+        critical_mass=mass,
+        critical_mass_error=critical_mass_error(bearing, *there),
+        response=response,
         residual=search.residual(found),
         iterations=search.count,
         film=film,
     )
 
 
-class _SmallMotions(NamedTuple):
-    """Values of small motions in `EquilibriumResult`."""
+def _small_motions(model: BearingModel, found: Carried) -> tuple[np.ndarray, np.ndarray, FilmResponse | None]:
+    """K and C (2, 2) of slow motions about a position whose film is the model's last, and its response.
 
-    stiffness: np.ndarray
-    damping: np.ndarray
-    frequency: float
-    whirl_ratio: float
-    critical_mass: float
-    critical_mass_error: float
-    response: FilmResponse | YieldingResponse | None
-
-
-def _small_motions(model: BearingModel, found: Carried) -> _SmallMotions:
-    """Return the values of small motions about a position whose film is the model's last."""
-    evaluation, omega = found.evaluation, abs(float(found.motion[8]))
+    None where K and C do not depend on the frequency.
+    """
+    evaluation = found.evaluation
     central = is_central(evaluation)
     if central:
         require_derivatives(evaluation, "equilibrium")
-    tangent, film = evaluation.steady_tangent(found.tangent), found.film
-    yields = model.parts.liner is not None or model.flexible
-    response: FilmResponse | YieldingResponse | None = None
-    if model.remembers_mass:
-        if isinstance(evaluation, ElasticEvaluation):
-            response = FilmOnBoreResponse(evaluation)
-        else:
-            response = FilmResponse(film, tangent)
+    K, C = own = _slow_motions(evaluation, found.tangent)
+    if found.faces is not None:
+        K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
+    if not (model.remembers_mass or model.flexible or model.parts.liner is not None):
+        return K, C, None
+    if central and not model.remembers_mass:
+        evaluation = cast("Evaluation", evaluate_beside(evaluation))
+        own = _slow_motions(evaluation, evaluation.steady_tangent())
+    assert evaluation.film is not None
+    if isinstance(evaluation, ElasticEvaluation):
+        response: FilmResponse = FilmOnBoreResponse(evaluation)
     else:
-        # on a liner the damping is that of a slow motion, which it follows
-        slow = evaluation.tangent(slow_motion=True) if model.parts.liner is not None else tangent
-        K, C = -tangent[:2, :2], -slow[:2, 4:6]
-        if found.faces is not None:
-            K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
-        if yields:
-            beside = cast("Evaluation", evaluate_beside(evaluation)) if central else evaluation
-            response = yielding_response(beside, K, C)
-    ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
-    frequency = omega * (0.5 if math.isnan(ratio) else ratio)
-    Z = K + 1j * frequency * C if response is None else response.at(frequency)
-    there = Z.real, Z.imag / frequency
-    error = critical_mass_error(model.bearing, *there)
-    if isinstance(response, FilmResponse):
-        return _SmallMotions(*there, frequency, ratio, mass, error, response)
-    return _SmallMotions(K, C, 0.0, ratio, mass, error, response)
+        response = FilmResponse(evaluation.film, evaluation.steady_tangent())
+    response.add(K - own[0], C - own[1])
+    return K, C, response
+
+
+def _slow_motions(evaluation: Evaluation, rough: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """K and C (2, 2) of slow motions, which a liner and a bore follow, of one film; ``rough``: its `steady_tangent`."""
+    tangent = evaluation.steady_tangent(rough)
+    slow = tangent if evaluation.model.parts.liner is None else evaluation.tangent(slow_motion=True)
+    return -tangent[:2, :2], -slow[:2, 4:6]
 
 
 def _faces(model: BearingModel, position: float, load: float | None, across: float) -> FacesUnderLoad | None:
