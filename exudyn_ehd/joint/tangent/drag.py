@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.surfaces.drag import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
+from exudyn_ehd.film.surfaces import drag
 from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
 
 
@@ -19,15 +19,19 @@ def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
     return parts.uneven_drag or limited is not None or (parts.liner is not None and parts.liner.limited)
 
 
-def drag_integrals(parts: FilmParts, limited: LimiterFields | None, P: np.ndarray) -> tuple[float, float]:
+def drag_integrals(parts: FilmParts, limited: LimiterFields | None, P: np.ndarray) -> np.ndarray:
     """(E_x, E_z) of the film that ``parts.solver`` holds, at the pressures P (n, m)."""
-    return drag_sums(P, _gaps(parts, limited), parts.grid.mesh)
+    return drag.drag_sums(P, _excess(parts, limited), parts.grid.mesh)
 
 
 def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
-    """Add the weights of E_x and E_z at the unknown pressures, their gaps fixed, to rows (2, count)."""
+    """Add the weights of E_x and E_z at the unknown pressures, their gaps fixed, to rows (2, count).
+
+    Zero where the pressure is clipped.
+    """
     w = film.solver.work
-    drag_rhs(w.order, w.count, w.active, _gaps(film.parts, film.limited), film.grid.mesh, rows)
+    weights = drag.drag_weights(_excess(film.parts, film.limited), film.grid.mesh) * w.active
+    rows += weights.reshape(2, -1)[:, w.order[: w.count]]
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -46,13 +50,10 @@ def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
 def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     """Add the gradients of E_x and E_z at fixed pressure to the scaled pose to ``gradient`` (2, 10)."""
-    g, at = film.grid, film.parts.directions
-    if film.parts.liner is None:
-        drag_pose_gradient(film.oil.P, *_carrier_slopes(film), *_gap_slopes(film), g.mesh, g.directions, gradient)
-        return
+    z, at = film.grid.z, film.parts.directions
     face, cell = drag_by_gap(film)
-    contract_pose(face, at.cos_f, at.sin_f, g.z, gradient[:1, :4])
-    contract_pose(cell, at.cos_x, at.sin_x, g.z, gradient[:, :4])
+    contract_pose(face, at.cos_f, at.sin_f, z, gradient[:1, :4])
+    contract_pose(cell, at.cos_x, at.sin_x, z, gradient[:, :4])
 
 
 def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
@@ -61,38 +62,28 @@ def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarr
     return np.stack((_ends(face), cell)) * liner.deflection_by_pressure
 
 
-def _gaps(parts: FilmParts, limited: LimiterFields | None) -> tuple[object, ...]:
-    """Carriers, film's gaps and true gaps that ``parts.solver`` holds, as `link_excess` takes them."""
+def _excess(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
+    """Carriers less true gaps (2, n, m) on the links in theta and z of the film that ``parts.solver`` holds."""
     s, liner = parts.solver, parts.liner
     gap, link = s.H, s.HF
     if limited is not None:
         gap, link = limited.gap, limited.link
     elif liner is not None and liner.limited:
         gap, link = liner.true_gap, liner.true_link
-    carriers = (s.flux.cx, s.flux.cz) if parts.uneven_drag and s.flux is not None else None
-    return carriers, s.H, s.HF, gap, link
-
-
-def _carrier_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
-    """d(carrier)/d(film gap) of the links in theta and z."""
-    f, ones = film.solver.flux, film.solver.ones
-    return (ones, ones) if f is None else (f.cx_h, f.cz_h)
-
-
-def _gap_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
-    """d(film gap)/d(true gap) at the vertices and on the links i -> i+1."""
-    ones, limited, liner = film.solver.ones, film.limited, film.parts.liner
-    if liner is not None:
-        return liner.gap_slopes.rate_t, liner.gap_slopes.link
-    return (ones, ones) if limited is None else (limited.slope, limited.face_slope)
+    along, across = s.HF, drag.on_rows(s.H)
+    if parts.uneven_drag and s.flux is not None:
+        along, across = s.flux.cx, s.flux.cz
+    return np.array((along - link, across - drag.on_rows(gap)))
 
 
 def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     """Gradients to the true gap, of E_x on the links i -> i+1 and of E_z at the vertices (n, m)."""
-    g = film.grid
-    face, cell = np.empty(g.shape), np.empty(g.shape)
-    drag_gap_slopes(film.oil.P, *_carrier_slopes(film), *_gap_slopes(film), g.mesh, face, cell)
-    return face, cell
+    ones, flux, limited, liner = film.solver.ones, film.solver.flux, film.limited, film.parts.liner
+    slope, face_slope = (ones, ones) if limited is None else (limited.slope, limited.face_slope)
+    if liner is not None:
+        slope, face_slope = liner.gap_slopes.rate_t, liner.gap_slopes.link
+    carriers = (ones, ones) if flux is None else (flux.cx_h, flux.cz_h)
+    return drag.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.mesh)
 
 
 def _ends(face: np.ndarray) -> np.ndarray:
