@@ -131,6 +131,12 @@ class FilmGrid:
         flat, around = np.ones(self.shape), np.array(self.directions[:2])[:, :, None]
         return np.concatenate((around * flat, around * self.z, flat[None]))
 
+    @cached_property
+    def link_widths(self) -> np.ndarray:
+        """Widths (2, n, m) of the links in theta and z; 0 where there is none."""
+        across = np.append(self.link_z != 0.0, False)
+        return np.array((np.outer(self.link_x != 0.0, self.width_z), np.outer(self.width_x, across)))
+
     def cut(self, kx: np.ndarray, kz: np.ndarray) -> None:
         """Multiply conductances (n, m) by ``cuts``, in place."""
         if self.cuts is not None:

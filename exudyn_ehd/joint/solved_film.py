@@ -258,6 +258,7 @@ class Loads(NamedTuple):
     couette : scaled integral of the Couette shear
     s_theta : scaled integral of the pressure flow's shear along theta
     recess : shear of the oil in supply areas, which is part of the Couette shear; None without any
+    drag : weights (2, n, m) of the pressures in the integrals of uneven drag; None where both surfaces share it alike
     """
 
     wrench: np.ndarray
@@ -266,6 +267,7 @@ class Loads(NamedTuple):
     couette: float
     s_theta: float
     recess: RecessShear | None = None
+    drag: np.ndarray | None = None
 
 
 class SolvedFilm(NamedTuple):

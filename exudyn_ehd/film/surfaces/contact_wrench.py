@@ -11,6 +11,13 @@ import math
 
 import numpy as np
 
+# Weights (6, 5) of the integrals in force and moment about O, lengths over R: of pressures on a centred journal, and of
+# tractions of -1 per pressure along theta and along z.
+_PRESSED, _ALONG, _ACROSS = np.zeros((3, 6, 5))
+_PRESSED[0, 0], _PRESSED[1, 1], _PRESSED[3, 3], _PRESSED[4, 2] = -1.0, -1.0, 1.0, -1.0
+_ALONG[0, 1], _ALONG[1, 0], _ALONG[3, 2], _ALONG[4, 3], _ALONG[5, 4] = 1.0, -1.0, 1.0, 1.0, -1.0
+_ACROSS[2, 4], _ACROSS[3, 1], _ACROSS[4, 0] = -1.0, -1.0, 1.0
+
 
 def slip(motion: np.ndarray, R: float, transition: float) -> tuple[float, float, np.ndarray]:
     """Regularised slip direction (theta, z) of a motion (10,), and its derivatives (2, 2) to (omega, w).
@@ -28,39 +35,15 @@ def contact_integrals(P: np.ndarray, weight: np.ndarray, moments: np.ndarray) ->
     return moments.reshape(5, -1) @ (P * weight).ravel()
 
 
-def pressure_weights(motion: np.ndarray, R: float) -> np.ndarray:
-    """Weights (6, 5) of the integrals in the wrench of the pressures about O, N and Nm."""
-    x, y, bx, by = motion[:4].tolist()
-    return R**2 * np.array(
-        [
-            [-1.0, 0.0, 0.0, 0.0, 0.0],
-            [0.0, -1.0, 0.0, 0.0, 0.0],
-            [0.0, 0.0, 0.0, 0.0, 0.0],
-            [0.0, 0.0, 0.0, R, 0.0],
-            [0.0, 0.0, -R, 0.0, 0.0],
-            [y, -x, R * by, -R * bx, 0.0],
-        ]
-    )
-
-
-def drag_weights(a: float, b: float, R: float) -> np.ndarray:
-    """Weights (6, 5) of the integrals in the wrench of tractions of -a in theta and -b in z per pressure."""
-    return R**2 * np.array(
-        [
-            [0.0, a, 0.0, 0.0, 0.0],
-            [-a, 0.0, 0.0, 0.0, 0.0],
-            [0.0, 0.0, 0.0, 0.0, -b],
-            [0.0, -b * R, a * R, 0.0, 0.0],
-            [b * R, 0.0, 0.0, a * R, 0.0],
-            [0.0, 0.0, 0.0, 0.0, -a * R],
-        ]
-    )
+def contact_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
+    """Weights (6, 5) of the integrals in the wrench about O of pressures and their Coulomb friction, N and Nm."""
+    return _units(R) * (_PRESSED + _torque(motion, R)) + friction_weights(motion, friction, transition, R)
 
 
 def friction_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
-    """Weights (6, 5) of the integrals in the wrench of Coulomb friction with this coefficient."""
+    """`contact_weights` of the friction alone."""
     a, b, _ = slip(motion, R, transition)
-    return drag_weights(friction * a, friction * b, R)
+    return friction * _units(R) * (a * _ALONG + b * _ACROSS)
 
 
 def contact_tangent(
@@ -78,10 +61,22 @@ def contact_tangent(
     ``slope`` (n, m): derivative of the pressure to the scaled gap times the integration weights.
     """
     out, flat = np.zeros((6, 10)), moments.reshape(5, -1)
-    by_pose = -(flat * slope.ravel()) @ flat[:4].T * pose_scale
-    out[:, :4] = (pressure_weights(motion, R) + friction_weights(motion, friction, transition, R)) @ by_pose
+    by_pose = (flat * slope.ravel()) @ flat[:4].T * -pose_scale
+    out[:, :4] = contact_weights(motion, friction, transition, R) @ by_pose
     sc, ss, szc, szs, _ = integrals.tolist()
     out[5, :4] += R**2 * np.array([-ss, sc, -R * szs, R * szc])
-    for column, (a, b) in enumerate(slip(motion, R, transition)[2].T.tolist()):
-        out[:, 8 + column] = drag_weights(friction * a, friction * b, R) @ integrals
+    by_slip = np.array((_ALONG @ integrals, _ACROSS @ integrals)).T
+    out[:, 8:] = friction * _units(R) * (by_slip @ slip(motion, R, transition)[2])
+    return out
+
+
+def _units(R: float) -> np.ndarray:
+    """Force and moment (6, 1) of a unit pressure over scaled area and arm, m^2 and m^3."""
+    return np.array([R**2, R**2, R**2, R**3, R**3, R**3])[:, None]
+
+
+def _torque(motion: np.ndarray, R: float) -> np.ndarray:
+    """Weights (6, 5) of e x F about O, over R^3."""
+    out, (x, y, bx, by) = np.zeros((6, 5)), motion[:4].tolist()
+    out[5, :4] = y / R, -x / R, by, -bx
     return out

@@ -31,39 +31,32 @@ import numpy as np
 
 def on_rows(gap: np.ndarray) -> np.ndarray:
     """Gap (n, m) of the links in z, the mean of both vertices."""
-    return 0.5 * (gap + np.roll(gap, -1, axis=-1))
+    return 0.5 * (gap + np.concatenate((gap[:, 1:], gap[:, -1:]), axis=1))
 
 
 def onto_rows(values: np.ndarray) -> np.ndarray:
-    """Transpose of `on_rows`: half of what stands on the links in z at either of their ends."""
-    return 0.5 * (values + np.roll(values, 1, axis=-1))
+    """Transpose of `on_rows`: half of what stands on the links in z (..., n, m) at either of their ends."""
+    half = 0.5 * values
+    half[..., 1:] += 0.5 * values[..., :-1]
+    return half
 
 
 def drops(P: np.ndarray) -> np.ndarray:
     """P less that of the next vertex in theta and z, (2, n, m)."""
-    return np.array((P - np.roll(P, -1, axis=0), P - np.roll(P, -1, axis=1)))
+    out = np.array((P, P))
+    out[0, :-1] -= P[1:]
+    out[0, -1] -= P[0]
+    out[1, :, :-1] -= P[:, 1:]
+    return out
 
 
-def drop_weights(x: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Weights (..., n, m) of P in the sum of x and z times its `drops`; z is zero behind the last links."""
-    return x - np.roll(x, 1, axis=-2) + z - np.roll(z, 1, axis=-1)
-
-
-def link_widths(mesh: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Widths (2, n, m) of the links in theta and z; 0 where there is none."""
-    width_x, width_z, link_x, link_z = mesh
-    return np.array((np.outer(link_x != 0.0, width_z), np.outer(width_x, np.append(link_z != 0.0, False))))
-
-
-def drag_sums(P: np.ndarray, excess: np.ndarray, mesh: tuple[np.ndarray, ...]) -> np.ndarray:
-    """(E_x, E_z) of the pressures P (n, m); ``excess`` (2, n, m): carriers less true gaps on the links."""
-    return np.sum(excess * drops(P) * link_widths(mesh), axis=(1, 2))
-
-
-def drag_weights(excess: np.ndarray, mesh: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Weights (2, n, m) of the pressures in `drag_sums`."""
-    (x, z), none = excess * link_widths(mesh), np.zeros(excess[0].shape)
-    return np.array((drop_weights(x, none), drop_weights(none, z)))
+def drop_weights(links: np.ndarray) -> np.ndarray:
+    """Weights of P (2, ..., n, m) in the sums of ``links``, of the same shape, times the `drops` in theta and z."""
+    out, (x, z) = links.copy(), links
+    out[0, ..., 1:, :] -= x[..., :-1, :]
+    out[0, ..., 0, :] -= x[..., -1, :]
+    out[1, ..., 1:] -= z[..., :-1]
+    return out
 
 
 def drag_by_gap(
@@ -71,12 +64,12 @@ def drag_by_gap(
     carrier_slopes: tuple[np.ndarray, np.ndarray],
     slope: np.ndarray,
     face_slope: np.ndarray,
-    mesh: tuple[np.ndarray, ...],
+    widths: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices.
 
     ``carrier_slopes``: of the carriers in theta and z to the film's gap there; ``slope``, ``face_slope``: h' at
-    vertices and links.
+    vertices and links; ``widths``: `FilmGrid.link_widths`.
     """
-    x, z = drops(P) * link_widths(mesh)
+    x, z = drops(P) * widths
     return x * (carrier_slopes[0] * face_slope - 1.0), onto_rows(z * carrier_slopes[1]) * slope - onto_rows(z)

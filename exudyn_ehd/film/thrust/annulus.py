@@ -141,7 +141,7 @@ class Annulus:
 
     def link_rows(self, H: np.ndarray, HF: np.ndarray) -> np.ndarray:
         """Weights (3, n, m) of the pressures in the sums of ``along`` and ``across`` for the gaps (n, m)."""
-        return drop_weights(self.along * HF, self.across * on_rows(H))
+        return np.asarray(drop_weights(np.array((self.along * HF, self.across * on_rows(H)))).sum(axis=0))
 
     def link_gradients(self, P: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (3, n, m) of these sums to the gaps at the vertices and on the links for pressures P (n, m)."""

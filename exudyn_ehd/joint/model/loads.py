@@ -13,7 +13,7 @@ from exudyn_ehd.film.loads import (
 )
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
-from exudyn_ehd.film.surfaces.contact_wrench import contact_integrals, friction_weights, pressure_weights
+from exudyn_ehd.film.surfaces.contact_wrench import contact_integrals, contact_weights, friction_weights
 from exudyn_ehd.joint.seams import Effects, ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
@@ -25,7 +25,7 @@ from exudyn_ehd.joint.solved_film import (
     OilFields,
     Scales,
 )
-from exudyn_ehd.joint.tangent.drag import drag_integrals, pulls_unevenly
+from exudyn_ehd.joint.tangent.drag import drag_weights, pulls_unevenly
 
 _NO_CONTACT = np.zeros(6)
 # Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
@@ -96,10 +96,10 @@ def film_loads(
     if parts.liner is not None:
         # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
         extra_z += math.pi * parts.liner.beta * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
-    if pulls_unevenly(parts, limited):
-        drag = drag_integrals(parts, limited, P)
-        extra_theta += drag[0]
-        extra_z += drag[1]
+    drag = drag_weights(parts, limited) if pulls_unevenly(parts, limited) else None
+    if drag is not None:
+        extra_theta += float(np.vdot(drag[0], P))
+        extra_z += float(np.vdot(drag[1], P))
     sheared = g.shear_weight * shear_share(s.system, s.work.active, s.closure)
     couette = float(np.vdot(sheared, (1.0 if oil.ratio is None else oil.ratio) / s.H))
     if recess is not None:
@@ -123,7 +123,7 @@ def film_loads(
     if pressing is not None:
         contact = np.zeros(6)
         _add_contacts(parts, journal, pressing, contact, wrench)
-    return Loads(wrench, contact, integrals, couette, s_theta, recess)
+    return Loads(wrench, contact, integrals, couette, s_theta, recess, drag)
 
 
 def recess_of(
@@ -153,5 +153,4 @@ def _add_contacts(
     for k, (friction, transition) in enumerate(f.friction):
         f.integrals[k] = contact_integrals(f.P[k], g.weight, g.moments)
         friction_out += friction_weights(motion, friction, transition, R) @ f.integrals[k]
-        wrench += pressure_weights(motion, R) @ f.integrals[k]
-    wrench += friction_out
+        wrench += contact_weights(motion, friction, transition, R) @ f.integrals[k]

@@ -31,10 +31,10 @@ from exudyn_ehd.film.sensitivity.bore_stencil import (
     spread_gradient,
 )
 from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
-from exudyn_ehd.film.surfaces.contact_wrench import friction_weights, pressure_weights
+from exudyn_ehd.film.surfaces.contact_wrench import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import drag_by_gap, pulls_unevenly
+from exudyn_ehd.joint.tangent.drag import drag_by_gap
 from exudyn_ehd.joint.tangent.line import shear_of_fills, true_fills, true_line, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
@@ -233,11 +233,11 @@ def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
     # force and moment across the axis do not depend on the gap
     factors, rows = weights[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
     shear_fields(film.oil.P, g.weight, g.width_x[0], g.z, couette_field(film), _end_field(film), factors, rows)
-    if pulls_unevenly(film.parts, film.limited):
+    if film.loads.drag is not None:
         face, cell = drag_by_gap(film)
         # the gap on a link is the mean of its two columns
         rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))
-        rows += factors[:, 2, None, None] * cell[1]
+        rows += factors[:, 2, None, None] * cell[-1]
     out = np.zeros((2, 6, bore.size))
     fills = true_fills(film)
     if fills is not None:
@@ -273,7 +273,7 @@ def _contact_wrench(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarra
     out = np.zeros((6, bore.size))
     for law, by_gap in zip(f.friction, f.slope, strict=True):
         rows = bore.contract(by_gap * film.grid.weight * film.grid.moments) / film.parts.bearing.radial_clearance
-        out += (pressure_weights(motion, R) + friction_weights(motion, *law, R)) @ rows
+        out += contact_weights(motion, *law, R) @ rows
     return out
 
 

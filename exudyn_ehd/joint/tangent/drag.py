@@ -19,31 +19,30 @@ def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
     return parts.uneven_drag or limited is not None or (parts.liner is not None and parts.liner.limited)
 
 
-def drag_integrals(parts: FilmParts, limited: LimiterFields | None, P: np.ndarray) -> np.ndarray:
-    """(E_x, E_z) of the film that ``parts.solver`` holds, at the pressures P (n, m)."""
-    return drag.drag_sums(P, _excess(parts, limited), parts.grid.mesh)
-
-
-def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
-    """Add the weights of E_x and E_z at the unknown pressures, their gaps fixed, to rows (2, count).
-
-    Zero where the pressure is clipped.
-    """
-    w = film.solver.work
-    weights = drag.drag_weights(_excess(film.parts, film.limited), film.grid.mesh) * w.active
-    rows += weights.reshape(2, -1)[:, w.order[: w.count]]
+def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
+    """Weights (2, n, m) of the pressures in E_x and E_z of the film that ``parts.solver`` holds."""
+    s, liner = parts.solver, parts.liner
+    gap, link = s.H, s.HF
+    if limited is not None:
+        gap, link = limited.gap, limited.link
+    elif liner is not None and liner.limited:
+        gap, link = liner.true_gap, liner.true_link
+    if parts.uneven_drag and s.flux is not None:
+        excess = np.array((s.flux.cx - link, s.flux.cz - drag.on_rows(gap)))
+    else:
+        excess = np.array((s.HF - link, drag.on_rows(s.H - gap)))
+    return drag.drop_weights(excess * parts.grid.link_widths)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     """Gradients at fixed pressure to the true gap.
 
-    Of E_x on the links i -> i+1 (1, n, m), of E_x and E_z at the vertices (2, n, m).
-
-    On a liner: to the gap of the undeformed surfaces, whose contact follows.
+    Of E_x on the links i -> i+1 (1, n, m), of E_z at the vertices (1, n, m). On a liner, to the gap of the undeformed
+    surfaces, whose contact follows: of E_x and E_z at the vertices (2, n, m).
     """
     face, cell = _slopes(film)
     if film.parts.liner is None:
-        return face[None], np.stack((np.zeros_like(cell), cell))
+        return face[None], cell[None]
     deflection = film.parts.liner.gap_slopes.D_r
     return face[None], np.stack((_ends(face) * deflection, cell * (1.0 + deflection)))
 
@@ -53,27 +52,13 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     z, at = film.grid.z, film.parts.directions
     face, cell = drag_by_gap(film)
     contract_pose(face, at.cos_f, at.sin_f, z, gradient[:1, :4])
-    contract_pose(cell, at.cos_x, at.sin_x, z, gradient[:, :4])
+    contract_pose(cell, at.cos_x, at.sin_x, z, gradient[-len(cell) :, :4])
 
 
 def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
     """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
     face, cell = _slopes(film)
     return np.stack((_ends(face), cell)) * liner.deflection_by_pressure
-
-
-def _excess(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
-    """Carriers less true gaps (2, n, m) on the links in theta and z of the film that ``parts.solver`` holds."""
-    s, liner = parts.solver, parts.liner
-    gap, link = s.H, s.HF
-    if limited is not None:
-        gap, link = limited.gap, limited.link
-    elif liner is not None and liner.limited:
-        gap, link = liner.true_gap, liner.true_link
-    along, across = s.HF, drag.on_rows(s.H)
-    if parts.uneven_drag and s.flux is not None:
-        along, across = s.flux.cx, s.flux.cz
-    return np.array((along - link, across - drag.on_rows(gap)))
 
 
 def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -83,7 +68,7 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     if liner is not None:
         slope, face_slope = liner.gap_slopes.rate_t, liner.gap_slopes.link
     carriers = (ones, ones) if flux is None else (flux.cx_h, flux.cz_h)
-    return drag.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.mesh)
+    return drag.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
 
 
 def _ends(face: np.ndarray) -> np.ndarray:

@@ -18,9 +18,9 @@ from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.surfaces.contact_wrench import contact_tangent, friction_weights, pressure_weights
+from exudyn_ehd.film.surfaces.contact_wrench import contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection, pulls_unevenly
+from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
 from exudyn_ehd.joint.tangent.line import (
     add_by_motion,
     line_by_motion,
@@ -101,7 +101,7 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
         dc += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
     _contract_couette(film, dc)
-    if pulls_unevenly(film.parts, film.limited):
+    if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
     return gradient[:4], dc, extra
 
@@ -169,7 +169,7 @@ def shear_needs_adjoint(film: SolvedFilm) -> bool:
 
 def has_extra_rows(film: SolvedFilm) -> bool:
     """Return whether `adjoint_rows` has two rows for the slopes of gap terms and for uneven drag."""
-    return film.extra is not None or pulls_unevenly(film.parts, film.limited)
+    return film.extra is not None or film.loads.drag is not None
 
 
 def shape_rows(film: SolvedFilm) -> int:
@@ -190,8 +190,7 @@ def liner_weights(film: SolvedFilm) -> np.ndarray:
     # the last of the film's eight is the ends', which no row of `adjoint_rows` has
     out[:, :count] = own[:, :count]
     if film.pressing is not None:
-        friction = friction_weights(w.motion, *film.pressing.friction[0], R)
-        out[:, count:] = pressure_weights(w.motion, R) + friction
+        out[:, count:] = contact_weights(w.motion, *film.pressing.friction[0], R)
     return out
 
 
@@ -213,8 +212,8 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         else:
             weight, slopes = g.weight * w.active, (film.extra.slope_x, film.extra.slope_z)
             extra[:] = [(weight * slope).ravel()[w.order[: w.count]] for slope in slopes]
-        if pulls_unevenly(p, film.limited):
-            add_drag_rows(film, extra)
+        if film.loads.drag is not None:
+            extra += (film.loads.drag * w.active).reshape(2, -1)[:, w.order[: w.count]]
         if P_q is not None:
             extra *= P_q
     y = film.solver.system
@@ -223,7 +222,7 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     # what follows the pressure of a vertex itself
     if shear_needs_adjoint(film):
         _add_shear_of_vertices(film, rows[4])
-    if p.liner is not None and has_extra_rows(film) and pulls_unevenly(p, film.limited):
+    if p.liner is not None and has_extra_rows(film) and film.loads.drag is not None:
         rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     if rows.shape[0] > own and p.liner is not None:
         by_pressure = g.weight * p.liner.contact_by_pressure

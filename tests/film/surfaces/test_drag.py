@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.surfaces.drag import drag_by_gap, drag_sums, drag_weights, on_rows
+from exudyn_ehd.film.surfaces.drag import drag_by_gap, drop_weights, on_rows
 
 
 @pytest.fixture(params=[(24, 7, 1), (9, 4, 2), (5, 2, 3)])
@@ -43,18 +43,23 @@ def carriers(request, film):
     return None if request.param == "the film's gap" else tuple(film["rng"].random((2, *shape)))
 
 
-def test_sums_and_weights(film, carriers):
+def widths(f):
+    """Widths (2, n, m) of the links, as of `FilmGrid.link_widths`."""
+    width_x, width_z, link_x, link_z = f["mesh"]
+    return np.array((np.outer(link_x != 0.0, width_z), np.outer(width_x, np.append(link_z != 0.0, False))))
+
+
+def test_weights(film, carriers):
     """The weights of the pressures are the sums of unit pressures there."""
     f, shape = film, film["P"].shape
     x, z = f["link"] - f["true_link"], between(f["gap"] - f["true_gap"])
-    excess = np.array((f["link"] - f["true_link"], on_rows(f["gap"] - f["true_gap"])))
+    excess = np.array((x, on_rows(f["gap"] - f["true_gap"])))
     if carriers is not None:
         x, z = carriers[0] - f["true_link"], carriers[1][:, :-1] - between(f["true_gap"])
         excess = np.array((x, carriers[1] - on_rows(f["true_gap"])))
-    np.testing.assert_allclose(drag_sums(f["P"], excess, f["mesh"]), drag_of(f, f["P"], x, z), rtol=1e-12, atol=1e-14)
     units = np.eye(f["P"].size).reshape(-1, *shape)
     expected = np.array([drag_of(f, unit, x, z) for unit in units]).T.reshape(2, *shape)
-    np.testing.assert_allclose(drag_weights(excess, f["mesh"]), expected, rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(drop_weights(excess * widths(f)), expected, rtol=1e-12, atol=1e-14)
 
 
 def test_gradients_to_the_gap(film, carriers):
@@ -62,7 +67,7 @@ def test_gradients_to_the_gap(film, carriers):
     film's."""
     f, shape = film, film["P"].shape
     steep = np.ones((2, *shape)) if carriers is None else np.array(carriers)
-    face, cell = drag_by_gap(f["P"], steep, f["slope"], f["face_slope"], f["mesh"])
+    face, cell = drag_by_gap(f["P"], steep, f["slope"], f["face_slope"], widths(f))
     vertex, link = f["rng"].normal(size=(2, *shape))
     along = (steep[0] * f["face_slope"] - 1.0) * link
     across = steep[1][:, :-1] * between(f["slope"] * vertex) - between(vertex)

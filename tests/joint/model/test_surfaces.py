@@ -9,8 +9,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.surfaces.contact_wrench import (
     contact_integrals,
     contact_tangent,
-    friction_weights,
-    pressure_weights,
+    contact_weights,
 )
 from exudyn_ehd.joint.model.build import build_model
 
@@ -83,7 +82,7 @@ def test_contact_tangent_is_the_derivative_of_the_wrench(speed, friction):
         return contact_integrals(P + slope * gap, grid.weight, grid.moments)
 
     def wrench(m):
-        return (pressure_weights(m, R) + friction_weights(m, friction, transition, R)) @ integrals(m)
+        return contact_weights(m, friction, transition, R) @ integrals(m)
 
     found = contact_tangent(
         slope * grid.weight, grid.moments, motion, scale, friction, transition, R, integrals(motion)
