@@ -156,12 +156,13 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
     for module, names in (
         (links, ("plain_flux",)),
         (solver, ("link_flux",)),
-        (viscosity, ("barus_inverse", "hermite_inverse")),
+        (viscosity, ("hermite_inverse",)),
     ):
         for name in names:
             monkeypatch.setattr(module, name, forbidden)
-    for target in ("ShearThinning.apply", "ShearThinning.factor"):
-        monkeypatch.setattr(f"exudyn_ehd.film.lubricant.shear_thinning.{target}", forbidden)
+    for target in ("shear_thinning.ShearThinning.apply", "shear_thinning.ShearThinning.factor"):
+        monkeypatch.setattr(f"exudyn_ehd.film.lubricant.{target}", forbidden)
+    monkeypatch.setattr("exudyn_ehd.film.lubricant.pressure_viscosity.BarusPressure.inverse", forbidden)
     for target in (
         "heat.temperature._Temperature.viscosity_ratio",
         "heat.power.film_flows",

@@ -38,7 +38,7 @@ from exudyn_ehd.joint.tangent.drag import drag_by_gap
 from exudyn_ehd.joint.tangent.line import shear_of_fills, true_fills, true_line, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
-    couette_by_gap,
+    couette_slopes,
     gap_derivatives,
     shear_needs_adjoint,
     wrench_tangent,
@@ -252,7 +252,7 @@ def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
 
 def couette_field(film: SolvedFilm) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
-    field = couette_by_gap(film)
+    field, _ = couette_slopes(film)
     return field if film.limited is None else field * film.limited.slope
 
 

@@ -95,7 +95,6 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
     shear = shear_needs_adjoint(film)
     dc = gradient[4] if shear else np.zeros(MOTION_SIZE)
-    dc[8] += couette_by_speed(film)
     fills = true_fills(film)
     if fills is not None:
         dc += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
@@ -251,7 +250,7 @@ def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
     """Add to `_shear_row` what follows the liner's deflection, the pressure's gradients, and fills beside the ends."""
     p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
     if p.liner is not None:
-        row += (couette_by_gap(film) * p.liner.gap_slopes.H_P * w.active).ravel()[w.order[: w.count]]
+        row += (couette_slopes(film)[0] * p.liner.gap_slopes.H_P * w.active).ravel()[w.order[: w.count]]
     if oil.ratio_g is not None:
         row += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H).reshape(-1)[w.order[: w.count]]
     if s.closure.conserves_mass:
@@ -259,25 +258,19 @@ def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
         row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
 
 
-def couette_by_gap(film: SolvedFilm) -> np.ndarray:
-    """dC/d(film gap) (n, m) at fixed pressure and fill."""
-    s, oil, ratio = film.solver, film.oil, ratio_of(film)
-    ratio_h = 0.0 if oil.ratio_h is None else oil.ratio_h
-    return film.grid.shear_weight * film.share() / s.H * (ratio_h - ratio / s.H)
-
-
-def couette_by_speed(film: SolvedFilm) -> float:
-    """dC/dvx at fixed gap, pressure and fill."""
-    recess, ratio_v = film.loads.recess, film.oil.ratio_v
-    out = 0.0 if recess is None else 2.0 * float(recess.by_spin.sum())  # vx = omega / 2
-    if ratio_v is not None:
-        out += float(np.sum(film.grid.shear_weight * film.share() / film.solver.H * ratio_v))
-    return out
+def couette_slopes(film: SolvedFilm) -> tuple[np.ndarray, float]:
+    """dC/d(film gap) (n, m) and dC/dvx at fixed pressure and fill."""
+    s, oil, recess, ratio = film.solver, film.oil, film.loads.recess, ratio_of(film)
+    density = film.grid.shear_weight * film.share() / s.H
+    by_gap = density * ((0.0 if oil.ratio_h is None else oil.ratio_h) - ratio / s.H)
+    by_speed = 0.0 if oil.ratio_v is None else float(np.vdot(density, oil.ratio_v))
+    return by_gap, by_speed if recess is None else by_speed + 2.0 * float(recess.by_spin.sum())  # vx = omega / 2
 
 
 def _contract_couette(film: SolvedFilm, dc: np.ndarray) -> None:
-    """Add the gradient of C to the scaled pose at fixed pressure and fill to ``dc`` (10,)."""
-    slope, gradient = _film_gap_slope(film), couette_by_gap(film)
+    """Add the gradient of C at fixed pressure and fill to ``dc`` (10,)."""
+    slope, (gradient, by_speed) = _film_gap_slope(film), couette_slopes(film)
+    dc[8] += by_speed
     if slope is not None:
         gradient *= slope
     contract_pose(gradient[None], film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z, dc[None, :4])
