@@ -140,7 +140,7 @@ class OilFlows:
         self.outside = outside_flows(self.z, balance, fixed, unbroken)
         if conserves and film.grid.flows_along_z:
             self._flow_around(film, fx)
-        self.areas = supply.parted() if supply is not None and film.grid.flows_along_z else []
+        self.areas = supply.masks if supply is not None and film.grid.flows_along_z else []
         if supply is not None and self.areas and not conserves:
             # films that end within a link of an area; what this leaves of the balance is the cavity's
             inside = np.logical_or.reduce(self.areas)
