@@ -26,6 +26,7 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix, diags, kron
 
+from exudyn_ehd.film.differences import drop_weights
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.shear_profile import (
     FLOW_POINTS,
@@ -209,7 +210,7 @@ class ShearThinning(FluxEffect):
         back_x, on_x, back_z, on_z = self.weights
         x = on_x[:, None] * weights[0] + np.roll(back_x[:, None] * weights[0], -1, axis=0)
         z = on_z * weights[1] + np.roll(back_z * weights[1], -1, axis=1)
-        return np.roll(x, 1, axis=0) - x + np.roll(z, 1, axis=1) - z
+        return -drop_weights(np.array((x, z))).sum(axis=0)
 
     @cached_property
     def operators(self) -> tuple[csr_matrix, csr_matrix]:

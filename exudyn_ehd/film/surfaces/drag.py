@@ -28,35 +28,7 @@ from __future__ import annotations
 
 import numpy as np
 
-
-def on_rows(gap: np.ndarray) -> np.ndarray:
-    """Gap (n, m) of the links in z, the mean of both vertices."""
-    return 0.5 * (gap + np.concatenate((gap[:, 1:], gap[:, -1:]), axis=1))
-
-
-def onto_rows(values: np.ndarray) -> np.ndarray:
-    """Transpose of `on_rows`: half of what stands on the links in z (..., n, m) at either of their ends."""
-    half = 0.5 * values
-    half[..., 1:] += 0.5 * values[..., :-1]
-    return half
-
-
-def drops(P: np.ndarray) -> np.ndarray:
-    """P less that of the next vertex in theta and z, (2, n, m)."""
-    out = np.array((P, P))
-    out[0, :-1] -= P[1:]
-    out[0, -1] -= P[0]
-    out[1, :, :-1] -= P[:, 1:]
-    return out
-
-
-def drop_weights(links: np.ndarray) -> np.ndarray:
-    """Weights of P (2, ..., n, m) in the sums of ``links``, of the same shape, times the `drops` in theta and z."""
-    out, (x, z) = links.copy(), links
-    out[0, ..., 1:, :] -= x[..., :-1, :]
-    out[0, ..., 0, :] -= x[..., -1, :]
-    out[1, ..., 1:] -= z[..., :-1]
-    return out
+from exudyn_ehd.film.differences import drops, to_ends
 
 
 def drag_by_gap(
@@ -72,4 +44,4 @@ def drag_by_gap(
     vertices and links; ``widths``: `FilmGrid.link_widths`.
     """
     x, z = drops(P) * widths
-    return x * (carrier_slopes[0] * face_slope - 1.0), onto_rows(z * carrier_slopes[1]) * slope - onto_rows(z)
+    return x * (carrier_slopes[0] * face_slope - 1.0), to_ends(z * carrier_slopes[1], 1) * slope - to_ends(z, 1)

@@ -26,9 +26,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from exudyn_ehd.film.differences import drop_weights, drops, on_links, to_ends
 from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid, rows_between
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
-from exudyn_ehd.film.surfaces.drag import drop_weights, drops, on_rows, onto_rows
 from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
 
 # Columns and rows of plane faces.
@@ -141,12 +141,12 @@ class Annulus:
 
     def link_rows(self, H: np.ndarray, HF: np.ndarray) -> np.ndarray:
         """Weights (3, n, m) of the pressures in the sums of ``along`` and ``across`` for the gaps (n, m)."""
-        return np.asarray(drop_weights(np.array((self.along * HF, self.across * on_rows(H)))).sum(axis=0))
+        return np.asarray(drop_weights(np.array((self.along * HF, self.across * on_links(H)[1]))).sum(axis=0))
 
     def link_gradients(self, P: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (3, n, m) of these sums to the gaps at the vertices and on the links for pressures P (n, m)."""
         x, z = drops(P)
-        return onto_rows(self.across * z), self.along * x
+        return to_ends(self.across * z, -1), self.along * x
 
 
 def _on_columns(grid: FilmGrid, theta: np.ndarray) -> FilmGrid:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.differences import drop_weights, on_links, to_ends
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces import drag
@@ -28,10 +29,10 @@ def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
     elif liner is not None and liner.limited:
         gap, link = liner.true_gap, liner.true_link
     if parts.uneven_drag and s.flux is not None:
-        excess = np.array((s.flux.cx - link, s.flux.cz - drag.on_rows(gap)))
+        excess = np.array((s.flux.cx - link, s.flux.cz - on_links(gap)[1]))
     else:
-        excess = np.array((s.HF - link, drag.on_rows(s.H - gap)))
-    return drag.drop_weights(excess * parts.grid.link_widths)
+        excess = np.array((s.HF - link, on_links(s.H - gap)[1]))
+    return drop_weights(excess * parts.grid.link_widths)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -44,7 +45,7 @@ def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     if film.parts.liner is None:
         return face[None], cell[None]
     deflection = film.parts.liner.gap_slopes.D_r
-    return face[None], np.stack((_ends(face) * deflection, cell * (1.0 + deflection)))
+    return face[None], np.stack((to_ends(face, 0) * deflection, cell * (1.0 + deflection)))
 
 
 def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
@@ -58,7 +59,7 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
 def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
     """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
     face, cell = _slopes(film)
-    return np.stack((_ends(face), cell)) * liner.deflection_by_pressure
+    return np.stack((to_ends(face, 0), cell)) * liner.deflection_by_pressure
 
 
 def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -69,8 +70,3 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
         slope, face_slope = liner.gap_slopes.rate_t, liner.gap_slopes.link
     carriers = (ones, ones) if flux is None else (flux.cx_h, flux.cz_h)
     return drag.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
-
-
-def _ends(face: np.ndarray) -> np.ndarray:
-    """Half of what stands on the links i -> i+1 (n, m) at either of their ends."""
-    return 0.5 * (face + np.roll(face, 1, axis=0))

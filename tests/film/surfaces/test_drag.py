@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.surfaces.drag import drag_by_gap, drop_weights, on_rows
+from exudyn_ehd.film.differences import drop_weights, on_links
+from exudyn_ehd.film.surfaces.drag import drag_by_gap
 
 
 @pytest.fixture(params=[(24, 7, 1), (9, 4, 2), (5, 2, 3)])
@@ -53,10 +54,10 @@ def test_weights(film, carriers):
     """The weights of the pressures are the sums of unit pressures there."""
     f, shape = film, film["P"].shape
     x, z = f["link"] - f["true_link"], between(f["gap"] - f["true_gap"])
-    excess = np.array((x, on_rows(f["gap"] - f["true_gap"])))
+    excess = np.array((x, on_links(f["gap"] - f["true_gap"])[1]))
     if carriers is not None:
         x, z = carriers[0] - f["true_link"], carriers[1][:, :-1] - between(f["true_gap"])
-        excess = np.array((x, carriers[1] - on_rows(f["true_gap"])))
+        excess = np.array((x, carriers[1] - on_links(f["true_gap"])[1]))
     units = np.eye(f["P"].size).reshape(-1, *shape)
     expected = np.array([drag_of(f, unit, x, z) for unit in units]).T.reshape(2, *shape)
     np.testing.assert_allclose(drop_weights(excess * widths(f)), expected, rtol=1e-12, atol=1e-14)
