@@ -46,17 +46,6 @@ def ends_cavity(active, fixed, i, end):
     return last > 1 and fixed[i, end] and not (active[i, beside] or fixed[i, beside])
 
 
-@njit(cache=True)
-def ends_of_cavity(H, weight, active, fixed):
-    """C over the ends' half control volumes beside a cavity."""
-    out = 0.0
-    for i in range(H.shape[0]):
-        for end in (0, H.shape[1] - 1):
-            if ends_cavity(active, fixed, i, end):
-                out += weight[i, end] / H[i, end]
-    return out
-
-
 # A flat loop without checks for a division by zero, which the compiler vectorises.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def couette_integral(H, weight, active, fixed, cavity_share):
@@ -67,7 +56,11 @@ def couette_integral(H, weight, active, fixed, cavity_share):
         s = w[c] / h[c]
         unbroken += s if free[c] | known[c] else 0.0
         cavity += 0.0 if free[c] | known[c] else s
-    ends = ends_of_cavity(H, weight, active, fixed)
+    ends = 0.0
+    for i in range(H.shape[0]):
+        for end in (0, H.shape[1] - 1):
+            if ends_cavity(active, fixed, i, end):
+                ends += weight[i, end] / H[i, end]
     return unbroken + cavity_share * cavity - (1.0 - cavity_share) * ends
 
 

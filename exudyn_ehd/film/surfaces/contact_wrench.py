@@ -7,6 +7,7 @@ against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -70,6 +71,7 @@ def contact_tangent(
     return out
 
 
+@functools.lru_cache(maxsize=16)
 def _units(R: float) -> np.ndarray:
     """Force and moment (6, 1) of a unit pressure over scaled area and arm, m^2 and m^3."""
     return np.array([R**2, R**2, R**2, R**3, R**3, R**3])[:, None]

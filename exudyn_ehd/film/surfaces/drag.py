@@ -27,21 +27,51 @@ no link, counts for nothing.
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
-from exudyn_ehd.film.differences import drops, to_ends
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-def drag_by_gap(
-    P: np.ndarray,
-    carrier_slopes: tuple[np.ndarray, np.ndarray],
-    slope: np.ndarray,
-    face_slope: np.ndarray,
-    widths: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
+@njit(cache=True, fastmath=_FAST)
+def drag_weights(carriers, gap, link, widths):
+    """Weights (2, n, m) of the pressures in E_x and E_z.
+
+    ``carriers``: of the links in theta and in z; ``gap``, ``link``: true gaps at the vertices and on the links i ->
+    i+1; ``widths`` (2, n, m): `FilmGrid.link_widths`.
+    """
+    n, m = gap.shape
+    out = np.empty((2, n, m))
+    along, across = carriers
+    for i in range(n):
+        last = 0.0
+        for j in range(m):
+            far = gap[i, j + 1] if j + 1 < m else gap[i, j]
+            excess = (across[i, j] - 0.5 * (gap[i, j] + far)) * widths[1, i, j]
+            before = (along[i - 1, j] - link[i - 1, j]) * widths[0, i - 1, j]
+            out[0, i, j] = (along[i, j] - link[i, j]) * widths[0, i, j] - before
+            out[1, i, j] = excess - last
+            last = excess
+    return out
+
+
+@njit(cache=True, fastmath=_FAST)
+def drag_by_gap(P, carrier_slopes, slope, face_slope, widths):
     """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices.
 
     ``carrier_slopes``: of the carriers in theta and z to the film's gap there; ``slope``, ``face_slope``: h' at
-    vertices and links; ``widths``: `FilmGrid.link_widths`.
+    vertices and links; ``widths`` as in `drag_weights`.
     """
-    x, z = drops(P) * widths
-    return x * (carrier_slopes[0] * face_slope - 1.0), to_ends(z * carrier_slopes[1], 1) * slope - to_ends(z, 1)
+    n, m = P.shape
+    face, cell = np.empty((n, m)), np.empty((n, m))
+    along, across = carrier_slopes
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        carried = last = 0.0
+        for j in range(m):
+            face[i, j] = (along[i, j] * face_slope[i, j] - 1.0) * widths[0, i, j] * (P[i, j] - P[nxt, j])
+            far = P[i, j + 1] if j + 1 < m else P[i, j]
+            half = 0.5 * widths[1, i, j] * (P[i, j] - far)
+            carrier = half * across[i, j]
+            cell[i, j] = (carried + carrier) * slope[i, j] - (last + half)
+            carried, last = carrier, half
+    return face, cell

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.differences import drop_weights, on_links, to_ends
+from exudyn_ehd.film.differences import on_links, to_ends
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces import drag
@@ -28,11 +28,10 @@ def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
         gap, link = limited.gap, limited.link
     elif liner is not None and liner.limited:
         gap, link = liner.true_gap, liner.true_link
+    carriers = (s.HF, on_links(s.H)[1])
     if parts.uneven_drag and s.flux is not None:
-        excess = np.array((s.flux.cx - link, s.flux.cz - on_links(gap)[1]))
-    else:
-        excess = np.array((s.HF - link, on_links(s.H - gap)[1]))
-    return drop_weights(excess * parts.grid.link_widths)
+        carriers = s.flux.cx, s.flux.cz
+    return drag.drag_weights(carriers, gap, link, parts.grid.link_widths)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.differences import drop_weights, on_links
-from exudyn_ehd.film.surfaces.drag import drag_by_gap
+from exudyn_ehd.film.differences import on_links
+from exudyn_ehd.film.surfaces.drag import drag_by_gap, drag_weights
 
 
 @pytest.fixture(params=[(24, 7, 1), (9, 4, 2), (5, 2, 3)])
@@ -53,14 +53,12 @@ def widths(f):
 def test_weights(film, carriers):
     """The weights of the pressures are the sums of unit pressures there."""
     f, shape = film, film["P"].shape
-    x, z = f["link"] - f["true_link"], between(f["gap"] - f["true_gap"])
-    excess = np.array((x, on_links(f["gap"] - f["true_gap"])[1]))
-    if carriers is not None:
-        x, z = carriers[0] - f["true_link"], carriers[1][:, :-1] - between(f["true_gap"])
-        excess = np.array((x, carriers[1] - on_links(f["true_gap"])[1]))
+    along, across = (f["link"], on_links(f["gap"])[1]) if carriers is None else carriers
+    x, z = along - f["true_link"], across[:, :-1] - between(f["true_gap"])
     units = np.eye(f["P"].size).reshape(-1, *shape)
     expected = np.array([drag_of(f, unit, x, z) for unit in units]).T.reshape(2, *shape)
-    np.testing.assert_allclose(drop_weights(excess * widths(f)), expected, rtol=1e-12, atol=1e-14)
+    found = drag_weights((along, across), f["true_gap"], f["true_link"], widths(f))
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
 
 
 def test_gradients_to_the_gap(film, carriers):
@@ -68,7 +66,7 @@ def test_gradients_to_the_gap(film, carriers):
     film's."""
     f, shape = film, film["P"].shape
     steep = np.ones((2, *shape)) if carriers is None else np.array(carriers)
-    face, cell = drag_by_gap(f["P"], steep, f["slope"], f["face_slope"], widths(f))
+    face, cell = drag_by_gap(f["P"], tuple(steep), f["slope"], f["face_slope"], widths(f))
     vertex, link = f["rng"].normal(size=(2, *shape))
     along = (steep[0] * f["face_slope"] - 1.0) * link
     across = steep[1][:, :-1] * between(f["slope"] * vertex) - between(vertex)
