@@ -50,13 +50,11 @@ class GapLimiter(Protocol):
         ``slope_out`` and ``face_slope_out`` take d(film gap)/d(gap), ``bend_out`` the second derivative times the
         gap's rate.
         """
-        gaps = np.array((H, HF))
-        slopes, bends = np.ones_like(gaps), np.zeros_like(gaps)
-        self.film_gap(gaps, slopes, bends)
-        H[:], HF[:] = gaps
-        slope_out[:], face_slope_out[:] = slopes
-        bend_out[:] = bends[0] * H_t
+        slope_out[:], bend_out[:], face_slope_out[:] = 1.0, 0.0, 1.0
+        self.film_gap(H, slope_out, bend_out)
+        bend_out *= H_t
         H_t *= slope_out
+        self.film_gap(HF, face_slope_out, np.empty_like(HF))
 
 
 class Contact:

@@ -38,7 +38,14 @@ def contact_integrals(P: np.ndarray, weight: np.ndarray, moments: np.ndarray) ->
 
 def contact_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
     """Weights (6, 5) of the integrals in the wrench about O of pressures and their Coulomb friction, N and Nm."""
-    return _units(R) * (_PRESSED + _torque(motion, R)) + friction_weights(motion, friction, transition, R)
+    return pressure_weights(motion, R) + friction_weights(motion, friction, transition, R)
+
+
+def pressure_weights(motion: np.ndarray, R: float) -> np.ndarray:
+    """`contact_weights` of the pressures alone."""
+    out, (x, y, bx, by) = _PRESSED.copy(), motion[:4].tolist()
+    out[5, :4] = y / R, -x / R, by, -bx
+    return _units(R) * out
 
 
 def friction_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
@@ -75,10 +82,3 @@ def contact_tangent(
 def _units(R: float) -> np.ndarray:
     """Force and moment (6, 1) of a unit pressure over scaled area and arm, m^2 and m^3."""
     return np.array([R**2, R**2, R**2, R**3, R**3, R**3])[:, None]
-
-
-def _torque(motion: np.ndarray, R: float) -> np.ndarray:
-    """Weights (6, 5) of e x F about O, over R^3."""
-    out, (x, y, bx, by) = np.zeros((6, 5)), motion[:4].tolist()
-    out[5, :4] = y / R, -x / R, by, -bx
-    return out

@@ -13,7 +13,7 @@ from exudyn_ehd.film.loads import (
 )
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
-from exudyn_ehd.film.surfaces.contact_wrench import contact_integrals, contact_weights, friction_weights
+from exudyn_ehd.film.surfaces.contact_wrench import contact_integrals, friction_weights, pressure_weights
 from exudyn_ehd.joint.seams import Effects, ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
@@ -153,4 +153,5 @@ def _add_contacts(
     for k, (friction, transition) in enumerate(f.friction):
         f.integrals[k] = contact_integrals(f.P[k], g.weight, g.moments)
         friction_out += friction_weights(motion, friction, transition, R) @ f.integrals[k]
-        wrench += contact_weights(motion, friction, transition, R) @ f.integrals[k]
+        wrench += pressure_weights(motion, R) @ f.integrals[k]
+    wrench += friction_out
