@@ -48,6 +48,8 @@ _LIMITS: dict[str, dict[str, Any]] = {
 class _Area:
     """Checks of an area's arguments."""
 
+    rotating: bool
+
     def __post_init__(self) -> None:
         given = {field.name: field.default for field in fields(self)}  # type: ignore[arg-type]
         for name, limits in _LIMITS.items():
