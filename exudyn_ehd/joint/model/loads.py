@@ -6,11 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film.loads import (
-    end_forces,
-    journal_wrench,
-    pressure_integrals,
-)
+from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
 from exudyn_ehd.film.surfaces.contact_wrench import contact_integrals, friction_weights, pressure_weights
@@ -100,8 +96,11 @@ def film_loads(
     if drag is not None:
         extra_theta += float(np.vdot(drag[0], P))
         extra_z += float(np.vdot(drag[1], P))
-    sheared = g.shear_weight * shear_share(s.system, s.work.active, s.closure)
-    couette = float(np.vdot(sheared, (1.0 if oil.ratio is None else oil.ratio) / s.H))
+    if oil.ratio is None and not s.closure.conserves_mass:
+        couette = couette_integral(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear)
+    else:
+        sheared = g.shear_weight * shear_share(s.system, s.work.active, s.closure)
+        couette = float(np.vdot(sheared, (1.0 if oil.ratio is None else oil.ratio) / s.H))
     if recess is not None:
         couette += float(recess.density.sum())
     wrench, ends = np.empty(6), end_forces(s.H, scales.ends)

@@ -11,9 +11,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import (
-    load_adjoint_rhs,
-)
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
@@ -260,11 +258,15 @@ def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
 
 def couette_slopes(film: SolvedFilm) -> tuple[np.ndarray, float]:
     """dC/d(film gap) (n, m) and dC/dvx at fixed pressure and fill."""
-    s, oil, recess, ratio = film.solver, film.oil, film.loads.recess, ratio_of(film)
-    density = film.grid.shear_weight * film.share() / s.H
-    by_gap = density * ((0.0 if oil.ratio_h is None else oil.ratio_h) - ratio / s.H)
-    by_speed = 0.0 if oil.ratio_v is None else float(np.vdot(density, oil.ratio_v))
-    return by_gap, by_speed if recess is None else by_speed + 2.0 * float(recess.by_spin.sum())  # vx = omega / 2
+    s, g, oil, recess = film.solver, film.grid, film.oil, film.loads.recess
+    by_speed = 0.0 if recess is None else 2.0 * float(recess.by_spin.sum())  # vx = omega / 2
+    if oil.ratio is None and not s.closure.conserves_mass:
+        by_gap = np.empty(g.shape)
+        couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, by_gap)
+        return by_gap, by_speed
+    density = g.shear_weight * film.share() / s.H
+    by_gap = density * ((0.0 if oil.ratio_h is None else oil.ratio_h) - ratio_of(film) / s.H)
+    return by_gap, by_speed if oil.ratio_v is None else by_speed + float(np.vdot(density, oil.ratio_v))
 
 
 def _contract_couette(film: SolvedFilm, dc: np.ndarray) -> None:
