@@ -125,6 +125,18 @@ class FilmGrid:
         """Normals of a bearing, whose x is the angle theta, for kernels, as in `Directions`."""
         return np.cos(self.x), np.sin(self.x), np.cos(self.x_face), np.sin(self.x_face), self.z
 
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """cos, sin, z cos, z sin and 1 at the vertices of a bearing, (5, n, m)."""
+        flat, around = np.ones(self.shape), np.array(self.directions[:2])[:, :, None]
+        return np.concatenate((around * flat, around * self.z, flat[None]))
+
+    @cached_property
+    def link_widths(self) -> np.ndarray:
+        """Widths (2, n, m) of the links in theta and z; 0 where there is none."""
+        across = np.append(self.link_z != 0.0, False)
+        return np.array((np.outer(self.link_x != 0.0, self.width_z), np.outer(self.width_x, across)))
+
     def cut(self, kx: np.ndarray, kz: np.ndarray) -> None:
         """Multiply conductances (n, m) by ``cuts``, in place."""
         if self.cuts is not None:

@@ -38,34 +38,6 @@ def pressure_integrals(P, weight, cos_x, sin_x, z, out):
         out[3] += s1 * sin_x[i]
 
 
-@njit(cache=True, fastmath=_FAST)
-def slope_integrals(P, weight, slope_x, slope_z):
-    """Integrals of the pressure times the slopes (n, m) of a gap term in theta and z."""
-    n, m = P.shape
-    along_x, along_z = 0.0, 0.0
-    for i in range(n):
-        for j in range(m):
-            pw = P[i, j] * weight[i, j]
-            along_x += pw * slope_x[i, j]
-            along_z += pw * slope_z[i, j]
-    return along_x, along_z
-
-
-@njit(cache=True)
-def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
-    """Weights of the integrals of `slope_integrals` at the unknowns: rhs_out (2, count).
-
-    Zero where the pressure is clipped.
-    """
-    weights, actives = weight.reshape(-1), active.reshape(-1)
-    x, z = slope_x.reshape(-1), slope_z.reshape(-1)
-    for r in range(count):
-        at = order[r]
-        w = weights[at] if actives[at] else 0.0
-        rhs_out[0, r] = w * x[at]
-        rhs_out[1, r] = w * z[at]
-
-
 @njit(cache=True, inline="always")
 def ends_cavity(active, fixed, i, end):
     """Return whether the end vertex (i, end) lies beside a cavity, whose fill its half control volume then has."""
@@ -74,28 +46,22 @@ def ends_cavity(active, fixed, i, end):
     return last > 1 and fixed[i, end] and not (active[i, beside] or fixed[i, beside])
 
 
-@njit(cache=True)
-def ends_of_cavity(H, weight, active, fixed, ratio):
-    """C over the ends' half control volumes beside a cavity, with a viscosity ratio (n, m) or None."""
-    out = 0.0
-    for i in range(H.shape[0]):
-        for end in (0, H.shape[1] - 1):
-            if ends_cavity(active, fixed, i, end):
-                out += weight[i, end] / H[i, end] * (1.0 if ratio is None else ratio[i, end])
-    return out
-
-
+# A flat loop without checks for a division by zero, which the compiler vectorises.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def couette_integral(H, weight, active, fixed, cavity_share):
-    """(C, C over the unbroken film, dC as -W share/H^2 is left to `couette_gradient`)."""
+    """C of an oil of one viscosity, with ``cavity_share`` where the film is broken."""
     h, w, free, known = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1)
     cavity = unbroken = 0.0
     for c in range(h.size):
         s = w[c] / h[c]
         unbroken += s if free[c] | known[c] else 0.0
         cavity += 0.0 if free[c] | known[c] else s
-    ends = ends_of_cavity(H, weight, active, fixed, None)
-    return unbroken + cavity_share * cavity - (1.0 - cavity_share) * ends, unbroken - ends
+    ends = 0.0
+    for i in range(H.shape[0]):
+        for end in (0, H.shape[1] - 1):
+            if ends_cavity(active, fixed, i, end):
+                ends += weight[i, end] / H[i, end]
+    return unbroken + cavity_share * cavity - (1.0 - cavity_share) * ends
 
 
 @njit(cache=True)
@@ -142,102 +108,6 @@ def couette_gradient(H, weight, active, fixed, cavity_share, out):
             out[i, j] = -share * weight[i, j] / (H[i, j] * H[i, j])
         for end in (0, m - 1):
             out[i, end] *= cavity_share if ends_cavity(active, fixed, i, end) else 1.0
-
-
-# Flat loops without checks for a division by zero, which the compiler vectorises.
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def couette_integral_law(H, weight, ratio, active, fixed, cavity_share):
-    """(C with the viscosity ratio in ``sum weight share ratio / H``, C over the unbroken film)."""
-    h, w, r, a, b = H.reshape(-1), weight.reshape(-1), ratio.reshape(-1), active.reshape(-1), fixed.reshape(-1)
-    whole = 0.0
-    unbroken = 0.0
-    for k in range(h.size):
-        s = w[k] * r[k] / h[k]
-        kept = s if a[k] | b[k] else 0.0
-        unbroken += kept
-        whole += s - kept
-    ends = ends_of_cavity(H, weight, active, fixed, ratio)
-    return unbroken + cavity_share * whole - (1.0 - cavity_share) * ends, unbroken - ends
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def couette_gradient_ratio(H, weight, ratio, ratio_h, ratio_v, active, fixed, cavity_share, out):
-    """dC/dH of `couette_integral_law` -> out (n, m); returns dC/dv."""
-    h, w, a, b = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1)
-    r, r_h, r_v, gradient = ratio.reshape(-1), ratio_h.reshape(-1), ratio_v.reshape(-1), out.reshape(-1)
-    speed = 0.0
-    for k in range(h.size):
-        inverse = 1.0 / h[k]
-        density = w[k] * inverse
-        density = density if a[k] | b[k] else density * cavity_share
-        gradient[k] = density * (r_h[k] - r[k] * inverse)
-        speed += density * r_v[k]
-    n, m = H.shape
-    for i in range(n):
-        for end in (0, m - 1):
-            if ends_cavity(active, fixed, i, end):
-                out[i, end] *= cavity_share
-                speed -= (1.0 - cavity_share) * weight[i, end] / H[i, end] * ratio_v[i, end]
-    return speed
-
-
-@njit(cache=True, fastmath=_FAST)
-def couette_integral_fill(H, weight, fill):
-    """(C with the fill as share, C where the film is full)."""
-    n, m = H.shape
-    whole = 0.0
-    full = 0.0
-    for i in range(n):
-        for j in range(m):
-            s = weight[i, j] / H[i, j]
-            whole += fill[i, j] * s
-            if fill[i, j] >= 1.0:
-                full += s
-    return whole, full
-
-
-@njit(cache=True, fastmath=_FAST)
-def couette_integral_ratio(H, weight, ratio, share, whole):
-    """(C of a film with a viscosity ratio, C where ``whole``), all (n, m)."""
-    n, m = H.shape
-    total = 0.0
-    unbroken = 0.0
-    for i in range(n):
-        for j in range(m):
-            s = weight[i, j] * ratio[i, j] / H[i, j]
-            total += share[i, j] * s
-            if whole[i, j]:
-                unbroken += s
-    return total, unbroken
-
-
-@njit(cache=True, error_model="numpy")
-def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, rhs_out):
-    """Weights of ``sum weight share ratio / H`` at the unknowns, pressures where ``active``, else fills (count,).
-
-    ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio.
-    """
-    w, h, known = weight.reshape(-1), H.reshape(-1), active.reshape(-1)
-    p, f = by_pressure.reshape(-1), by_fill.reshape(-1)
-    for r in range(count):
-        at = order[r]
-        rhs_out[r] = w[at] / h[at] * (p[at] if known[at] else f[at])
-
-
-@njit(cache=True, error_model="numpy")
-def add_shear_by_gap(order, count, weight, H, active, by_gap, rhs_out):
-    """Add to `shear_adjoint_rhs` how ``share ratio / H`` follows a gap that yields to its pressure.
-
-    ``by_gap``: share times ratio, its derivative to H, and that of H to the pressure, (n, m) each.
-    """
-    w, h, known = weight.reshape(-1), H.reshape(-1), active.reshape(-1)
-    ratio, ratio_h, H_P = by_gap[0].reshape(-1), by_gap[1].reshape(-1), by_gap[2].reshape(-1)
-    for r in range(count):
-        at = order[r]
-        if known[at]:
-            rhs_out[r] += w[at] / h[at] * (ratio_h[at] - ratio[at] / h[at]) * H_P[at]
 
 
 @njit(cache=True, fastmath=_FAST)

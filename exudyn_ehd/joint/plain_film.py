@@ -85,7 +85,7 @@ def solve_plain(
         None,
         None,
         OilFields(y.pressure),
-        Loads(out[:6], _NO_CONTACT, out[6:10], couette[0], couette[1], s_theta),
+        Loads(out[:6], _NO_CONTACT, out[6:10], couette, s_theta),
         parts.bearing.radial_clearance * smallest,
         None,
         parts.evaluations.count,
@@ -95,7 +95,7 @@ def solve_plain(
 
 @njit(cache=True, nogil=True)
 def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, columns, work, out):
-    """Returns (found, steps, count, width, smallest gap, integrals of the Couette shear, s_theta).
+    """Returns (found, steps, count, width, smallest gap, integral of the Couette shear, s_theta).
 
     ``kinds``: whether there is a squeeze, whether pressures are those of the film before, and whether the line lies
     inside the cells; ``columns``: `ColumnLine` or None; ``out`` (18,): wrench, integrals of the pressure, scaled pose
@@ -114,7 +114,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     smallest = rigid_gaps(pose, rate, squeeze, at, half_length, H, HF, H_t)
     # not where motions are not finite
     if not (smallest > 0.0 and np.isfinite(vx + vz + rate[0] + rate[1] + rate[2] + rate[3])):
-        return False, 0, np.int64(0), np.int64(1), smallest, (0.0, 0.0), 0.0
+        return False, 0, np.int64(0), np.int64(1), smallest, 0.0, 0.0
     for i in range(P.shape[0]):
         P[i, 0], P[i, -1] = known[0], known[1]
     set_links(H, HF, H_t, squeeze, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
@@ -125,7 +125,5 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     ends = end_forces(H, known)
-    s_theta = journal_wrench(
-        pose, integrals, couette[0], 0.0, 0.0, ends, force, shear, radius, motion[8], motion[9], out
-    )
+    s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, ends, force, shear, radius, motion[8], motion[9], out)
     return ok, steps, count, width, smallest, couette, s_theta

@@ -17,7 +17,6 @@ contact pressures are in Pa.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -34,6 +33,7 @@ from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.supply.recess import RecessShear
 from exudyn_ehd.film.surfaces.contact import Contact
+from exudyn_ehd.film.surfaces.contact_wrench import slip
 
 # Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
 MOTION_SIZE = 10
@@ -89,7 +89,7 @@ class ContactFields:
     P, slope : lists of (n, m) arrays
         Pressure of every contact, Pa, and its derivative with respect to the scaled gap.
     integrals : (contacts, 5) array
-        As `exudyn_ehd.film.surfaces.contact_wrench.contact_wrench` leaves them.
+        Of every contact's pressure times `FilmGrid.moments`.
     """
 
     def __init__(self, shape: tuple[int, int], laws: list[Contact]) -> None:
@@ -97,7 +97,6 @@ class ContactFields:
         self.P = [np.zeros(shape) for _ in laws]
         self.slope = [np.zeros(shape) for _ in laws]
         self.integrals = np.zeros((len(laws), 5))
-        self.gradients = np.zeros((5, 4))
         self.friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in laws]
         self.presses_below = max(f.presses_below for f in laws)
         self.acting = False
@@ -125,7 +124,6 @@ class LimiterFields:
         self.slope, self.bend = np.zeros(shape), np.zeros(shape)
         self.face_slope = np.zeros(shape)
         self.gap, self.link, self.rate = np.zeros((3, *shape))
-        self.by_rate, self.by_gap = np.zeros(shape), np.zeros(shape)
 
 
 class Evaluations:
@@ -257,18 +255,19 @@ class Loads(NamedTuple):
     wrench : (6,) array, N and Nm, force and moment about O, contacts included
     contact : (6,) array, the friction of the contacts in it
     integrals : (4,) array, scaled pressure times cos, sin, z cos, z sin
-    couette, couette_unbroken : scaled integrals of the Couette shear, of all of the film and of its unbroken part
+    couette : scaled integral of the Couette shear
     s_theta : scaled integral of the pressure flow's shear along theta
-    recess : shear of the oil in supply areas, which is part of both integrals of the Couette shear; None without any
+    recess : shear of the oil in supply areas, which is part of the Couette shear; None without any
+    drag : weights (2, n, m) of the pressures in the integrals of uneven drag; None where both surfaces share it alike
     """
 
     wrench: np.ndarray
     contact: np.ndarray
     integrals: np.ndarray
     couette: float
-    couette_unbroken: float
     s_theta: float
     recess: RecessShear | None = None
+    drag: np.ndarray | None = None
 
 
 class SolvedFilm(NamedTuple):
@@ -350,9 +349,4 @@ class SolvedFilm(NamedTuple):
 
     def slip(self, transition_speed: float) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
-        R = self.grid.reference_length
-        v, w = R * self.journal.omega, self.journal.axial_speed
-        size = math.sqrt(v * v + w * w + transition_speed**2)
-        a, b = v / size, w / size
-        slope = np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
-        return a, b, slope
+        return slip(self.journal.motion, self.grid.reference_length, transition_speed)

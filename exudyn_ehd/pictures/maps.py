@@ -14,7 +14,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.projections.polar import PolarAxes
 
-from exudyn_ehd.film.supply.areas import placed
+from exudyn_ehd.film.supply.areas import covers, placed
 from exudyn_ehd.pictures.records import Film, Target, Unit, label, shown, unit_for
 from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, finish, headed, open_axes, style_ticks, styled
 from exudyn_ehd.status import InputError
@@ -227,7 +227,7 @@ def _draw_supply(ax: Axes, film: Film) -> bool:
     z = np.linspace(film.z[0], film.z[-1], FINE[1])
     fixed = [area for area in placed(film.bearing.supply, film.bearing.length) if not area.rotating]
     for area in fixed:
-        inside = area.covers(theta, z, film.bearing.journal_radius).astype(float)
+        inside = covers(area, theta, z, film.bearing.journal_radius).astype(float)
         # a frame of zeros closes outlines that run along the map's edge
         ax.contour(np.degrees(theta), 1e3 * z, inside.T, levels=[0.5], colors=BLACK, linewidths=0.8)
     return bool(fixed)

@@ -158,6 +158,7 @@ SHARED = {
     "sensitivity.vertex_stencil",
     "reynolds.gap",
     "grid",
+    "differences",
     "loads",
     "lubricant.lubricant",
     "reynolds.links",

@@ -9,7 +9,6 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.cavitation.closures import place_line
-from exudyn_ehd.film.loads import couette_integral_ratio
 from exudyn_ehd.film.lubricant import pressure_viscosity as viscosity
 from exudyn_ehd.film.reynolds import links
 from exudyn_ehd.film.solvers import linear as solver
@@ -157,16 +156,16 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
     for module, names in (
         (links, ("plain_flux",)),
         (solver, ("link_flux",)),
-        (viscosity, ("barus_inverse", "hermite_inverse")),
+        (viscosity, ("hermite_inverse",)),
     ):
         for name in names:
             monkeypatch.setattr(module, name, forbidden)
-    for target in ("ShearThinning.apply", "ShearThinning.factor"):
-        monkeypatch.setattr(f"exudyn_ehd.film.lubricant.shear_thinning.{target}", forbidden)
+    for target in ("shear_thinning.ShearThinning.apply", "shear_thinning.ShearThinning.factor"):
+        monkeypatch.setattr(f"exudyn_ehd.film.lubricant.{target}", forbidden)
+    monkeypatch.setattr("exudyn_ehd.film.lubricant.pressure_viscosity.BarusPressure.inverse", forbidden)
     for target in (
         "heat.temperature._Temperature.viscosity_ratio",
         "heat.power.film_flows",
-        "model.loads.couette_integral_ratio",
         "balance.film._target",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
@@ -238,15 +237,6 @@ def test_no_pressure_in_a_bearing_is_a_status():
         np.testing.assert_allclose(tangent[:2, k], difference[:2], rtol=1e-5)
     with pytest.raises(ehd.FilmError, match="NO_PRESSURE"):
         ehd.steady(far.model.bearing, speed=MOTION[8], eccentricity_ratio=0.5)
-
-
-def test_couette_kernel_equals_its_twin():
-    rng = np.random.default_rng(5)
-    H, weight, ratio, share = rng.uniform(0.2, 2.0, (4, 5, 3))
-    whole = rng.random((5, 3)) > 0.5
-    total, unbroken = couette_integral_ratio(H, weight, ratio, share, whole)
-    assert total == pytest.approx(float(np.sum(weight * ratio * share / H)), rel=1e-14)
-    assert unbroken == pytest.approx(float(np.sum((weight * ratio / H)[whole])), rel=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,7 @@ import numpy as np
 from numba import njit
 from numpy.polynomial import Polynomial
 
+from exudyn_ehd.film.differences import drops, to_ends
 from exudyn_ehd.film.heat.energy import downstream_weight
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -109,10 +110,9 @@ def crossed_tilt(
     """Tilt of the heat (n, m) that the stresses of sliding and of pressure flow make together; ``both`` of
     `heat_tilts`, scaled speeds along theta and z."""
     width_x, width_z, link_x, _ = mesh
-    along = speeds[0] * np.where(link_x != 0.0, 1.0, 0.0)[:, None] * width_z * (np.roll(P, -1, axis=0) - P)
-    across = np.zeros_like(P)
-    across[:, :-1] = speeds[1] * width_x[:, None] * np.diff(P, axis=1)
-    return 2.0 * H * both * (along + np.roll(along, 1, axis=0) + across + np.roll(across, 1, axis=1))
+    x, z = -drops(P)
+    along, across = speeds[0] * np.outer(link_x != 0.0, width_z) * x, speeds[1] * width_x[:, None] * z
+    return 4.0 * H * both * (to_ends(along, 0) + to_ends(across, 1))
 
 
 def surfaces(
@@ -145,19 +145,9 @@ def at_heights(surface: np.ndarray) -> np.ndarray:
     return out
 
 
-@njit(cache=True, fastmath=_FAST)
-def weighed(flow, at):
+def weighed(flow: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Heat and tilt (2, n, m, 4) of what the heights carry (n, m, 5) with temperatures as `at_heights`."""
-    n, m, heights = flow.shape
-    out = np.zeros((2, n, m, 4))
-    for i in range(n):
-        for j in range(m):
-            for g in range(heights):
-                heat, tilt = _WEIGHTS[0, g] * flow[i, j, g], _WEIGHTS[1, g] * flow[i, j, g]
-                for c in range(4):
-                    out[0, i, j, c] += heat * at[i, j, g, c]
-                    out[1, i, j, c] += tilt * at[i, j, g, c]
-    return out
+    return np.asarray(np.einsum("rijg,ijgc->rijc", _WEIGHTS[:, None, None] * flow, at))
 
 
 def start_heights(fields: np.ndarray) -> np.ndarray:

@@ -29,41 +29,19 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-
-@njit(cache=True)
-def film_heat(P, q, kx, kz, heat_out):
-    """Add the pressure flow's heat to ``heat_out`` (n, m), half of it at either vertex of a link."""
-    n, m = P.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            w = 0.5 * kx[i, j] * (q[i, j] - q[nxt, j]) * (P[i, j] - P[nxt, j])
-            heat_out[i, j] += w
-            heat_out[nxt, j] += w
-            if j + 1 < m:
-                w = 0.5 * kz[i, j] * (q[i, j] - q[i, j + 1]) * (P[i, j] - P[i, j + 1])
-                heat_out[i, j] += w
-                heat_out[i, j + 1] += w
+from exudyn_ehd.film.differences import drop_weights, drops, following, to_ends
 
 
-@njit(cache=True)
-def film_flows(q, fill, kx, kz, fx, fz, qx_out, qz_out, leaving_out):
-    """Flows over the links i -> i+1 and j -> j+1, and what leaves every vertex by them, (n, m)."""
-    n, m = q.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
-            qx_out[i, j] = kx[i, j] * (q[i, j] - q[nxt, j]) + fx[i, j] * up
-        for j in range(m - 1):
-            up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
-            qz_out[i, j] = kz[i, j] * (q[i, j] - q[i, j + 1]) + fz[i, j] * up
-        qz_out[i, m - 1] = 0.0
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        leaving_out[i, 0] = qx_out[i, 0] - qx_out[prv, 0] + qz_out[i, 0]
-        for j in range(1, m):
-            leaving_out[i, j] = qx_out[i, j] - qx_out[prv, j] + qz_out[i, j] - qz_out[i, j - 1]
+def film_heat(P: np.ndarray, q: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """Heat (n, m) of the pressure flow, half of it at either vertex of a link; k (2, n, m): conductances."""
+    x, z = k * drops(q) * drops(P)
+    return to_ends(x, 0) + to_ends(z, 1)
+
+
+def film_flows(q: np.ndarray, fill: np.ndarray, k: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Flows (2, n, m) over the links, and what leaves every vertex by them, (n, m); k, f (2, n, m)."""
+    flows = k * drops(q) + f * np.where(f >= 0.0, fill, following(fill))
+    return flows, drop_weights(flows).sum(axis=0)
 
 
 @njit(cache=True)

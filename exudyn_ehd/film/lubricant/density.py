@@ -22,6 +22,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
     LARGEST_PRESSURE,
     BoundPressureLaw,
     HermiteTable,
+    expand,
     hermite_inverse,
     quintic,
 )
@@ -251,12 +252,8 @@ def density_ratio(p, a, b):
         e = np.exp(a * p)
         return e, a * e
     k = int(min(p * b[0, 0], b.shape[0] - 1.0))
-    w, c1, c2, c3, c4, c5, c6 = b[k, 0], b[k, 1], b[k, 2], b[k, 3], b[k, 4], b[k, 5], b[k, 6]
-    t = p * w - k
-    return (
-        c1 + t * (c2 + t * (c3 + t * (c4 + t * (c5 + t * c6)))),
-        w * (c2 + t * (2.0 * c3 + t * (3.0 * c4 + t * (4.0 * c5 + t * 5.0 * c6)))),
-    )
+    rho, rho_p, _, _, _ = expand(b, k, p * b[k, 0] - k)
+    return rho, rho_p
 
 
 @njit(cache=True)

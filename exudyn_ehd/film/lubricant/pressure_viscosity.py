@@ -31,7 +31,7 @@ LARGEST_PRESSURE = 5e9
 # the law is steep, and no steeper.
 BEYOND = 1e3
 _unsigned = np.uint64
-_ONE, _ROW = _unsigned(1), _unsigned(7)
+_ONE = _unsigned(1)
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 
 
@@ -132,8 +132,21 @@ class BarusPressure:
         return -np.expm1(-self.coefficient * p) / self.coefficient
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p and goes on in a line."""
-        return bool(barus_inverse(q, self.coefficient, p_out, ratio_out, ratio_q_out))
+        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p.
+
+        There, for q >= 1 / alpha, p goes on along the tangent of slope BEYOND.
+        """
+        alpha, x = self.coefficient, self.coefficient * q
+        beyond = ~(x < 1.0)
+        known = np.where(beyond, 0.0, x)
+        p_out[:] = -np.log1p(-known) / alpha
+        ratio_out[:] = 1.0 / (1.0 - known)
+        ratio_q_out[:] = alpha * ratio_out**2
+        if not beyond.any():
+            return True
+        p_out[beyond] = (math.log(BEYOND) + 1.0 - BEYOND * (1.0 - x[beyond])) / alpha
+        ratio_out[beyond], ratio_q_out[beyond] = BEYOND, 0.0
+        return False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -288,32 +301,6 @@ class RoelandsTable(HermiteTable):
 
 
 @njit(cache=True)
-def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
-    """p, r and dr/dq of Barus' law; False if q >= 1 / alpha anywhere, where p is on the tangent of slope BEYOND."""
-    n, m = q.shape
-    inside = True
-    for i in range(n):
-        for j in range(m):
-            if q[i, j] == 0.0:
-                p_out[i, j] = 0.0
-                ratio_out[i, j] = 1.0
-                ratio_q_out[i, j] = alpha
-                continue
-            s = 1.0 - alpha * q[i, j]
-            if not s > 0.0:
-                inside = False
-                p_out[i, j] = (np.log(BEYOND) + 1.0 - BEYOND * s) / alpha
-                ratio_out[i, j] = BEYOND
-                ratio_q_out[i, j] = 0.0
-                continue
-            r = 1.0 / s
-            p_out[i, j] = -np.log1p(-alpha * q[i, j]) / alpha
-            ratio_out[i, j] = r
-            ratio_q_out[i, j] = alpha * r * r
-    return inside
-
-
-@njit(cache=True)
 def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio_out, ratio_q_out):
     """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table,
     where p goes on with the slope BEYOND.
@@ -322,9 +309,7 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
     at the start of each of b equal parts of q.
     """
     x, p, r, r_q = q.reshape(-1), p_out.reshape(-1), ratio_out.reshape(-1), ratio_q_out.reshape(-1)
-    c = table.reshape(-1)
     end = q_table[-1]
-    last = _unsigned(bucket.size - 2)
     inside = True
     for k in range(x.size):
         v = x[k]
@@ -334,23 +319,9 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
             s = 1.0 / (1.0 - alpha * v)
             p[k], r[k], r_q[k] = -np.log1p(-alpha * v) / alpha, s, alpha * s * s
         elif v < end:
-            at = min(_unsigned(v * bucket_scale), last)
-            low = _unsigned(bucket[at])
-            high = _unsigned(bucket[at + _ONE]) + _ONE
-            while high - low > _ONE:
-                middle = (low + high) >> _ONE
-                if q_table[middle] <= v:
-                    low = middle
-                else:
-                    high = middle
-            i = low * _ROW
-            w = c[i]
-            t = (v - q_table[low]) * w
-            c1, c2, c3 = c[i + _ONE], c[i + _unsigned(2)], c[i + _unsigned(3)]
-            c4, c5, c6 = c[i + _unsigned(4)], c[i + _unsigned(5)], c[i + _unsigned(6)]
-            p[k] = c1 + t * (c2 + t * (c3 + t * (c4 + t * (c5 + t * c6))))
-            r[k] = w * (c2 + t * (2.0 * c3 + t * (3.0 * c4 + t * (4.0 * c5 + t * 5.0 * c6))))
-            r_q[k] = w * w * (2.0 * c3 + t * (6.0 * c4 + t * (12.0 * c5 + t * 20.0 * c6)))
+            low, t = interval_at(v, q_table, table, bucket, bucket_scale)
+            p[k], r[k], half, _, _ = expand(table, low, t)
+            r_q[k] = 2.0 * half
         else:
             inside = False
             p[k], r[k], r_q[k] = table[-1, 1:].sum() + BEYOND * (v - end), BEYOND, 0.0
@@ -360,11 +331,11 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
 @njit(cache=True, inline="always")
 def interval_at(x, q_table, table, bucket, bucket_scale):
     """Interval of one x > 0 below the end of the table of `hermite_inverse`, and t there."""
-    at = min(int(x * bucket_scale), bucket.size - 2)
-    low = bucket[at]
-    high = bucket[at + 1] + 1
-    while high - low > 1:
-        middle = (low + high) // 2
+    at = min(_unsigned(x * bucket_scale), _unsigned(bucket.size - 2))
+    low = _unsigned(bucket[at])
+    high = _unsigned(bucket[at + _ONE]) + _ONE
+    while high - low > _ONE:
+        middle = (low + high) >> _ONE
         if q_table[middle] <= x:
             low = middle
         else:

@@ -26,6 +26,7 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix, diags, kron
 
+from exudyn_ehd.film.differences import drop_weights
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.shear_profile import (
     FLOW_POINTS,
@@ -158,7 +159,9 @@ class ShearThinning(FluxEffect):
                 gap, self.slopes[axis], self.cross[axis], fluid, k * vx, k, axis, self.oil, self.flow_points,
                 self.last[axis], found,
             )  # fmt: skip
-            multiply(found, g, g_h, g_v)
+            g_h[:] = g_h * found[0] + g * found[1]
+            g_v[:] = g_v * found[0] + g * found[2]
+            g *= found[0]
 
     def slide(self, flux: LinkFlux, vx: float) -> np.ndarray:
         """Conductances in theta where sliding alone thins, after `apply` without gradients: exact, with derivatives.
@@ -204,9 +207,10 @@ class ShearThinning(FluxEffect):
 
     def gather(self, weights: np.ndarray) -> np.ndarray:
         """Sums (n, m) by the film's unknown of weights (2, n, m) of the gradients at the vertices."""
-        out = np.zeros(weights.shape[1:])
-        gather(weights, self.weights, out)
-        return out
+        back_x, on_x, back_z, on_z = self.weights
+        x = on_x[:, None] * weights[0] + np.roll(back_x[:, None] * weights[0], -1, axis=0)
+        z = on_z * weights[1] + np.roll(back_z * weights[1], -1, axis=1)
+        return -drop_weights(np.array((x, z))).sum(axis=0)
 
     @cached_property
     def operators(self) -> tuple[csr_matrix, csr_matrix]:
@@ -251,33 +255,3 @@ def gradients(P, links, weights, slopes_out, vertex_out, cross_out):
             cross_out[0, i, j] = 0.5 * (vertex_out[1, i, j] + vertex_out[1, nxt, j])
             far = j + 1 if j + 1 < m else j
             cross_out[1, i, j] = 0.5 * (vertex_out[0, i, j] + vertex_out[0, i, far])
-
-
-@njit(cache=True)
-def gather(of, weights, out):
-    """Add what the vertices' gradients in `gradients` give to the unknowns, times weights ``of`` (2, n, m)."""
-    n, m = out.shape
-    back_x, on_x, back_z, on_z = weights
-    for i in range(n):
-        nxt, prv = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
-        for j in range(m):
-            x, z = of[0, i, j], of[1, i, j]
-            out[i, j] += x * (back_x[i] - on_x[i]) + z * (back_z[j] - on_z[j])
-            out[prv, j] -= x * back_x[i]
-            out[nxt, j] += x * on_x[i]
-            if j > 0:
-                out[i, j - 1] -= z * back_z[j]
-            if j + 1 < m:
-                out[i, j + 1] += z * on_z[j]
-
-
-@njit(cache=True)
-def multiply(found, g, g_h, g_v):
-    """Multiply conductances by the ratio of `thin_links`; also their derivatives to gap and vx."""
-    n, m = g.shape
-    for i in range(n):
-        for j in range(m):
-            a = found[0, i, j]
-            g_h[i, j] = g_h[i, j] * a + g[i, j] * found[1, i, j]
-            g_v[i, j] = g_v[i, j] * a + g[i, j] * found[2, i, j]
-            g[i, j] *= a

@@ -18,7 +18,8 @@ within twice that; ``supply resolution`` of the audit measures it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -29,9 +30,42 @@ EDGE = 1e-9
 # Length of an axial groove without one, over the bearing's.
 WHOLE_GROOVE = 0.875
 
+# Limits of the arguments that are numbers.
+_DEEP = "write depth=None for an area so deep that its shear does not count."
+_AROUND = "if yours is in degrees, use math.radians; a groove all around is a CircumferentialGroove."
+_LIMITS: dict[str, dict[str, Any]] = {
+    "pressure": {"unit": "Pa"},
+    "angle": {"unit": "rad"},
+    "z": {"unit": "m"},
+    "depth": {"unit": "m", "above": 0.0, "hint": _DEEP},
+    "width_angle": {"unit": "rad", "above": 0.0, "below": 2.0 * math.pi, "hint": _AROUND},
+    "length": {"unit": "m", "above": 0.0},
+    "width": {"unit": "m", "above": 0.0},
+    "diameter": {"unit": "m", "above": 0.0},
+}
+
+
+class _Area:
+    """Checks of an area's arguments."""
+
+    rotating: bool
+
+    def __post_init__(self) -> None:
+        given = {field.name: field.default for field in fields(self)}  # type: ignore[arg-type]
+        for name, limits in _LIMITS.items():
+            # an area that may be without a depth or a length has None for it
+            if name in given and not (given[name] is None and getattr(self, name) is None):
+                require_number(f"{type(self).__name__}.{name}", getattr(self, name), **limits)
+        rotating = self.rotating
+        if not isinstance(rotating, bool):
+            raise InputError(
+                f"{type(self).__name__}.rotating must be True (in the journal) or False (in the housing), got "
+                f"{rotating!r}."
+            )
+
 
 @dataclass(frozen=True, kw_only=True)
-class AxialGroove:
+class AxialGroove(_Area):
     """Groove along the axis, centred at mid-plane.
 
     Edges of supply areas act where they are, on and between the grid's lines: on the default grid the load is within 1
@@ -69,20 +103,9 @@ class AxialGroove:
     depth: float | None = None
     rotating: bool = False
 
-    def __post_init__(self) -> None:
-        _check_area(self, angle="rad")
-        _check_width(self)
-        if self.length is not None:
-            require_number("AxialGroove.length", self.length, "m", above=0.0)
-
-    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
-        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
-        half = math.inf if self.length is None else 0.5 * self.length
-        return _rectangle(theta, z, self.angle, 0.5 * self.width_angle, 0.0, half)
-
 
 @dataclass(frozen=True, kw_only=True)
-class CircumferentialGroove:
+class CircumferentialGroove(_Area):
     """Groove around the bearing; it parts the film into lands, whose load is within 1 % on the default grid.
 
     Parameters
@@ -112,17 +135,9 @@ class CircumferentialGroove:
 
     rotating = False
 
-    def __post_init__(self) -> None:
-        _check_area(self, z="m")
-        require_number("CircumferentialGroove.width", self.width, "m", above=0.0)
-
-    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
-        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
-        return _rectangle(theta, z, 0.0, math.pi, self.z, 0.5 * self.width)
-
 
 @dataclass(frozen=True, kw_only=True)
-class Hole:
+class Hole(_Area):
     """Round hole of any diameter; in the journal of at least a column of the film's grid.
 
     It feeds within 1 % of what it does on a fine grid, its pressure well above the film's.
@@ -158,18 +173,9 @@ class Hole:
     depth: float | None = None
     rotating: bool = False
 
-    def __post_init__(self) -> None:
-        _check_area(self, angle="rad", z="m")
-        require_number("Hole.diameter", self.diameter, "m", above=0.0)
-
-    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
-        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
-        x = radius * _turn(theta - self.angle)
-        return x[:, None] ** 2 + (z - self.z) ** 2 <= (0.5 * self.diameter * (1.0 + EDGE)) ** 2
-
 
 @dataclass(frozen=True, kw_only=True)
-class Pocket:
+class Pocket(_Area):
     """Rectangular pocket.
 
     Parameters
@@ -206,49 +212,8 @@ class Pocket:
     depth: float | None = None
     rotating: bool = False
 
-    def __post_init__(self) -> None:
-        _check_area(self, angle="rad", z="m")
-        _check_width(self)
-        require_number("Pocket.length", self.length, "m", above=0.0)
-
-    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
-        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
-        return _rectangle(theta, z, self.angle, 0.5 * self.width_angle, self.z, 0.5 * self.length)
-
 
 SupplyArea = AxialGroove | CircumferentialGroove | Hole | Pocket
-
-
-def _check_area(area: SupplyArea, **units: str) -> None:
-    for argument, unit in {"pressure": "Pa", **units}.items():
-        require_number(f"{type(area).__name__}.{argument}", getattr(area, argument), unit)
-    if area.depth is not None:
-        hint = "write depth=None for an area so deep that its shear does not count."
-        require_number(f"{type(area).__name__}.depth", area.depth, "m", above=0.0, hint=hint)
-    if not isinstance(area.rotating, bool):
-        raise InputError(
-            f"{type(area).__name__}.rotating must be True (in the journal) or False (in the housing), got "
-            f"{area.rotating!r}."
-        )
-
-
-def _check_width(area: AxialGroove | Pocket) -> None:
-    hint = "if yours is in degrees, use math.radians; a groove all around is a CircumferentialGroove."
-    where = f"{type(area).__name__}.width_angle"
-    require_number(where, area.width_angle, "rad", above=0.0, below=2.0 * math.pi, hint=hint)
-
-
-def _turn(angle: np.ndarray) -> np.ndarray:
-    """Angles brought to -pi .. pi."""
-    return (angle + math.pi) % (2.0 * math.pi) - math.pi
-
-
-def _rectangle(
-    theta: np.ndarray, z: np.ndarray, angle: float, half_angle: float, center: float, half_length: float
-) -> np.ndarray:
-    inside_theta = np.abs(_turn(theta - angle)) <= half_angle * (1.0 + EDGE)
-    inside_z = np.abs(z - center) <= half_length * (1.0 + EDGE)
-    return np.outer(inside_theta, inside_z)
 
 
 def require_areas(supply: object) -> None:
@@ -266,10 +231,30 @@ def placed(supply: tuple[SupplyArea, ...], length: float) -> tuple[SupplyArea, .
     return tuple(replace(a, length=whole) if isinstance(a, AxialGroove) and a.length is None else a for a in supply)
 
 
+def outline(area: SupplyArea, radius: float) -> tuple[float, float, float, float, float]:
+    """Centre (theta, z), half widths (theta, z), and distance, rad and m.
+
+    An area is all points of the surface with this ``radius``, m, that are within the distance of the rectangle with the
+    half widths, m.
+    """
+    angle, z = getattr(area, "angle", 0.0), getattr(area, "z", 0.0)
+    if isinstance(area, Hole):
+        return angle, z, 0.0, 0.0, 0.5 * area.diameter
+    if isinstance(area, CircumferentialGroove):
+        return angle, z, radius * math.pi, 0.5 * area.width, 0.0
+    return angle, z, radius * 0.5 * area.width_angle, math.inf if area.length is None else 0.5 * area.length, 0.0
+
+
+def covers(area: SupplyArea, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+    """Vertices inside an area, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+    angle, middle, half_x, half_z, reach = outline(area, radius)
+    turned = (theta - angle + math.pi) % (2.0 * math.pi) - math.pi
+    x = np.maximum(radius * np.abs(turned) - half_x * (1.0 + EDGE), 0.0)
+    along = np.maximum(np.abs(z - middle) - half_z * (1.0 + EDGE), 0.0)
+    return np.hypot.outer(x, along) <= reach * (1.0 + EDGE)
+
+
 def axial_span(area: SupplyArea) -> tuple[float, float]:
     """Axial positions of an area's ends, m."""
-    if isinstance(area, AxialGroove):
-        half = math.inf if area.length is None else 0.5 * area.length
-        return -half, half
-    size = area.diameter if isinstance(area, Hole) else area.length if isinstance(area, Pocket) else area.width
-    return area.z - 0.5 * size, area.z + 0.5 * size
+    _, z, _, half, reach = outline(area, 0.0)
+    return z - half - reach, z + half + reach

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from exudyn_ehd.film.supply.areas import EDGE, AxialGroove, CircumferentialGroove, Hole, SupplyArea, axial_span, placed
+from exudyn_ehd.film.supply.areas import EDGE, CircumferentialGroove, Hole, SupplyArea, axial_span, outline, placed
 from exudyn_ehd.film.supply.recess import RECIRCULATION
 from exudyn_ehd.film.supply.rows import groove_spans
 from exudyn_ehd.status import InputError
@@ -72,25 +72,12 @@ def check_depths(supply: Sequence[SupplyArea], clearance: float) -> None:
 
 def _check_extent(k: int, area: SupplyArea, radius: float, length: float) -> None:
     """Refuse holes wider than the journal, and other areas that are far longer than the bearing."""
-    if isinstance(area, Hole):
-        size, limit, whose = area.diameter, 2.0 * radius, "diameter"
-    else:
-        given = area.width if isinstance(area, CircumferentialGroove) else area.length
-        size, limit, whose = given or 0.0, 2.0 * length, "length"
-    if size > limit:
+    _, _, _, half, reach = outline(area, radius)
+    if reach > radius or length < half < math.inf:
+        size = f"diameter of {2.0 * radius:g}" if isinstance(area, Hole) else f"length of {length:g}"
         raise InputError(
-            f"JournalBearing.supply[{k}]: {area!r} is larger than the bearing with its {whose} of "
-            f"{2.0 * radius if whose == 'diameter' else length:g} m; all lengths are in m."
+            f"JournalBearing.supply[{k}]: {area!r} is larger than the bearing with its {size} m; all lengths are in m."
         )
-
-
-def _core(area: SupplyArea, radius: float) -> tuple[float, float, float]:
-    """Half widths in theta and z of the rectangle, m, that an area is all points within the third around."""
-    if isinstance(area, Hole):
-        return 0.0, 0.0, 0.5 * area.diameter
-    low, high = axial_span(area)
-    half = math.pi if isinstance(area, CircumferentialGroove) else 0.5 * area.width_angle
-    return radius * half, 0.5 * (high - low), 0.0
 
 
 def _check_columns(k: int, area: SupplyArea, radius: float, step: float, around: bool) -> None:
@@ -147,11 +134,9 @@ def _check_pair(i: int, first: SupplyArea, k: int, second: SupplyArea, radius: f
     """Refuse areas on one surface that overlap at different pressures, or with hardly a film between them."""
     if first.rotating != second.rotating:
         return  # they pass each other; where they overlap the first one's pressure counts
-    (x1, z1, r1), (x2, z2, r2) = _core(first, radius), _core(second, radius)
-    angle = math.remainder(getattr(first, "angle", 0.0) - getattr(second, "angle", 0.0), 2.0 * math.pi)
-    apart = max(0.0, abs(radius * angle) - x1 - x2)
-    middle = [0.0 if isinstance(a, AxialGroove) else a.z for a in (first, second)]
-    along = max(0.0, abs(middle[0] - middle[1]) - z1 - z2)
+    (angle1, place1, x1, z1, r1), (angle2, place2, x2, z2, r2) = outline(first, radius), outline(second, radius)
+    apart = max(0.0, radius * abs(math.remainder(angle1 - angle2, 2.0 * math.pi)) - x1 - x2)
+    along = max(0.0, abs(place1 - place2) - z1 - z2)
     if math.hypot(apart, along) <= r1 + r2:
         if first.pressure != second.pressure:
             raise InputError(

@@ -13,7 +13,6 @@ import dataclasses
 import math
 
 import numpy as np
-from numba import njit
 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.supply.areas import (
@@ -46,7 +45,7 @@ class SupplyMap:
     grid : FilmGrid
         The same with `FilmGrid.lands`, and with `FilmGrid.cuts` if there are others than circumferential grooves.
     masks : list of (n, m) bool arrays
-        Vertices of every area at its last position.
+        Vertices of every area at its last position; a shared vertex counts for the first area.
     parts : list of (n, m) arrays
         Scaled area of every one at the vertices; a place that two cover counts for the first.
     land : (n, m) array
@@ -83,6 +82,7 @@ class SupplyMap:
         """Prescribed vertices, cut links and weights at the present spin."""
         g = self.grid
         share = np.ones((2, *g.shape))
+        g.fixed[:] = self.ends
         holes: list[tuple[Circle, int, float]] = []
         for area, mask in zip(self.supply, self.masks, strict=True):
             mask[:] = False
@@ -92,11 +92,11 @@ class SupplyMap:
                 mask[(hole.covered[:, 0] + column) % g.x.size, hole.covered[:, 1]] = True
             else:
                 cover(area, g, self.spin if area.rotating else 0.0, mask, share)
-            mask &= ~self.ends
-        covered = np.logical_or.reduce(self.masks)
-        np.logical_or(self.ends, covered, out=g.fixed)
+            mask &= ~g.fixed
+            g.fixed[mask] = True
         if g.cuts is not None:
-            cut_links(covered, share, self.plain_weight, g.cuts, g.weight)
+            g.cuts[:], width = cut_links(g.fixed & ~self.ends, share)
+            g.weight[:] = self.plain_weight * width
             for hole, column, factor in holes:
                 self._cut_hole(hole, column, factor)
         self.land[:], g.shear_weight[:] = 1.0, self.plain_weight
@@ -147,21 +147,13 @@ class SupplyMap:
         return np.array([area.pressure for area in self.supply])
 
     def prescribe(self, values: np.ndarray, P: np.ndarray) -> None:
-        """Write one value per area into the field P (n, m); a shared vertex has that of the first area."""
-        for mask, value in zip(reversed(self.masks), reversed(values), strict=True):
+        """Write one value per area into the field P (n, m)."""
+        for mask, value in zip(self.masks, values, strict=True):
             P[mask] = value
 
     def flows(self, inflow: np.ndarray) -> np.ndarray:
         """Flow from every area into the film (areas,), in the unit of ``inflow`` (n, m)."""
-        return np.array([float(np.sum(inflow[area])) for area in self.parted()])
-
-    def parted(self) -> list[np.ndarray]:
-        """Vertices of every area (n, m); a shared vertex counts for the first area."""
-        left, out = np.ones(self.grid.shape, dtype=np.bool_), []
-        for mask in self.masks:
-            out.append(mask & left)
-            left &= ~mask
-        return out
+        return np.array([float(np.sum(inflow[area])) for area in self.masks])
 
 
 def cover(
@@ -199,33 +191,27 @@ def cover(
             np.minimum.at(share[1, :, at], columns % n, part)
 
 
-@njit(cache=True)
-def cut_links(covered, share, area, cuts, weight):
-    """Conductance of links from covered to free vertices, of which ``share`` (2, n, m) is film, and weights.
+def cut_links(covered: np.ndarray, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """`FilmGrid.cuts` (2, n, m) of links from ``covered`` to free vertices, of which ``share`` (2, n, m) is film, and
+    the columns' widths (n, m) over those of the grid.
 
     Integrals, and flows in z, take the supply's pressure up to the edge: the free column stands for s (1 - s) of a
     distance s less (the trapezoidal rule has (1 - s) / 2, the same in the mean; here nothing is left where the edge
     passes a vertex), the last covered one for twice that more, the one before for that less, which keeps middles.
     """
-    n, m = covered.shape
-    width = np.ones((n, m))
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            cuts[0, i, j] = 1.0
-            if covered[i, j] == covered[nxt, j]:
-                continue
-            s = share[0, i, j]
-            cuts[0, i, j] = 1.0 / max(s, SHORTEST)
-            last, free, inner = (i, nxt, (i - 1) % n) if covered[i, j] else (nxt, i, (nxt + 1) % n)
-            back = 1.0 if covered[inner, j] else 0.0
-            width[free, j] -= s * (1.0 - s)
-            width[last, j] += s * (1.0 - s) * (1.0 + back)
-            width[inner, j] -= s * (1.0 - s) * back
-    for i in range(n):
-        for j in range(m):
-            weight[i, j] = area[i, j] * width[i, j]
-        for j in range(m - 1):
-            low, high = width[i, j], width[i, j + 1]
-            cuts[1, i, j] = low if abs(low - 1.0) > abs(high - 1.0) else high
-            cuts[1, i, j] /= max(share[1, i, j], SHORTEST)
+    n, cuts, width = len(covered), np.ones_like(share), np.ones(covered.shape)
+    i, j = np.nonzero(covered != np.roll(covered, -1, axis=0))
+    s = share[0, i, j]
+    cuts[0, i, j] = 1.0 / np.maximum(s, SHORTEST)
+    # from the last covered column to the free one
+    ends = covered[i, j]
+    last, way = np.where(ends, i, (i + 1) % n), np.where(ends, 1, -1)
+    free, inner = (last + way) % n, (last - way) % n
+    moved = s * (1.0 - s)
+    before = moved * covered[inner, j]
+    for column, more in ((free, -moved), (last, moved + before), (inner, -before)):
+        np.add.at(width, (column, j), more)
+    low, high = width[:, :-1], width[:, 1:]
+    wide = np.where(abs(low - 1.0) > abs(high - 1.0), low, high)
+    cuts[1, :, :-1] = wide / np.maximum(share[1, :, :-1], SHORTEST)
+    return cuts, width

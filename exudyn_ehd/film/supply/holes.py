@@ -22,7 +22,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import laplacian
 from scipy.sparse.linalg import splu
 
 # Shortest link over its spacing (rounding of its flow stays below 1e-11), largest factor, intervals of film around a
@@ -111,21 +112,18 @@ def strength(rows: tuple[float, ...], radius: float, offset: float) -> float:
     free &= ~covered
     distance = (np.arange(n) - out - offset)[:, None] ** 2 + z**2
     given = 0.5 * np.log(np.where(covered, 1.0, distance / radius**2))
+    # Laplace's equation at the free vertices, without the hole's own links
+    place, film = np.arange(n * m).reshape(n, m), ~covered.ravel()
+    one, other = np.append(place[:-1], place[:, :-1]), np.append(place[1:], place[:, 1:])
+    k = np.append(kx[:-1], kz[:, :-1]) * (film[one] & film[other])
+    links_of = coo_matrix((k, (one, other)), shape=(n * m, n * m))
+    balance = laplacian((links_of + links_of.T).tocsr()).tocsr()[free.ravel()]
+    source = -balance[:, ~free.ravel()] @ given[~free][:, None]
     number = (np.cumsum(free) - 1).reshape(n, m)
-    count = int(free.sum())
-    entries, source = [], np.zeros((count, 1))
-    for k, (a, b) in ((kx[:-1], (np.s_[:-1], np.s_[1:])), (kz[:, :-1], (np.s_[:, :-1], np.s_[:, 1:]))):
-        for one, other in ((a, b), (b, a)):
-            live = free[one] & ~covered[other]
-            row, both = number[one][live], free[other][live]
-            entries += [(row, row, k[live]), (row[both], number[other][live][both], -k[live][both])]
-            np.add.at(source[:, 0], row[~both], (k[live] * given[other][live])[~both])
-    i, j, value = (np.concatenate(part) for part in zip(*entries, strict=True))
     others = [number[i + (axis == 0), j + (axis == 1)] if covered[i, j] else number[i, j] for axis, i, j in links]
     ends, where = np.unique(others, return_inverse=True)
-    unit = np.zeros((count, ends.size))
-    unit[ends, np.arange(ends.size)] = 1.0
-    answer = splu(csc_matrix((value, (i, j)), shape=(count, count))).solve(np.hstack((source, unit)))[ends]
+    unit = np.eye(len(source))[:, ends]
+    answer = splu(balance[:, free.ravel()].tocsc()).solve(np.hstack((source, unit)))[ends]
     least, most = 0.0, LARGEST
     for _ in range(40):
         factor = 0.5 * (least + most)

@@ -9,8 +9,9 @@ with the asperity density eta, tip radius beta, combined roughness sigma, compos
 4.4086e-5 (4 - u)^6.804 that is often used instead is 10.7 % low at u = 0 and is not used here.
 
 F_5/2 comes from cubic Hermite interpolation on 1/64 sigma with the exact values and derivatives ``F_5/2' = -5/2 F_3/2``
-(relative error below 1e-6), is zero from u = 8 on (where it is below 1e-16), and follows for u < -8 the series
-``(-u)^(5/2) (1 + 15/8 u^-2 - 15/128 u^-4 - 75/1024 u^-6)``, so that surfaces pressed into each other still push back.
+(relative error below 1e-6), and is zero from u = 8 on (where it is below 1e-16). For u < -8 the values are those of
+the series ``(-u)^(5/2) (1 + 15/8 u^-2 - 15/128 u^-4 - 75/1024 u^-6)``, so that surfaces pressed into each other still
+push back. Below u = -64 the first cubic goes on, 0.5 % too stiff at -128.
 """
 
 from __future__ import annotations
@@ -20,17 +21,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.special import gamma, pbdv
 
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
+from exudyn_ehd.film.surfaces.contact import Contact
 from exudyn_ehd.status import require_number, require_numbers
 
-REACH = 8.0
+REACH, DEEPEST = 8.0, -64.0
 STEPS_PER_SIGMA = 64
-# Of a column's gap: steps, and the last one as share of the roughness.
-MAX_COLUMN_STEPS = 60
-COLUMN_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,15 +153,20 @@ def greenwood_tripp_integral(order: float, u: np.ndarray | float) -> np.ndarray:
 
 
 @functools.cache
-def contact_table() -> np.ndarray:
-    """Values and derivatives (k, 2) of F_5/2 at u = -8 + k / 64; zero at the last knot."""
-    u = np.linspace(-REACH, REACH, int(2 * REACH * STEPS_PER_SIGMA) + 1)
-    table = np.column_stack((greenwood_tripp_integral(2.5, u), -2.5 * greenwood_tripp_integral(1.5, u)))
-    table[-1] = 0.0
-    return table
+def contact_knots() -> np.ndarray:
+    """Values and derivatives (k, 2) of F_5/2 at u = -64, ..., 8 in steps of 1/64; zero at the last knot."""
+    u = np.linspace(DEEPEST, REACH, int((REACH - DEEPEST) * STEPS_PER_SIGMA) + 1)
+    near = np.maximum(u, -REACH)
+    knots = np.column_stack((greenwood_tripp_integral(2.5, near), -2.5 * greenwood_tripp_integral(1.5, near)))
+    deep = -u[u < -REACH]
+    q = deep**-2
+    knots[u < -REACH, 0] = deep**2.5 * (1.0 + q * (1.875 + q * (-0.1171875 + q * -0.0732421875)))
+    knots[u < -REACH, 1] = -(deep**1.5) * (2.5 + q * (0.5 * 1.875 + q * (1.5 * 0.1171875 + q * 3.5 * 0.0732421875)))
+    knots[-1] = 0.0
+    return knots
 
 
-class AsperityContact(AverageGap):
+class AsperityContact(AverageGap, Contact):
     """`GreenwoodTripp` in scaled form: contact pressure and gap limiter of one bearing model.
 
     Parameters
@@ -174,96 +177,6 @@ class AsperityContact(AverageGap):
     """
 
     def __init__(self, asperity: GreenwoodTripp, clearance: float) -> None:
-        super().__init__(asperity.composite_roughness / clearance, asperity.residual_film)
-        self.presses_below = REACH * self.sigma
-        self.level = asperity.pressure_scale
-        self.friction_coefficient = asperity.friction_coefficient
-        self.transition_speed = asperity.transition_speed
-        self.table = contact_table()
-
-    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
-        """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
-        asperity_pressure(H, self.sigma, self.level, self.table, P_out, slope_out)
-
-    def solve_gap(
-        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
-    ) -> None:
-        """Gap G (n, m) on Winkler elements, with contact pressure and slope there; as `seams.Contact`."""
-        solve_asperity_gap(X, compliance / scale, scale, self.sigma, self.level, self.table, G, P_out, slope_out)
-
-
-@njit(cache=True)
-def _asperity_at(h, inverse, level, table):
-    """(Contact pressure, its derivative) at one gap h, ``inverse`` = 1 / sigma."""
-    u = h * inverse
-    if u >= REACH:
-        return 0.0, 0.0
-    if u >= -REACH:
-        s = (u + REACH) * STEPS_PER_SIGMA
-        k = int(s)
-        s -= k
-        a = table[k, 0]
-        b = table[k, 1] / STEPS_PER_SIGMA
-        rise = table[k + 1, 0] - a
-        c2 = 3.0 * rise - 2.0 * b - table[k + 1, 1] / STEPS_PER_SIGMA
-        c3 = rise - b - c2
-        return (
-            level * (a + s * (b + s * (c2 + s * c3))),
-            level * (b + s * (2.0 * c2 + s * 3.0 * c3)) * STEPS_PER_SIGMA * inverse,
-        )
-    q = 1.0 / (u * u)
-    root = math.sqrt(-u)
-    series = 1.0 + q * (1.875 + q * (-0.1171875 + q * -0.0732421875))
-    change = 2.5 + q * (0.5 * 1.875 + q * (1.5 * 0.1171875 + q * 3.5 * 0.0732421875))
-    return level * u * u * root * series, level * u * root * change * inverse
-
-
-@njit(cache=True)
-def asperity_pressure(H, sigma, level, table, P_out, slope_out):
-    """Contact pressure ``level F(H / sigma)`` and its derivative with respect to H."""
-    h, P, slope = H.reshape(-1), P_out.reshape(-1), slope_out.reshape(-1)
-    inverse = 1.0 / sigma
-    reach = REACH * sigma
-    last = reach
-    p = p_h = 0.0
-    for k in range(h.size):
-        if h[k] >= reach:
-            P[k] = slope[k] = 0.0
-            continue
-        if h[k] != last:  # an aligned journal has one gap per column
-            last = h[k]
-            p, p_h = _asperity_at(last, inverse, level, table)
-        P[k] = p
-        slope[k] = p_h
-
-
-@njit(cache=True)
-def solve_asperity_gap(X, compliance, scale, sigma, level, table, G, P_out, slope_out):
-    """Gap on a Winkler element that asperities press: the root of ``G - X - compliance p(G)``, in place from any start.
-
-    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it.
-    With the pressure there, and its derivative to G over ``scale``.
-    """
-    n, m = X.shape
-    inverse = 1.0 / sigma
-    for i in range(n):
-        for j in range(m):
-            x = X[i, j]
-            g = max(G[i, j], x)
-            if x >= REACH * sigma:
-                G[i, j] = x
-                P_out[i, j] = 0.0
-                slope_out[i, j] = 0.0
-                continue
-            p = slope = 0.0
-            for _ in range(MAX_COLUMN_STEPS):
-                p, slope = _asperity_at(g, inverse, level, table)
-                step = (x + compliance * p - g) / (1.0 - compliance * slope)
-                g += step
-                if abs(step) <= COLUMN_TOLERANCE * sigma:
-                    # what is left is of the order of step^2 / sigma
-                    p += slope * step
-                    break
-            G[i, j] = g
-            P_out[i, j] = p
-            slope_out[i, j] = slope / scale
+        AverageGap.__init__(self, asperity.composite_roughness / clearance, asperity.residual_film)
+        friction = asperity.friction_coefficient, asperity.transition_speed
+        Contact.__init__(self, self.sigma, asperity.pressure_scale, (DEEPEST, REACH), contact_knots(), *friction)

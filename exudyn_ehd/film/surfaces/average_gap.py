@@ -24,13 +24,15 @@ import numpy as np
 from numba import njit
 from scipy.special import ndtr
 
+from exudyn_ehd.film.surfaces.contact import GapLimiter
+
 # Beyond this many sigma the average gap equals the nominal one (to 2e-13 sigma).
 SMOOTH_BEYOND = 7.0
 _INVERSE_ROOT_2 = 1.0 / math.sqrt(2.0)
 _INVERSE_ROOT_2_PI = 1.0 / math.sqrt(2.0 * math.pi)
 
 
-class AverageGap:
+class AverageGap(GapLimiter):
     """Gap limiter of rough surfaces.
 
     Parameters
@@ -46,17 +48,9 @@ class AverageGap:
         self.residual = residual
         self.limits_below = SMOOTH_BEYOND * sigma
 
-    def limit(
-        self,
-        H: np.ndarray,
-        HF: np.ndarray,
-        H_t: np.ndarray,
-        slope_out: np.ndarray,
-        bend_out: np.ndarray,
-        face_slope_out: np.ndarray,
-    ) -> None:
-        """Replace scaled gaps and the rate (n, m) by those of the average gap; as `seams.GapLimiter`."""
-        average_gap(H, HF, H_t, self.sigma, self.residual, slope_out, bend_out, face_slope_out)
+    def film_gap(self, gaps: np.ndarray, slopes: np.ndarray, bends: np.ndarray) -> None:
+        """Average gap with its derivatives; as `GapLimiter`."""
+        average_gap(gaps, self.sigma, self.residual, slopes, bends)
 
 
 def average_gap_ratio(x: np.ndarray, residual: float) -> np.ndarray:
@@ -66,46 +60,14 @@ def average_gap_ratio(x: np.ndarray, residual: float) -> np.ndarray:
 
 
 @njit(cache=True)
-def average_gap(H, HF, H_t, sigma, residual, slope_out, bend_out, face_slope_out):
-    """Replace gaps at vertices and links by their average gaps and H_t by their rate, in place.
-
-    First derivatives at both and the second one times the gap's rate come back, all (n, m).
-    """
-    n, m = H.shape
-    limit = SMOOTH_BEYOND * sigma
-    last = math.nan
-    mean = share = curvature = 0.0
-    for i in range(n):
-        for j in range(m):
-            h = H[i, j]
-            if h > limit:
-                slope_out[i, j] = 1.0
-                bend_out[i, j] = 0.0
-                continue
-            if h != last:  # an aligned journal has one gap per column
-                last = h
-                mean, share, curvature = average_of(h, sigma, residual)
-            H[i, j] = mean
-            slope_out[i, j] = share
-            bend_out[i, j] = curvature * H_t[i, j]
-            H_t[i, j] *= share
-        for j in range(m):
-            h = HF[i, j]
-            if h > limit:
-                face_slope_out[i, j] = 1.0
-                continue
-            if h != last:
-                last = h
-                mean, share, curvature = average_of(h, sigma, residual)
-            HF[i, j] = mean
-            face_slope_out[i, j] = share
-
-
-@njit(cache=True)
-def average_of(h, sigma, residual):
-    """Average gap of one gap h, with its first two derivatives; all scaled."""
-    y = h / sigma - residual
-    density = _INVERSE_ROOT_2_PI * math.exp(-0.5 * y * y)
-    # erfc keeps its relative accuracy deep below the mean line, where y Phi(y) + phi(y) cancels.
-    share = 0.5 * math.erfc(-y * _INVERSE_ROOT_2)
-    return sigma * (residual + max(y * share + density, 0.0)), share, density / sigma
+def average_gap(gaps, sigma, residual, slopes, bends):
+    """Average gaps of rough surfaces with their first two derivatives, in place."""
+    g, slope, bend = gaps.reshape(-1), slopes.reshape(-1), bends.reshape(-1)
+    for k in range(g.size):
+        if g[k] <= SMOOTH_BEYOND * sigma:
+            y = g[k] / sigma - residual
+            density = _INVERSE_ROOT_2_PI * math.exp(-0.5 * y * y)
+            # erfc keeps its relative accuracy deep below the mean line, where y Phi(y) + phi(y) cancels.
+            slope[k] = 0.5 * math.erfc(-y * _INVERSE_ROOT_2)
+            bend[k] = density / sigma
+            g[k] = sigma * (residual + max(y * slope[k] + density, 0.0))

@@ -1,165 +1,84 @@
-"""Wrench of contact pressures with its gradient; chain rule through a gap limiter.
+"""Wrench of contact pressures and of their friction, and its gradient.
 
-Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z
-(m,); basis e = (cos, sin, z cos, z sin, 1).
+The wrench is linear in the integrals of the pressure times `FilmGrid.moments`: cos, sin, z cos, z sin and 1. The
+pressures do no work on the journal's spin, so that their torque about O is e x F. Friction acts at the bore's points
+against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
 """
 
+from __future__ import annotations
+
+import functools
 import math
 
 import numpy as np
-from numba import njit
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-
-
-@njit(cache=True)
-def _slip(motion, transition, R):
-    """Direction of the slip in theta and in z, shares of its regularised size, and that size, m/s."""
-    v = R * motion[8]
-    w = motion[9]
-    size = math.sqrt(v * v + w * w + transition * transition)
-    return v / size, w / size, size
+# Weights (6, 5) of the integrals in force and moment about O, lengths over R: of pressures on a centred journal, and of
+# tractions of -1 per pressure along theta and along z.
+_PRESSED, _ALONG, _ACROSS = np.zeros((3, 6, 5))
+_PRESSED[0, 0], _PRESSED[1, 1], _PRESSED[3, 3], _PRESSED[4, 2] = -1.0, -1.0, 1.0, -1.0
+_ALONG[0, 1], _ALONG[1, 0], _ALONG[3, 2], _ALONG[4, 3], _ALONG[5, 4] = 1.0, -1.0, 1.0, 1.0, -1.0
+_ACROSS[2, 4], _ACROSS[3, 1], _ACROSS[4, 0] = -1.0, -1.0, 1.0
 
 
-@njit(cache=True)
-def _dragged(a, b, sc, ss, szc, szs, sn, R):
-    """Force and moment about O of a traction of -a in theta and -b in z per pressure."""
-    return a * ss, -a * sc, -b * sn, R * (a * szc - b * ss), R * (a * szs + b * sc), -a * R * sn
+def slip(motion: np.ndarray, R: float, transition: float) -> tuple[float, float, np.ndarray]:
+    """Regularised slip direction (theta, z) of a motion (10,), and its derivatives (2, 2) to (omega, w).
 
-
-@njit(cache=True, fastmath=_FAST)
-def contact_wrench(P, weight, cos_x, sin_x, z, motion, friction, transition, R, integrals_out, drag_out, wrench):
-    """Integrals ``sum P weight e`` of one contact's pressures, their wrench and that of their Coulomb friction.
-
-    The pressures do no work on the journal's spin, so that their torque about O is e x F; friction
-    acts at the bore's points against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
-
-    Parameters
-    ----------
-    P, weight : (n, m) arrays
-        Contact pressure, Pa, and integration weights.
-    motion : (10,) array
-        Of the journal, SI units; pose and speeds are read.
-    friction, transition, R : float
-        Friction coefficient, v0 (m/s) and journal radius (m).
-    integrals_out : (5,) array
-        Overwritten.
-    drag_out, wrench : (6,) arrays
-        Friction is added to both, the pressures to ``wrench``; N and Nm about O.
+    ``transition``: v0, m/s.
     """
-    n, m = P.shape
-    sc = ss = szc = szs = sn = 0.0
-    for i in range(n):
-        s0 = 0.0
-        s1 = 0.0
-        for j in range(m):
-            pw = P[i, j] * weight[i, j]
-            s0 += pw
-            s1 += pw * z[j]
-        sc += s0 * cos_x[i]
-        ss += s0 * sin_x[i]
-        szc += s1 * cos_x[i]
-        szs += s1 * sin_x[i]
-        sn += s0
-    integrals_out[0], integrals_out[1], integrals_out[2], integrals_out[3], integrals_out[4] = sc, ss, szc, szs, sn
-    if sn == 0.0:
-        return
-    area = R * R
-    wrench[0] -= area * sc
-    wrench[1] -= area * ss
-    wrench[3] += area * R * szs
-    wrench[4] -= area * R * szc
-    wrench[5] += area * (motion[1] * sc - motion[0] * ss + R * (motion[3] * szc - motion[2] * szs))
-    if friction == 0.0:
-        return
-    a, b, _ = _slip(motion, transition, R)
-    drag = _dragged(friction * area * a, friction * area * b, sc, ss, szc, szs, sn, R)
-    for r in range(6):
-        drag_out[r] += drag[r]
-        wrench[r] += drag[r]
+    v, w = R * float(motion[8]), float(motion[9])
+    size = math.sqrt(v * v + w * w + transition**2)
+    a, b = v / size, w / size
+    return a, b, np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
 
 
-@njit(cache=True, fastmath=_FAST)
+def contact_integrals(P: np.ndarray, weight: np.ndarray, moments: np.ndarray) -> np.ndarray:
+    """Integrals (5,) of contact pressures (n, m) with the moments (5, n, m)."""
+    return moments.reshape(5, -1) @ (P * weight).ravel()
+
+
+def contact_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
+    """Weights (6, 5) of the integrals in the wrench about O of pressures and their Coulomb friction, N and Nm."""
+    return pressure_weights(motion, R) + friction_weights(motion, friction, transition, R)
+
+
+def pressure_weights(motion: np.ndarray, R: float) -> np.ndarray:
+    """`contact_weights` of the pressures alone."""
+    out, (x, y, bx, by) = _PRESSED.copy(), motion[:4].tolist()
+    out[5, :4] = y / R, -x / R, by, -bx
+    return _units(R) * out
+
+
+def friction_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
+    """`contact_weights` of the friction alone."""
+    a, b, _ = slip(motion, R, transition)
+    return friction * _units(R) * (a * _ALONG + b * _ACROSS)
+
+
 def contact_tangent(
-    slope, weight, cos_x, sin_x, z, motion, pose_scale, friction, transition, R, integrals, grads_out, tangent
-):
-    """Add d(wrench of `contact_wrench`) / d(motion) to ``tangent`` (6, 10),
-    from the ``slope`` (n, m) of the pressure with the scaled gap.
+    slope: np.ndarray,
+    moments: np.ndarray,
+    motion: np.ndarray,
+    pose_scale: np.ndarray,
+    friction: float,
+    transition: float,
+    R: float,
+    integrals: np.ndarray,
+) -> np.ndarray:
+    """Gradient (6, 10) of a contact's wrench to the motion.
 
-    ``grads_out`` (5, 4): gradients ``-sum slope weight e (cos, sin, z cos, z sin)``
-    of the ``integrals`` (5,) to the scaled pose.
+    ``slope`` (n, m): derivative of the pressure to the scaled gap times the integration weights.
     """
-    n, m = slope.shape
-    G = grads_out
-    G[:] = 0.0
-    for i in range(n):
-        s0 = 0.0
-        s1 = 0.0
-        s2 = 0.0
-        for j in range(m):
-            pw = slope[i, j] * weight[i, j]
-            s0 += pw
-            s1 += pw * z[j]
-            s2 += pw * z[j] * z[j]
-        if s0 == 0.0:
-            continue
-        along, turn = (s0, s1, s2), (cos_x[i], sin_x[i])
-        for q in range(4):
-            G[4, q] -= along[q // 2] * turn[q % 2]
-            for k in range(4):
-                G[k, q] -= along[q // 2 + k // 2] * turn[q % 2] * turn[k % 2]
-    weights = np.empty((6, 5))
-    contact_weights(motion, friction, transition, R, weights)
-    for r in range(6):
-        for q in range(4):
-            change = 0.0
-            for k in range(5):
-                change += weights[r, k] * G[k, q]
-            tangent[r, q] += change * pose_scale[q]
-    sc, ss, szc, szs, sn = integrals[0], integrals[1], integrals[2], integrals[3], integrals[4]
-    area = R * R
-    tangent[5, 0] -= area * ss
-    tangent[5, 1] += area * sc
-    tangent[5, 2] -= area * R * szs
-    tangent[5, 3] += area * R * szc
-    # the slip (a, b) with omega and with the axial speed
-    a, b, size = _slip(motion, transition, R)
-    scale = friction * area / size
-    for q, at, bt in ((8, (1.0 - a * a) * R, -a * b * R), (9, -a * b, 1.0 - b * b)):
-        drag = _dragged(scale * at, scale * bt, sc, ss, szc, szs, sn, R)
-        for r in range(6):
-            tangent[r, q] += drag[r]
+    out, flat = np.zeros((6, 10)), moments.reshape(5, -1)
+    by_pose = (flat * slope.ravel()) @ flat[:4].T * -pose_scale
+    out[:, :4] = contact_weights(motion, friction, transition, R) @ by_pose
+    sc, ss, szc, szs, _ = integrals.tolist()
+    out[5, :4] += R**2 * np.array([-ss, sc, -R * szs, R * szc])
+    by_slip = np.array((_ALONG @ integrals, _ACROSS @ integrals)).T
+    out[:, 8:] = friction * _units(R) * (by_slip @ slip(motion, R, transition)[2])
+    return out
 
 
-@njit(cache=True)
-def contact_weights(motion, friction, transition, R, out):
-    """Weights (6, 5) of the integrals of `contact_wrench` in the wrench."""
-    a, b, _ = _slip(motion, transition, R)
-    a *= friction
-    b *= friction
-    area = R * R
-    out[:] = 0.0
-    out[0, 0], out[0, 1] = -area, area * a
-    out[1, 0], out[1, 1] = -area * a, -area
-    out[2, 4] = -area * b
-    out[3, 1], out[3, 2], out[3, 3] = -area * R * b, area * R * a, area * R
-    out[4, 0], out[4, 2], out[4, 3] = area * R * b, -area * R, area * R * a
-    out[5, 0], out[5, 1] = area * motion[1], -area * motion[0]
-    out[5, 2], out[5, 3], out[5, 4] = area * R * motion[3], -area * R * motion[2], -area * R * a
-
-
-@njit(cache=True, fastmath=_FAST)
-def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
-    """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place.
-
-    ``slope``, ``bend`` and ``face_slope`` are what a gap limiter returns (`joint.seams`).
-    """
-    dx, faces = DX.reshape(-1), face_slope.reshape(-1)
-    for k in range(dx.size):
-        dx[k] *= faces[k]
-    a, b, rate, gap = slope.reshape(-1), bend.reshape(-1), by_rate.reshape(-1), by_gap.reshape(-1)
-    by_gap_out, by_rate_out = gap_out.reshape(-1), rate_out.reshape(-1)
-    for k in range(a.size):
-        by_gap_out[k] = gap[k] * a[k] + rate[k] * b[k]
-    for k in range(a.size):
-        by_rate_out[k] = rate[k] * a[k]
+@functools.lru_cache(maxsize=16)
+def _units(R: float) -> np.ndarray:
+    """Force and moment (6, 1) of a unit pressure over scaled area and arm, m^2 and m^3."""
+    return np.array([R**2, R**2, R**2, R**3, R**3, R**3])[:, None]

@@ -20,109 +20,58 @@ pressure does, without a torque on the journal about its own axis. That is the s
 ``E_x = sum (carrier - g) (P_i - P_i+1) width``, the carrier being that of h. Then what sliding puts in is heat,
 however closely the surfaces touch.
 
-Symbols of `exudyn_ehd.film.loads`; cx, cz carriers and cx_h, cz_h their slopes to the film's gap on the link, H and HF
-the film's gaps at vertices and links, slope and face_slope h' there.
+Symbols of `exudyn_ehd.film.loads`. Values on links are (n, m); the last column of those in z, behind which there is
+no link, counts for nothing.
 """
+
+from __future__ import annotations
 
 import numpy as np
 from numba import njit
-
-from exudyn_ehd.film.grid import Directions
-from exudyn_ehd.film.reynolds.gap import contract_pose
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True, fastmath=_FAST)
-def link_excess(carriers, H, HF, gap, link):
-    """Carriers minus true gaps (2, n, m), of the links in theta and in z.
+def drag_weights(carriers, gap, link, widths):
+    """Weights (2, n, m) of the pressures in E_x and E_z.
 
-    ``carriers``: cx and cz, or None, where they are the film's gap. ``gap``, ``link``: the true gap at the vertices and
-    on the links i -> i+1.
+    ``carriers``: of the links in theta and in z; ``gap``, ``link``: true gaps at the vertices and on the links i ->
+    i+1; ``widths`` (2, n, m): `FilmGrid.link_widths`.
     """
-    n, m = H.shape
+    n, m = gap.shape
     out = np.empty((2, n, m))
+    along, across = carriers
     for i in range(n):
+        last = 0.0
         for j in range(m):
-            out[0, i, j] = (HF[i, j] if carriers is None else carriers[0][i, j]) - link[i, j]
-        for j in range(m - 1):
-            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if carriers is None else carriers[1][i, j]
-            out[1, i, j] = carrier - 0.5 * (gap[i, j] + gap[i, j + 1])
+            far = gap[i, j + 1] if j + 1 < m else gap[i, j]
+            excess = (across[i, j] - 0.5 * (gap[i, j] + far)) * widths[1, i, j]
+            before = (along[i - 1, j] - link[i - 1, j]) * widths[0, i - 1, j]
+            out[0, i, j] = (along[i, j] - link[i, j]) * widths[0, i, j] - before
+            out[1, i, j] = excess - last
+            last = excess
     return out
 
 
 @njit(cache=True, fastmath=_FAST)
-def drag_sums(P, gaps, mesh):
-    """(E_x, E_z) of the pressures P (n, m); ``gaps`` are the arguments of `link_excess`."""
+def drag_by_gap(P, carrier_slopes, slope, face_slope, widths):
+    """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices.
+
+    ``carrier_slopes``: of the carriers in theta and z to the film's gap there; ``slope``, ``face_slope``: h' at
+    vertices and links; ``widths`` as in `drag_weights`.
+    """
     n, m = P.shape
-    excess = link_excess(*gaps)
-    width_x, width_z, link_x, link_z = mesh
-    along = 0.0
-    across = 0.0
+    face, cell = np.empty((n, m)), np.empty((n, m))
+    along, across = carrier_slopes
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
-        if link_x[i] != 0.0:
-            for j in range(m):
-                along += excess[0, i, j] * width_z[j] * (P[i, j] - P[nxt, j])
-        wx = width_x[i]
-        for j in range(m - 1):
-            across += (wx if link_z[j] != 0.0 else 0.0) * excess[1, i, j] * (P[i, j] - P[i, j + 1])
-    return along, across
-
-
-@njit(cache=True, fastmath=_FAST)
-def drag_rhs(order, count, active, gaps, mesh, rows):
-    """Add the unknown pressures' weights in E_x and E_z to rows (2, count); nothing where the pressure is clipped."""
-    n, m = active.shape
-    excess = link_excess(*gaps)
-    width_x, width_z, link_x, link_z = mesh
-    along, across = np.empty((n, m)), np.empty((n, m))
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        own = 1.0 if link_x[i] != 0.0 else 0.0
-        before = 1.0 if link_x[prv] != 0.0 else 0.0
-        for j in range(m):
-            along[i, j] = (own * excess[0, i, j] - before * excess[0, prv, j]) * width_z[j]
-        last = 0.0
-        for j in range(m - 1):
-            link = (width_x[i] if link_z[j] != 0.0 else 0.0) * excess[1, i, j]
-            across[i, j] = link - last
-            last = link
-        across[i, m - 1] = -last
-    x, z, actives = along.reshape(-1), across.reshape(-1), active.reshape(-1)
-    for r in range(count):
-        at = order[r]
-        if actives[at]:
-            rows[0, r] += x[at]
-            rows[1, r] += z[at]
-
-
-@njit(cache=True, fastmath=_FAST)
-def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face_out, cell_out):
-    """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices."""
-    n, m = P.shape
-    width_x, width_z, link_x, link_z = mesh
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if link_x[i] != 0.0 else 0.0
-        for j in range(m):
-            share = cx_h[i, j] * face_slope[i, j] - 1.0
-            face_out[i, j] = linked * share * width_z[j] * (P[i, j] - P[nxt, j])
-        half = 0.5 * width_x[i]
         carried = last = 0.0
-        for j in range(m - 1):
-            link = (half if link_z[j] != 0.0 else 0.0) * (P[i, j] - P[i, j + 1])
-            carrier = link * cz_h[i, j]
-            cell_out[i, j] = (carried + carrier) * slope[i, j] - (last + link)
-            carried, last = carrier, link
-        cell_out[i, m - 1] = carried * slope[i, m - 1] - last
-
-
-@njit(cache=True)
-def drag_pose_gradient(P, cx_h, cz_h, slope, face_slope, mesh, at, out):
-    """Add the gradients of `drag_gap_slopes` to the scaled pose to out (2, >= 4): of E_x and of E_z."""
-    face, cell = np.empty((1, *P.shape)), np.empty((1, *P.shape))
-    drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face[0], cell[0])
-    at = Directions(*at)
-    contract_pose(face, at.cos_f, at.sin_f, at.z, out[:1])
-    contract_pose(cell, at.cos_x, at.sin_x, at.z, out[1:])
+        for j in range(m):
+            face[i, j] = (along[i, j] * face_slope[i, j] - 1.0) * widths[0, i, j] * (P[i, j] - P[nxt, j])
+            far = P[i, j + 1] if j + 1 < m else P[i, j]
+            half = 0.5 * widths[1, i, j] * (P[i, j] - far)
+            carrier = half * across[i, j]
+            cell[i, j] = (carried + carrier) * slope[i, j] - (last + half)
+            carried, last = carrier, half
+    return face, cell

@@ -45,28 +45,6 @@ class RoughFlow(FluxEffect):
             multiply_by_table(gap_x, 1.0 / self.sigma, self.psi_x, 1.0, self.shear, flux.cx, flux.cx_h)
             multiply_by_table(gap_z, 1.0 / self.sigma, self.psi_z, 1.0, self.shear, flux.cz, flux.cz_h)
 
-    def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
-        """Conductances with their factors in one pass."""
-        rough_flux(
-            H, flux.gap_x, 1.0 / self.sigma, self.phi_x, self.phi_z, flux.gap_z, flux.gx, flux.gx_h, flux.gz, flux.gz_h
-        )
-        if self.shear == 0.0:
-            flux.reset()
-            return
-        flux.reset_speeds()
-        rough_carriers(
-            flux.gap_x,
-            flux.gap_z,
-            1.0 / self.sigma,
-            self.psi_x,
-            self.psi_z,
-            self.shear,
-            flux.cx,
-            flux.cx_h,
-            flux.cz,
-            flux.cz_h,
-        )
-
 
 class RoughShear:
     """Couette friction factor phi_f + Phi_fs of rough surfaces as a shear factor of one bearing model.
@@ -101,46 +79,6 @@ def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
         by = base + share * f[k]
         v_h[k] = v_h[k] * by + v[k] * (share * f_h[k])
         v[k] *= by
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def rough_flux(H, HF, inverse_sigma, table_x, table_z, gap_z_out, gx, gx_h, gz, gz_h):
-    """`plain_flux` times the tables' factors."""
-    n, m = H.shape
-    for i in range(n):
-        for j in range(m - 1):
-            gap_z_out[i, j] = 0.5 * (H[i, j] + H[i, j + 1])
-        gap_z_out[i, m - 1] = H[i, m - 1]
-    _rough_conductance(HF, inverse_sigma, table_x, gx, gx_h)
-    _rough_conductance(gap_z_out, inverse_sigma, table_z, gz, gz_h)
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _rough_conductance(gap, inverse_sigma, table, g_out, g_h_out):
-    """``gap^3 f`` and its derivative."""
-    look_up(gap, inverse_sigma, table, g_out, g_h_out)
-    h, g, g_h = gap.reshape(-1), g_out.reshape(-1), g_h_out.reshape(-1)
-    for k in range(h.size):
-        square = h[k] * h[k]
-        g_h[k] = square * (3.0 * g[k] + h[k] * g_h[k])
-        g[k] *= square * h[k]
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def rough_carriers(gap_x, gap_z, inverse_sigma, table_x, table_z, share, cx_out, cx_h_out, cz_out, cz_h_out):
-    """Carriers ``gap (1 + share table)`` of the links and their slopes."""
-    _rough_carrier(gap_x, inverse_sigma, table_x, share, cx_out, cx_h_out)
-    _rough_carrier(gap_z, inverse_sigma, table_z, share, cz_out, cz_h_out)
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _rough_carrier(gap, inverse_sigma, table, share, c_out, c_h_out):
-    look_up(gap, inverse_sigma, table, c_out, c_h_out)
-    h, c, c_h = gap.reshape(-1), c_out.reshape(-1), c_h_out.reshape(-1)
-    for k in range(h.size):
-        factor = 1.0 + share * c[k]
-        c_h[k] = factor + h[k] * share * c_h[k]
-        c[k] = h[k] * factor
 
 
 @njit(cache=True)

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import require_number, require_numbers
 
 
@@ -55,7 +56,7 @@ class RegularisedWall:
         require_number("RegularisedWall.residual", self.residual, at_least=0.01, at_most=0.9)
 
 
-class WallContact:
+class WallContact(Contact, GapLimiter):
     """A `RegularisedWall` in scaled form: contact pressure and gap limiter of one bearing model.
 
     Parameters
@@ -65,92 +66,24 @@ class WallContact:
         Radial clearance, m.
     """
 
-    friction_coefficient = 0.0
-    transition_speed = 1.0
-
     def __init__(self, wall: RegularisedWall, clearance: float) -> None:
-        self.onset = self.limits_below = self.presses_below = wall.onset / clearance
+        self.onset = self.limits_below = wall.onset / clearance
         self.residual = wall.residual
-        self.level = wall.pressure
+        # (1 - s)^2 from s = 0 to 1
+        super().__init__(self.onset, wall.pressure, (0.0, 1.0), np.array([[1.0, -2.0], [0.0, 0.0]]))
 
-    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
-        """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
-        wall_pressure(H, self.onset, self.level, P_out, slope_out)
-
-    def solve_gap(
-        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
-    ) -> None:
-        """Gap G (n, m) on Winkler elements, with contact pressure and slope there; as `joint.seams.Contact`."""
-        solve_wall_gap(X, compliance, scale, self.onset, self.level, G, P_out, slope_out)
-
-    def limit(
-        self,
-        H: np.ndarray,
-        HF: np.ndarray,
-        H_t: np.ndarray,
-        slope_out: np.ndarray,
-        bend_out: np.ndarray,
-        face_slope_out: np.ndarray,
-    ) -> None:
-        """Replace scaled gaps and the rate (n, m) by those that the film sees; as `joint.seams.GapLimiter`."""
-        limit_gap(H, HF, H_t, self.onset, self.residual, slope_out, bend_out, face_slope_out)
+    def film_gap(self, gaps: np.ndarray, slopes: np.ndarray, bends: np.ndarray) -> None:
+        """Gap ``onset g(s)`` with its derivatives; as `GapLimiter`."""
+        wall_gap(gaps, self.onset, 1.0 - self.residual, slopes, bends)
 
 
 @njit(cache=True)
-def wall_pressure(H, onset, pressure, P_out, slope_out):
-    """Contact pressure in the unit of ``pressure`` and its derivative with respect to H."""
-    n, m = H.shape
-    for i in range(n):
-        for j in range(m):
-            d = max(1.0 - H[i, j] / onset, 0.0)
-            P_out[i, j] = pressure * d * d
-            slope_out[i, j] = -2.0 * pressure * d / onset
-
-
-@njit(cache=True)
-def solve_wall_gap(X, compliance, scale, onset, pressure, G_out, P_out, slope_out):
-    """Gap on a Winkler element that the wall presses: ``G = X + q (1 - G / onset)^2``,
-    q = compliance times pressure, by its larger root.
-
-    With the pressure there, and its derivative to G over ``scale``.
-    """
-    n, m = X.shape
-    q = compliance * pressure / scale
-    for i in range(n):
-        for j in range(m):
-            room = onset - X[i, j]
-            if room <= 0.0:
-                G_out[i, j] = X[i, j]
-                P_out[i, j] = 0.0
-                slope_out[i, j] = 0.0
-            else:
-                # s = 1 - G / onset is the positive root of q s^2 + onset s - room = 0, in the form without cancellation
-                s = 2.0 * room / (onset + np.sqrt(onset * onset + 4.0 * q * room))
-                G_out[i, j] = onset * (1.0 - s)
-                P_out[i, j] = pressure * s * s
-                slope_out[i, j] = -2.0 * pressure * s / (onset * scale)
-
-
-@njit(cache=True)
-def limit_gap(H, HF, H_t, onset, residual, slope_out, bend_out, face_slope_out):
-    """Replace gaps at vertices and links, and the rate H_t, by those that the film sees, in place.
-
-    First derivatives at both and the second one times the gap's rate come back, all (n, m).
-    """
-    n, m = H.shape
-    a = 1.0 - residual
-    for i in range(n):
-        for j in range(m):
-            slope_out[i, j] = 1.0
-            bend_out[i, j] = 0.0
-            if H[i, j] < onset:
-                t = np.tanh((1.0 - H[i, j] / onset) / a)
-                H[i, j] = onset * (1.0 - a * t)
-                slope_out[i, j] = 1.0 - t * t
-                bend_out[i, j] = 2.0 * t * (1.0 - t * t) / (a * onset) * H_t[i, j]
-                H_t[i, j] *= slope_out[i, j]
-            face_slope_out[i, j] = 1.0
-            if HF[i, j] < onset:
-                t = np.tanh((1.0 - HF[i, j] / onset) / a)
-                HF[i, j] = onset * (1.0 - a * t)
-                face_slope_out[i, j] = 1.0 - t * t
+def wall_gap(gaps, onset, a, slopes, bends):
+    """``onset g(gap / onset)`` where the wall acts, with its first two derivatives, in place."""
+    g, slope, bend = gaps.reshape(-1), slopes.reshape(-1), bends.reshape(-1)
+    for k in range(g.size):
+        if g[k] < onset:
+            t = np.tanh((1.0 - g[k] / onset) / a)
+            g[k] = onset * (1.0 - a * t)
+            slope[k] = 1.0 - t * t
+            bend[k] = 2.0 * t * slope[k] / (a * onset)

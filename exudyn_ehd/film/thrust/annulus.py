@@ -26,6 +26,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from exudyn_ehd.film.differences import drop_weights, drops, on_links, to_ends
 from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid, rows_between
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
@@ -140,18 +141,12 @@ class Annulus:
 
     def link_rows(self, H: np.ndarray, HF: np.ndarray) -> np.ndarray:
         """Weights (3, n, m) of the pressures in the sums of ``along`` and ``across`` for the gaps (n, m)."""
-        x, z = self.along * HF, self.across * _between_rows(H)
-        out = x - np.roll(x, 1, axis=1) + z
-        out[:, :, 1:] -= z[:, :, :-1]
-        return out
+        return np.asarray(drop_weights(np.array((self.along * HF, self.across * on_links(H)[1]))).sum(axis=0))
 
     def link_gradients(self, P: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (3, n, m) of these sums to the gaps at the vertices and on the links for pressures P (n, m)."""
-        cell = np.zeros_like(self.across)
-        half = 0.5 * self.across[:, :, :-1] * (P[:, :-1] - P[:, 1:])
-        cell[:, :, :-1] += half
-        cell[:, :, 1:] += half
-        return cell, self.along * (P - np.roll(P, -1, axis=0))
+        x, z = drops(P)
+        return to_ends(self.across * z, -1), self.along * x
 
 
 def _on_columns(grid: FilmGrid, theta: np.ndarray) -> FilmGrid:
@@ -171,13 +166,6 @@ def _on_columns(grid: FilmGrid, theta: np.ndarray) -> FilmGrid:
 def products(fields: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Sums (k, l) over the grid of all products of fields (k, n, m) with others (l, n, m)."""
     return np.asarray(fields.reshape(len(fields), -1) @ others.reshape(len(others), -1).T)
-
-
-def _between_rows(H: np.ndarray) -> np.ndarray:
-    """Gap of the links in s; of the last row nothing."""
-    out = np.zeros_like(H)
-    out[:, :-1] = 0.5 * (H[:, 1:] + H[:, :-1])
-    return out
 
 
 def _exact_load(r: np.ndarray, s: np.ndarray, weight: np.ndarray) -> np.ndarray:

@@ -222,8 +222,8 @@ class CubicTemperature(FilmTemperature):
     def heat_tilt(self, film: SolvedFilm) -> np.ndarray:
         """Return the P_1 component of the heat at the vertices, W (n, m); contacts heat evenly over the height."""
         sliding, pressed, both = heat_tilts(self.fluidity.vertices)
-        s, flow = film.solver, np.zeros(film.grid.shape)
-        film_heat(self.dropped(film), s.system.flow_pressure, s.system.kx, s.system.kz, flow)
+        s, y = film.solver, film.solver.system
+        flow = film_heat(self.dropped(film), y.flow_pressure, np.array((y.kx, y.kz)))
         crossed = crossed_tilt(film.oil.P, s.H, both, (s.vx * s.flow_x, s.vz), film.grid.mesh)
         power = film.parts.flow_scale * film.scales.pressure
         return power * (self.sheared(film) * sliding + flow * pressed + crossed)

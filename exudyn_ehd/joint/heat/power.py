@@ -131,8 +131,8 @@ class OilFlows:
         # in the middle of the step: the gap's half of a step on from its start as the rates have it
         before = y.mass_old if stepped else fill * s.H - film.step * self.rate
         self.content = np.maximum(before + 0.5 * film.step * s.H_t, 0.0)
-        self.x, self.z, balance = np.empty((3, *film.grid.shape))
-        film_flows(s.system.flow_pressure, carried, y.kx, y.kz, fx, fz, self.x, self.z, balance)
+        links, balance = film_flows(y.flow_pressure, carried, np.array((y.kx, y.kz)), np.array((fx, fz)))
+        self.x, self.z = links
         if conserves:
             self._void_the_ends(film, stepped)
         balance += s.area * self.rate
@@ -140,7 +140,7 @@ class OilFlows:
         self.outside = outside_flows(self.z, balance, fixed, unbroken)
         if conserves and film.grid.flows_along_z:
             self._flow_around(film, fx)
-        self.areas = supply.parted() if supply is not None and film.grid.flows_along_z else []
+        self.areas = supply.masks if supply is not None and film.grid.flows_along_z else []
         if supply is not None and self.areas and not conserves:
             # films that end within a link of an area; what this leaves of the balance is the cavity's
             inside = np.logical_or.reduce(self.areas)

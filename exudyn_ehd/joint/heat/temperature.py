@@ -219,7 +219,7 @@ class HeatedFilm(_Temperature):
         p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
         flow_power = p.flow_scale * film.scales.pressure
         heat = self.sheared(film)
-        film_heat(self.dropped(film), s.system.flow_pressure, s.system.kx, s.system.kz, heat)
+        heat += film_heat(self.dropped(film), s.system.flow_pressure, np.array((s.system.kx, s.system.kz)))
         heat *= flow_power
         rubbed = powers(film).contact_loss
         if film.pressing is not None and rubbed > 0.0:

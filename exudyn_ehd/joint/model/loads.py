@@ -6,19 +6,10 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film.loads import (
-    couette_integral,
-    couette_integral_fill,
-    couette_integral_law,
-    couette_integral_ratio,
-    end_forces,
-    journal_wrench,
-    pressure_integrals,
-    slope_integrals,
-)
+from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
-from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench
+from exudyn_ehd.film.surfaces.contact_wrench import contact_integrals, friction_weights, pressure_weights
 from exudyn_ehd.joint.seams import Effects, ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
@@ -30,7 +21,7 @@ from exudyn_ehd.joint.solved_film import (
     OilFields,
     Scales,
 )
-from exudyn_ehd.joint.tangent.drag import drag_integrals, pulls_unevenly
+from exudyn_ehd.joint.tangent.drag import drag_weights, pulls_unevenly
 
 _NO_CONTACT = np.zeros(6)
 # Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
@@ -96,17 +87,22 @@ def film_loads(
     pressure_integrals(P, g.weight, parts.directions.cos_x, parts.directions.sin_x, g.z, integrals)
     extra_theta = extra_z = 0.0
     if extra is not None:
-        extra_theta, extra_z = slope_integrals(P, g.weight, extra.slope_x, extra.slope_z)
+        pressed = P * g.weight
+        extra_theta, extra_z = float(np.vdot(pressed, extra.slope_x)), float(np.vdot(pressed, extra.slope_z))
     if parts.liner is not None:
         # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
         extra_z += math.pi * parts.liner.beta * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
-    if pulls_unevenly(parts, limited):
-        drag = drag_integrals(parts, limited, P)
-        extra_theta += drag[0]
-        extra_z += drag[1]
-    couette, couette_unbroken = _couette(parts, oil.ratio)
+    drag = drag_weights(parts, limited) if pulls_unevenly(parts, limited) else None
+    if drag is not None:
+        extra_theta += float(np.vdot(drag[0], P))
+        extra_z += float(np.vdot(drag[1], P))
+    if oil.ratio is None and not s.closure.conserves_mass:
+        couette = couette_integral(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear)
+    else:
+        sheared = g.shear_weight * shear_share(s.system, s.work.active, s.closure)
+        couette = float(np.vdot(sheared, (1.0 if oil.ratio is None else oil.ratio) / s.H))
     if recess is not None:
-        couette, couette_unbroken = (c + float(recess.density.sum()) for c in (couette, couette_unbroken))
+        couette += float(recess.density.sum())
     wrench, ends = np.empty(6), end_forces(s.H, scales.ends)
     s_theta = journal_wrench(
         journal.pose,
@@ -126,7 +122,7 @@ def film_loads(
     if pressing is not None:
         contact = np.zeros(6)
         _add_contacts(parts, journal, pressing, contact, wrench)
-    return Loads(wrench, contact, integrals, couette, couette_unbroken, s_theta, recess)
+    return Loads(wrench, contact, integrals, couette, s_theta, recess, drag)
 
 
 def recess_of(
@@ -148,37 +144,13 @@ def recess_of(
     return recess_shear([area.depth for area in supply.supply], supply.parts, c, journal.omega, oil)
 
 
-def _couette(parts: FilmParts, ratio: np.ndarray | None) -> tuple[float, float]:
-    """Integrals of the Couette shear: of all of the film, and of its unbroken part."""
-    s, g = parts.solver, parts.grid
-    if s.closure.conserves_mass:
-        share = shear_share(s.system, s.work.active, s.closure)
-        if ratio is None:
-            return couette_integral_fill(s.H, g.shear_weight, share)
-        return couette_integral_ratio(s.H, g.shear_weight, ratio, share, share >= 1.0)
-    if ratio is None:
-        return couette_integral(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear)
-    return couette_integral_law(s.H, g.shear_weight, ratio, s.work.active, g.fixed, s.closure.cavity_shear)
-
-
 def _add_contacts(
     parts: FilmParts, journal: JournalMotion, f: ContactFields, friction_out: np.ndarray, wrench: np.ndarray
 ) -> None:
     """Add the contacts' pressures and friction to ``wrench`` (6,), their friction alone to ``friction_out`` (6,)."""
-    g = parts.grid
-    motion = journal.motion
+    g, motion, R = parts.grid, journal.motion, parts.grid.reference_length
     for k, (friction, transition) in enumerate(f.friction):
-        contact_wrench(
-            f.P[k],
-            g.weight,
-            parts.directions.cos_x,
-            parts.directions.sin_x,
-            g.z,
-            motion,
-            friction,
-            transition,
-            g.reference_length,
-            f.integrals[k],
-            friction_out,
-            wrench,
-        )
+        f.integrals[k] = contact_integrals(f.P[k], g.weight, g.moments)
+        friction_out += friction_weights(motion, friction, transition, R) @ f.integrals[k]
+        wrench += pressure_weights(motion, R) @ f.integrals[k]
+    wrench += friction_out

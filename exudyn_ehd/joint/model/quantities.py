@@ -87,7 +87,7 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         "peak_pressure": largest,
         "peak_angle": peak_angle % (2.0 * math.pi),
         "friction_torque": power.friction_torque,
-        "friction_torque_unbroken": -torque_scale * (w.omega * film.loads.couette_unbroken - poiseuille),
+        "friction_torque_unbroken": -torque_scale * (w.omega * _unbroken_couette(film) - poiseuille),
         "friction_torque_bush": -float(film.loads.wrench[5]),
         "power_loss": power.loss,
         "stored_power": power.stored,
@@ -110,6 +110,20 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     if p.liner is not None:
         out["bore_displacement"] = float(np.abs(p.liner.deflection).max()) * p.bearing.radial_clearance
     return out
+
+
+def _unbroken_couette(film: SolvedFilm) -> float:
+    """Scaled integral of the Couette shear over the unbroken film, recesses included."""
+    s, fixed = film.solver, film.grid.fixed
+    whole = s.work.active | fixed
+    if s.closure.conserves_mass:
+        whole = film.share() >= 1.0
+    elif fixed.shape[1] > 2:
+        # an end's half control volume beside a cavity belongs to it
+        whole[:, [0, -1]] &= whole[:, [1, -2]] | ~fixed[:, [0, -1]]
+    ratio, recess = 1.0 if film.oil.ratio is None else film.oil.ratio, film.loads.recess
+    unbroken = float(np.sum(ratio / s.H * film.grid.shear_weight, where=whole))
+    return unbroken if recess is None else unbroken + float(recess.density.sum())
 
 
 def supply_flows(film: SolvedFilm) -> np.ndarray:

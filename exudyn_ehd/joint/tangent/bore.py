@@ -19,26 +19,30 @@ the six rows of the wrench are made once, by adjoint solves.
 
 from __future__ import annotations
 
-import functools
-
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
 from exudyn_ehd.film.banded.many_sides import TILE, make_tiles
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, add_line_stencil, line_matrices
-from exudyn_ehd.film.loads import couette_gradient
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     gap_stencil,
     shear_fields,
     spread_gradient,
 )
 from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
+from exudyn_ehd.film.surfaces.contact_wrench import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import drag_by_gap, pulls_unevenly
+from exudyn_ehd.joint.tangent.drag import drag_by_gap
 from exudyn_ehd.joint.tangent.line import shear_of_fills, true_fills, true_line, weigh_fills
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, gap_derivatives, shear_needs_adjoint, wrench_tangent
+from exudyn_ehd.joint.tangent.wrench import (
+    adjoint_rows,
+    couette_slopes,
+    gap_derivatives,
+    shear_needs_adjoint,
+    wrench_tangent,
+)
 
 # Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
 _WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
@@ -229,11 +233,11 @@ def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
     # force and moment across the axis do not depend on the gap
     factors, rows = weights[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
     shear_fields(film.oil.P, g.weight, g.width_x[0], g.z, couette_field(film), _end_field(film), factors, rows)
-    if pulls_unevenly(film.parts, film.limited):
+    if film.loads.drag is not None:
         face, cell = drag_by_gap(film)
         # the gap on a link is the mean of its two columns
         rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))
-        rows += factors[:, 2, None, None] * cell[1]
+        rows += factors[:, 2, None, None] * cell[-1]
     out = np.zeros((2, 6, bore.size))
     fills = true_fills(film)
     if fills is not None:
@@ -248,14 +252,7 @@ def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
 
 def couette_field(film: SolvedFilm) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
-    s, g, oil = film.solver, film.grid, film.oil
-    if oil.ratio is not None and oil.ratio_h is not None:
-        field = g.shear_weight * film.share() / s.H * (oil.ratio_h - oil.ratio / s.H)
-    elif s.closure.conserves_mass:
-        field = -g.shear_weight * film.share() / s.H**2
-    else:
-        field = np.empty(g.shape)
-        couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, field)
+    field, _ = couette_slopes(film)
     return field if film.limited is None else field * film.limited.slope
 
 
@@ -272,20 +269,11 @@ def _end_field(film: SolvedFilm) -> np.ndarray:
 
 def _contact_wrench(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarray:
     """Gradient (6, k) of the contacts' wrench, pressures and friction, to q."""
-    p, g, R = film.parts, film.grid, film.grid.reference_length
+    motion, R = film.journal.motion, film.grid.reference_length
     out = np.zeros((6, bore.size))
-    x, y, bx, by = film.journal.motion[:4].tolist()
-    theta, axial = friction_rows(R)
-    for (friction, transition), by_gap in zip(f.friction, f.slope, strict=True):
-        slope = by_gap * g.weight * R**2
-        cos, sin = slope * p.directions.cos_x[:, None], slope * p.directions.sin_x[:, None]
-        fields = np.stack([cos, sin, cos * g.z, sin * g.z, slope])
-        rows = bore.contract(fields) / p.bearing.radial_clearance
-        c, s, zc, zs, _ = rows
-        out += np.stack([-c, -s, 0.0 * c, R * zs, -R * zc, y * c - x * s + R * (by * zc - bx * zs)])
-        if friction > 0.0:
-            g_theta, g_z, _ = film.slip(transition)
-            out += friction * (g_theta * theta + g_z * axial) @ rows
+    for law, by_gap in zip(f.friction, f.slope, strict=True):
+        rows = bore.contract(by_gap * film.grid.weight * film.grid.moments) / film.parts.bearing.radial_clearance
+        out += contact_weights(motion, *law, R) @ rows
     return out
 
 
@@ -300,12 +288,3 @@ def _contact_columns(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarr
     slope, z, p = contact_slope(film, f), film.grid.z, film.parts
     cos, sin = slope * p.directions.cos_x[:, None], slope * p.directions.sin_x[:, None]
     return bore.contract(np.stack([cos, sin, cos * z, sin * z])).T * p.pose_scale
-
-
-@functools.cache
-def friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
-    """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and z."""
-    theta, axial = np.zeros((6, 5)), np.zeros((6, 5))
-    theta[0, 1], theta[1, 0], theta[3, 2], theta[4, 3], theta[5, 4] = 1.0, -1.0, R, R, -R
-    axial[2, 4], axial[3, 1], axial[4, 0] = -1.0, -R, R
-    return theta, axial

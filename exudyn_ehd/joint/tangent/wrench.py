@@ -11,21 +11,14 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import (
-    add_shear_by_gap,
-    couette_gradient,
-    couette_gradient_ratio,
-    load_adjoint_rhs,
-    shear_adjoint_rhs,
-    slope_adjoint_rhs,
-)
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.surfaces.contact_wrench import chain_links, contact_tangent, contact_weights
+from exudyn_ehd.film.surfaces.contact_wrench import contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection, pulls_unevenly
+from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
 from exudyn_ehd.joint.tangent.line import (
     add_by_motion,
     line_by_motion,
@@ -100,13 +93,12 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
     shear = shear_needs_adjoint(film)
     dc = gradient[4] if shear else np.zeros(MOTION_SIZE)
-    couette = _couette_direct(film, dc)
     fills = true_fills(film)
     if fills is not None:
         dc += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
-    _contract_couette(film, couette, dc)
-    if pulls_unevenly(film.parts, film.limited):
+    _contract_couette(film, dc)
+    if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
     return gradient[:4], dc, extra
 
@@ -150,8 +142,8 @@ def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarra
     slope, f = s.ones, film.limited
     if f is not None:
         slope = f.slope
-        chain_links(slope, f.bend, f.face_slope, by_rate, by_gap, d[0], f.by_rate, f.by_gap)
-        by_rate, by_gap = f.by_rate, f.by_gap
+        d[0] *= f.face_slope
+        by_rate, by_gap = by_rate * slope, by_gap * slope + by_rate * f.bend
     return d, slope, by_rate, by_gap
 
 
@@ -174,7 +166,7 @@ def shear_needs_adjoint(film: SolvedFilm) -> bool:
 
 def has_extra_rows(film: SolvedFilm) -> bool:
     """Return whether `adjoint_rows` has two rows for the slopes of gap terms and for uneven drag."""
-    return film.extra is not None or pulls_unevenly(film.parts, film.limited)
+    return film.extra is not None or film.loads.drag is not None
 
 
 def shape_rows(film: SolvedFilm) -> int:
@@ -195,7 +187,7 @@ def liner_weights(film: SolvedFilm) -> np.ndarray:
     # the last of the film's eight is the ends', which no row of `adjoint_rows` has
     out[:, :count] = own[:, :count]
     if film.pressing is not None:
-        contact_weights(w.motion, *film.pressing.friction[0], R, out[:, count:])
+        out[:, count:] = contact_weights(w.motion, *film.pressing.friction[0], R)
     return out
 
 
@@ -215,9 +207,10 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         if film.extra is None:
             extra[:] = 0.0
         else:
-            slope_adjoint_rhs(w.order, w.count, g.weight, w.active, film.extra.slope_x, film.extra.slope_z, extra)
-        if pulls_unevenly(p, film.limited):
-            add_drag_rows(film, extra)
+            weight, slopes = g.weight * w.active, (film.extra.slope_x, film.extra.slope_z)
+            extra[:] = [(weight * slope).ravel()[w.order[: w.count]] for slope in slopes]
+        if film.loads.drag is not None:
+            extra += (film.loads.drag * w.active).reshape(2, -1)[:, w.order[: w.count]]
         if P_q is not None:
             extra *= P_q
     y = film.solver.system
@@ -226,7 +219,7 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     # what follows the pressure of a vertex itself
     if shear_needs_adjoint(film):
         _add_shear_of_vertices(film, rows[4])
-    if p.liner is not None and has_extra_rows(film) and pulls_unevenly(p, film.limited):
+    if p.liner is not None and has_extra_rows(film) and film.loads.drag is not None:
         rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     if rows.shape[0] > own and p.liner is not None:
         by_pressure = g.weight * p.liner.contact_by_pressure
@@ -248,16 +241,14 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     if s.oil_line is not None:
         # at the line the fill follows the pressure
         by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
-    shear_adjoint_rhs(w.order, w.count, g.shear_weight, s.H, w.active, by_pressure, by_fill, row)
+    row[:] = (g.shear_weight / s.H * np.where(w.active, by_pressure, by_fill)).ravel()[w.order[: w.count]]
 
 
 def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
     """Add to `_shear_row` what follows the liner's deflection, the pressure's gradients, and fills beside the ends."""
     p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
     if p.liner is not None:
-        share, ratio_h = film.share(), s.nothing if oil.ratio_h is None else oil.ratio_h
-        by_gap = share * ratio_of(film), share * ratio_h, p.liner.gap_slopes.H_P
-        add_shear_by_gap(w.order, w.count, g.shear_weight, s.H, w.active, by_gap, row)
+        row += (couette_slopes(film)[0] * p.liner.gap_slopes.H_P * w.active).ravel()[w.order[: w.count]]
     if oil.ratio_g is not None:
         row += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H).reshape(-1)[w.order[: w.count]]
     if s.closure.conserves_mass:
@@ -265,42 +256,26 @@ def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
         row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
 
 
-def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:
-    """dC/d(film gap) (1, n, m) at fixed pressure and fill; adds the direct gradient to the speeds to ``dc`` (10,)."""
-    s, g, oil = film.solver, film.grid, film.oil
-    gradient = np.empty((1, *g.shape))
-    if film.loads.recess is not None:
-        dc[8] += 2.0 * film.loads.recess.by_spin.sum()  # vx = omega / 2
-    if oil.ratio is not None and oil.ratio_h is not None and oil.ratio_v is not None:
-        if s.closure.conserves_mass:
-            density = g.shear_weight * film.share() / s.H
-            gradient[0] = density * (oil.ratio_h - oil.ratio / s.H)
-            dc[8] += float(np.sum(density * oil.ratio_v))
-        else:
-            dc[8] += couette_gradient_ratio(
-                s.H,
-                g.shear_weight,
-                oil.ratio,
-                oil.ratio_h,
-                oil.ratio_v,
-                s.work.active,
-                g.fixed,
-                s.closure.cavity_shear,
-                gradient[0],
-            )
-    elif s.closure.conserves_mass:
-        gradient[0] = -g.shear_weight * film.share() / s.H**2
-    else:
-        couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
-    return gradient
+def couette_slopes(film: SolvedFilm) -> tuple[np.ndarray, float]:
+    """dC/d(film gap) (n, m) and dC/dvx at fixed pressure and fill."""
+    s, g, oil, recess = film.solver, film.grid, film.oil, film.loads.recess
+    by_speed = 0.0 if recess is None else 2.0 * float(recess.by_spin.sum())  # vx = omega / 2
+    if oil.ratio is None and not s.closure.conserves_mass:
+        by_gap = np.empty(g.shape)
+        couette_gradient(s.H, g.shear_weight, s.work.active, g.fixed, s.closure.cavity_shear, by_gap)
+        return by_gap, by_speed
+    density = g.shear_weight * film.share() / s.H
+    by_gap = density * ((0.0 if oil.ratio_h is None else oil.ratio_h) - ratio_of(film) / s.H)
+    return by_gap, by_speed if oil.ratio_v is None else by_speed + float(np.vdot(density, oil.ratio_v))
 
 
-def _contract_couette(film: SolvedFilm, gradient: np.ndarray, dc: np.ndarray) -> None:
-    """Add dC/d(film gap) (1, n, m) to the gradient of C to the scaled pose."""
-    slope = _film_gap_slope(film)
+def _contract_couette(film: SolvedFilm, dc: np.ndarray) -> None:
+    """Add the gradient of C at fixed pressure and fill to ``dc`` (10,)."""
+    slope, (gradient, by_speed) = _film_gap_slope(film), couette_slopes(film)
+    dc[8] += by_speed
     if slope is not None:
-        gradient[0] *= slope
-    contract_pose(gradient, film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z, dc[None, :4])
+        gradient *= slope
+    contract_pose(gradient[None], film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z, dc[None, :4])
 
 
 def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
@@ -315,20 +290,15 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
     p, g, motion = film.parts, film.grid, film.journal.motion
     for k, (friction, transition) in enumerate(f.friction):
         if f.integrals[k, 4] != 0.0:
-            contact_tangent(
-                f.slope[k],
-                g.weight,
-                p.directions.cos_x,
-                p.directions.sin_x,
-                g.z,
+            out += contact_tangent(
+                f.slope[k] * g.weight,
+                g.moments,
                 motion,
                 p.pose_scale,
                 friction,
                 transition,
                 g.reference_length,
                 f.integrals[k],
-                f.gradients,
-                out,
             )
 
 

@@ -11,7 +11,6 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
     BEYOND,
     BarusPressure,
     RoelandsPressure,
-    barus_inverse,
     hermite_inverse,
 )
 
@@ -120,7 +119,7 @@ def test_kernels_equal_their_readable_twins():
         t = (x - law.q[k]) * w
         return poly(t), w * poly.deriv()(t), w**2 * poly.deriv(2)(t)
 
-    assert barus_inverse(q, ALPHA, *out)
+    assert BarusPressure(coefficient=ALPHA).inverse(q, *out)
     for at, x in np.ndenumerate(q):
         np.testing.assert_allclose([o[at] for o in out], barus_twin(x), rtol=1e-13, atol=1e-8)  # log1p against log
     assert hermite_inverse(q, ALPHA, law.q, law.table, law.bucket, law.bucket_scale, *out)

@@ -1,9 +1,10 @@
-"""Drag on surfaces that share it unevenly: kernels against sums over the links in plain numpy."""
+"""Drag on surfaces that share it unevenly, against sums over the links."""
 
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.surfaces.drag import drag_pose_gradient, drag_rhs, drag_sums
+from exudyn_ehd.film.differences import on_links
+from exudyn_ehd.film.surfaces.drag import drag_by_gap, drag_weights
 
 
 @pytest.fixture(params=[(24, 7, 1), (9, 4, 2), (5, 2, 3)])
@@ -43,38 +44,31 @@ def carriers(request, film):
     return None if request.param == "the film's gap" else tuple(film["rng"].random((2, *shape)))
 
 
-def test_sums_and_weights(film, carriers):
-    """The weights of the unknowns are the sums of unit pressures there, none where the pressure is clipped; they are
-    added to what the rows hold."""
+def widths(f):
+    """Widths (2, n, m) of the links, as of `FilmGrid.link_widths`."""
+    width_x, width_z, link_x, link_z = f["mesh"]
+    return np.array((np.outer(link_x != 0.0, width_z), np.outer(width_x, np.append(link_z != 0.0, False))))
+
+
+def test_weights(film, carriers):
+    """The weights of the pressures are the sums of unit pressures there."""
     f, shape = film, film["P"].shape
-    gaps = carriers, f["gap"], f["link"], f["true_gap"], f["true_link"]
-    x, z = f["link"] - f["true_link"], between(f["gap"] - f["true_gap"])
-    if carriers is not None:
-        x, z = carriers[0] - f["true_link"], carriers[1][:, :-1] - between(f["true_gap"])
-    np.testing.assert_allclose(drag_sums(f["P"], gaps, f["mesh"]), drag_of(f, f["P"], x, z), rtol=1e-12, atol=1e-14)
-    active = f["rng"].random(shape) < 0.8
-    order = np.flatnonzero(f["rng"].random(shape) < 0.7)
-    units = np.eye(active.size).reshape(-1, *shape)[order] * active
-    rows = f["rng"].normal(size=(2, order.size))
-    expected = rows + np.array([drag_of(f, unit, x, z) for unit in units]).T
-    drag_rhs(order, order.size, active, gaps, f["mesh"], rows)
-    np.testing.assert_allclose(rows, expected, rtol=1e-12, atol=1e-14)
+    along, across = (f["link"], on_links(f["gap"])[1]) if carriers is None else carriers
+    x, z = along - f["true_link"], across[:, :-1] - between(f["true_gap"])
+    units = np.eye(f["P"].size).reshape(-1, *shape)
+    expected = np.array([drag_of(f, unit, x, z) for unit in units]).T.reshape(2, *shape)
+    found = drag_weights((along, across), f["true_gap"], f["true_link"], widths(f))
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
 
 
-def test_gradients_to_the_pose(film, carriers):
-    """A pose moves the true gaps by -(x + z bx) cos - (y + z by) sin, the film's by their slopes times that, and the
-    carriers by their slopes times the film's."""
-    f, (n, m) = film, film["P"].shape
-    steep = np.ones((2, n, m)) if carriers is None else np.array(carriers)
-    at = (*f["rng"].normal(size=(4, n)), f["rng"].normal(size=m))
-    start = f["rng"].normal(size=(2, 10))
-    drag = start.copy()
-    drag_pose_gradient(f["P"], *steep, f["slope"], f["face_slope"], f["mesh"], at, drag)
-    cos_x, sin_x, cos_f, sin_f, z = at
-    expected = start.copy()
-    for q, tilt in enumerate((0.0 * z + 1.0, 0.0 * z + 1.0, z, z)):
-        vertex, face = (-np.outer(v[q % 2], tilt) for v in ((cos_x, sin_x), (cos_f, sin_f)))
-        along = (steep[0] * f["face_slope"] - 1.0) * face
-        across = steep[1][:, :-1] * between(f["slope"] * vertex) - between(vertex)
-        expected[:, q] += drag_of(f, f["P"], along, across)
-    np.testing.assert_allclose(drag, expected, rtol=1e-12, atol=1e-13)
+def test_gradients_to_the_gap(film, carriers):
+    """A change of the true gaps moves the film's by their slopes times that, and the carriers by their slopes times the
+    film's."""
+    f, shape = film, film["P"].shape
+    steep = np.ones((2, *shape)) if carriers is None else np.array(carriers)
+    face, cell = drag_by_gap(f["P"], tuple(steep), f["slope"], f["face_slope"], widths(f))
+    vertex, link = f["rng"].normal(size=(2, *shape))
+    along = (steep[0] * f["face_slope"] - 1.0) * link
+    across = steep[1][:, :-1] * between(f["slope"] * vertex) - between(vertex)
+    found = np.sum(face * link), np.sum(cell * vertex)
+    np.testing.assert_allclose(found, drag_of(f, f["P"], along, across), rtol=1e-12, atol=1e-13)

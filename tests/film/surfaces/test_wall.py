@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from exudyn_ehd import InputError, RegularisedWall
-from exudyn_ehd.film.surfaces.wall import limit_gap, wall_pressure
+from exudyn_ehd.film.surfaces.wall import WallContact
 
-ONSET, PRESSURE, RESIDUAL = 0.1, 3.0, 0.2
+ONSET, PRESSURE, RESIDUAL = 0.1, 3e6, 0.2
+WALL = WallContact(RegularisedWall(onset=1e-6, pressure=PRESSURE, residual=RESIDUAL), 1e-5)
 
 
 def _pressure(h):
@@ -24,12 +25,12 @@ def _limited(h):
 def test_twins_and_derivatives():
     H = np.linspace(-0.5, 0.5, 40).reshape(8, 5)
     P, slope = np.empty_like(H), np.empty_like(H)
-    wall_pressure(H, ONSET, PRESSURE, P, slope)
+    WALL.pressure(H, P, slope)
     np.testing.assert_allclose(P, _pressure(H), rtol=1e-13)
     d = 1e-6  # central differences: truncation and rounding both near 1e-9
-    np.testing.assert_allclose(slope, (_pressure(H + d) - _pressure(H - d)) / (2 * d), atol=1e-6)
+    np.testing.assert_allclose(slope, (_pressure(H + d) - _pressure(H - d)) / (2 * d), atol=1e-6 * PRESSURE)
     seen, link, rate, s1, s2, s_link = H.copy(), H[::-1].copy(), np.full(H.shape, 3.0), *np.empty((3, *H.shape))
-    limit_gap(seen, link, rate, ONSET, RESIDUAL, s1, s2, s_link)
+    WALL.limit(seen, link, rate, s1, s2, s_link)
     np.testing.assert_array_equal(link[::-1], seen)
     np.testing.assert_array_equal(s_link[::-1], s1)
     np.testing.assert_allclose(rate, 3.0 * s1, rtol=1e-15)
@@ -43,11 +44,11 @@ def test_twins_and_derivatives():
 def test_limits_and_smoothness():
     H = np.array([[ONSET, ONSET * (1 + 1e-12), ONSET * (1 - 1e-9), -50.0]])
     P, slope, s1, s2 = (np.empty_like(H) for _ in range(4))
-    wall_pressure(H, ONSET, PRESSURE, P, slope)
+    WALL.pressure(H, P, slope)
     assert P[0, 0] == P[0, 1] == 0.0
-    assert abs(slope[0, 2]) < 1e-6
+    assert abs(slope[0, 2]) < 1e-6 * PRESSURE
     seen = H.copy()
-    limit_gap(seen, H.copy(), np.ones_like(H), ONSET, RESIDUAL, s1, s2, np.empty_like(H))
+    WALL.limit(seen, H.copy(), np.ones_like(H), s1, s2, np.empty_like(H))
     assert seen[0, 1] == H[0, 1]  # not a bit changes above the onset
     assert s1[0, 2] == pytest.approx(1.0, abs=1e-12)
     assert s2[0, 2] == pytest.approx(0.0, abs=1e-6)

@@ -12,7 +12,6 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.surfaces.patir_cheng import nominal_gap, shear_flow_factor
 from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.tangent import drag
 
 R, L, C, SPEED, MU = 0.02, 0.03, 20e-6, 200.0, 0.03
 SIGMA = 1.2e-6
@@ -80,7 +79,7 @@ def test_integrals_are_those_of_the_shear_flow_factor(share):
     film = model.evaluate(at(0.5, axial=0.5)).film
     g, P, t = model.grid, film.oil.P, model.solver.H * C / SIGMA
     H = nominal_gap(t, 0.0)
-    found = drag.drag_integrals(film.parts, film.limited, P)
+    found = np.tensordot(film.loads.drag, P, 2)
     carried = (2.0 * share - 1.0) * SIGMA / C * shear_flow_factor(H, 1 / 9)
     slope = (np.roll(P, -1, 0) - np.roll(P, 1, 0)) / (2.0 * g.width_x[0])
     assert found[0] == pytest.approx(-np.sum(carried * slope * g.weight), rel=0.02)
@@ -131,7 +130,7 @@ def test_a_rough_journal_is_pulled_along():
     found = {}
     for share in (0.0, 1.0):
         film = model_of(share).evaluate(at(0.5)).film
-        found[share] = drag.drag_integrals(film.parts, film.limited, film.oil.P)[0]
+        found[share] = np.vdot(film.loads.drag[0], film.oil.P)
     assert found[0.0] < 0.0 < found[1.0]
 
 
@@ -173,10 +172,9 @@ def test_equal_shares_call_nothing(monkeypatch):
     def forbidden(*_):
         raise AssertionError("called for equally rough surfaces")
 
-    for name in ("drag_integrals", "add_drag_rows", "drag_by_gap", "add_drag_by_pose"):
+    for name in ("drag_weights", "drag_by_gap", "add_drag_by_pose"):
         monkeypatch.setattr(f"exudyn_ehd.joint.tangent.drag.{name}", forbidden)
-    monkeypatch.setattr("exudyn_ehd.joint.model.loads.drag_integrals", forbidden)
-    monkeypatch.setattr("exudyn_ehd.joint.tangent.wrench.add_drag_rows", forbidden)
+    monkeypatch.setattr("exudyn_ehd.joint.model.loads.drag_weights", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.tangent.wrench.add_drag_by_pose", forbidden)
     model_of(0.5).evaluate(at(0.5)).tangent()
     with pytest.raises(AssertionError):
