@@ -8,7 +8,6 @@ prescribed pressure is therefore required: the line of maximum gap or an axial g
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,13 +17,11 @@ from exudyn_ehd.film.cavitation.rupture_line import LineGradients
 from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
-from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -251,14 +248,6 @@ class LongSolver(FilmSolver):
         return out
 
 
-class LongThinningSolver(LongSolver, ThinningFilmSolver):
-    """`LongSolver` of an oil that thins."""
-
-
-class LongCompressibleSolver(LongSolver, CompressibleFilmSolver):
-    """`LongSolver` of an oil whose density follows the pressure."""
-
-
 def check_film(
     film: Film, closure: Closure, supply: tuple[SupplyArea, ...], open_ring: bool, end_pressures: tuple[float, float]
 ) -> None:
@@ -364,21 +353,18 @@ def film_solver(
     squeeze: bool,
     flux_effects: tuple[FluxEffect, ...],
     density: CompressibleLaw | None = None,
+    liner: Liner | None = None,
 ) -> FilmSolver:
-    """Solver of a film model on its grid; ``density``: of a compressible film."""
+    """Solver of a film model on its grid; ``density`` and ``liner`` as for `FilmSolver`."""
     if isinstance(film, ClassicSOR):
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
-    thins = any(isinstance(effect, ShearThinning) for effect in flux_effects)
-    kinds: tuple[Callable[..., FilmSolver], ...] = (FilmSolver, LongSolver)
-    if thins:
-        kinds = (ThinningFilmSolver, LongThinningSolver)
-    elif density is not None:
-        kinds = (CompressibleFilmSolver, LongCompressibleSolver)
-    return kinds[isinstance(film, LongBearing)](
+    kind = LongSolver if isinstance(film, LongBearing) else FilmSolver
+    return kind(
         grid,
         closure,
         squeeze=squeeze,
         flux_effects=flux_effects,
         circumferential_pressure_flow=film.circumferential_pressure_flow,
-        **({} if density is None else {"density": density}),
+        density=density,
+        liner=liner,
     )

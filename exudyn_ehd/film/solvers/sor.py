@@ -132,7 +132,7 @@ class ClassicSolver(FilmSolver):
         g, s, w = self.grid, self.system, self.work
         self.vx, self.vz = vx, vz
         s.cavity_pressure = cavity_pressure
-        self._set_links()
+        self.set_links()
         s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
         sweeps = sor_solve(
             self.H,

@@ -50,12 +50,13 @@ from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.cavitation.rupture_line import line_matrices
 from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.sensitivity.rigid import functional_gradients
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, load_weights
-from exudyn_ehd.joint.tangent.line import add_by_motion, line_by_motion, true_fills, weigh_fills
+from exudyn_ehd.joint.tangent.line import line_by_motion, true_fills, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients, liner_weights
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
@@ -266,22 +267,23 @@ def _of_bore(evaluation: ElasticEvaluation) -> tuple[np.ndarray, np.ndarray, np.
     return (place @ M + rate) @ basis, core, basis.T @ (M @ X + V)
 
 
-def _of_liner(film: SolvedFilm, solver: NonlinearFilmSolver) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _of_liner(film: SolvedFilm, liner: LinerFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """L, M and R of a liner, by adjoint fields (n m,): L is what these start from, R what they do to the motion."""
-    shape, w, p = film.grid.shape, film.solver.work, film.parts
-    by_rate, yields, slope = solver.elements.deflection_weights, solver.deflection_by_pressure, solver.gap_slopes.D_r
+    solver, shape, p = film.solver, film.grid.shape, film.parts
+    unknowns, by_rate = solver.work.order[: solver.work.count], -solver.storage_weights()[0]
+    delay = (by_rate * liner.deflection_by_pressure).ravel()
 
     def delayed(field: np.ndarray) -> np.ndarray:
-        weights = by_rate(field.reshape(1, *shape)) * yields
-        return solver.adjoint(np.ascontiguousarray(weights.reshape(1, -1)[:, w.order[: w.count]])).ravel()
+        return solver.adjoint((field * delay)[None, unknowns]).ravel()
 
     first = solver.adjoint(np.ascontiguousarray(liner_weights(film)[:2] @ adjoint_rows(film)))
     starts = np.array([delayed(field) for field in first]).T
     basis, core = _krylov(delayed, starts)
     fields = basis.T.reshape(-1, *shape).copy()
     gradient, through = np.zeros((len(fields), MOTION_SIZE)), np.zeros((len(fields), 4))
-    contract_pose(by_rate(fields) * slope, p.directions.cos_x, p.directions.sin_x, film.grid.z, through)
-    add_by_motion(film, solver.sensitivities(fields), gradient)
+    slow = fields * by_rate * liner.gap_slopes.D_r
+    contract_pose(slow, p.directions.cos_x, p.directions.sin_x, film.grid.z, through)
+    functional_gradients(np.ascontiguousarray(basis.T[:, unknowns]), balance_gradients(film), gradient)
     gradient *= p.motion_scale
     moved = core.T @ gradient[:, :2] + gradient[:, 4:6] + through[:, :2] * p.motion_scale[4:6]
     return (basis.T @ starts).T, core.T, moved
