@@ -137,6 +137,12 @@ class FilmAnswers(Film):
         """The film at its rupture line."""
         return AtLine((self.H, self.HF), self.flux, None) if self.elements is None else self.elements.at_line
 
+    def _to_motion(self, line: LineGradients) -> LineGradients:
+        """Convert a line's gradients to the film's gaps, in place, to gradients to those of the undeformed surfaces."""
+        if not self.axial:
+            line.by[7] = 0.0
+        return undeformed(line, self._at_line().chain)
+
     def line_gradients(self) -> LineGradients | None:
         """Contribution of the rupture line inside the cells to the derivatives of the balances; None without one.
 
@@ -150,10 +156,9 @@ class FilmAnswers(Film):
             return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
         if self.line is None:
             return None
-        (gaps, flux, chain), v = self._at_line(), (self.vx, self.vz)
-        return undeformed(
-            self.line.gradients(self.work, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh), chain
-        )
+        (gaps, flux, _), v = self._at_line(), (self.vx, self.vz)
+        line = self.line.gradients(self.work, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh)
+        return self._to_motion(line)
 
     def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
         """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their
@@ -164,9 +169,9 @@ class FilmAnswers(Film):
         if self.oil_line is None:
             return None
         if self._fills is None:
-            (gaps, flux, chain), v = self._at_line(), (self.vx, self.vz)
+            (gaps, flux, _), v = self._at_line(), (self.vx, self.vz)
             carried, held = self.oil_line.gradients(gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh)
-            self._fills = undeformed(carried, chain), undeformed(held, chain)
+            self._fills = self._to_motion(carried), self._to_motion(held)
         return self._fills
 
     def fill_weights(self) -> tuple[Coefficients, np.ndarray]:

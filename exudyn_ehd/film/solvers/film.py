@@ -72,6 +72,8 @@ class Film:
         self.flow_x, self.area, self.work = flow_x, grid.area, Workspace(*shape)
         self.ones, self.nothing, self.link_fields = np.ones(shape), np.zeros(shape), np.zeros((5, *shape))
         self.vx = self.vz = 0.0
+        # whether oil flows in z; without links it does not, the flow by an axially moving surface included
+        self.axial = bool(grid.link_z.any())
         self.lagging = False
         # whether there is a cavity, and whether no unknown pressure is below the cavity's
         self.ruptures = bool(np.isfinite(closure.cavity_pressure))
@@ -219,6 +221,8 @@ class Film:
         if self.grid.cuts is not None:
             flow = None if f is None else f.flow
             add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)
+        if not self.axial:
+            self.link_fields[3] = 0.0
         return self.link_fields
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
@@ -236,12 +240,6 @@ class Film:
         np.divide(ratio_out, rho, out=p_P_out)
         p_out /= scale
         return inside
-
-    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure of a compressible film (n, m) and its derivative to the transformed one; False where that has
-        no pressure."""
-        rest = np.empty((2, *p_out.shape))
-        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
 
     def flow_work(self, P: np.ndarray) -> np.ndarray:
         """Scaled integral of dp over the density ratio up to scaled pressures P; see `DensityLaw.flow_work`."""

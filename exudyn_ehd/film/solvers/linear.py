@@ -119,9 +119,9 @@ class FilmSolver(FilmAnswers):
             Outcome and number of linear solves.
         """
         s = self.system
-        self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz, cavity_pressure, None
+        self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz if self.axial else 0.0, cavity_pressure, None
         follows = self.elements is not None or self.density is not None
-        if follows and vx == vz == 0.0 and not self.H_t.any():
+        if follows and self.vx == self.vz == 0.0 and not self.H_t.any():
             # a film at rest makes a cold start, not one from the remains of the last film
             self.forget()
         if self.elements is not None:

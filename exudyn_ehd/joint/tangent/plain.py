@@ -26,6 +26,7 @@ def is_plain(film: SolvedFilm) -> bool:
     s, p, oil = film.solver, film.parts, film.oil
     return (
         type(s) is FilmSolver
+        and s.axial
         and s.symmetric
         and not s.closure.clips
         and s.flux is None

@@ -103,7 +103,7 @@ class LinerFilm(WinklerElements):
         # whether the pressure changes the deflection of the liner alone
         self.plain = self.contact is None and self.limiter is None and self.oil is None and not film.flux_effects
         self.term_fields = np.zeros((10, *shape))
-        self.terms = FilmTerms(*self.term_fields, fixed=g.fixed)
+        self.terms = FilmTerms(*(*self.term_fields, g.fixed))
         self.terms.area[:], self.terms.prompt[:] = film.area, 1.0
         s.kx, s.kz, s.fx, s.fz = self.terms[:4]
         s.prompt, s.late = self.terms.prompt, self.terms.late
