@@ -29,9 +29,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from scipy.sparse import csc_matrix, csr_matrix, diags_array, eye_array, kron
-from scipy.sparse.linalg import splu
+from scipy.sparse import coo_matrix, csr_matrix, diags_array, eye_array, kron
 
+from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
@@ -115,7 +115,7 @@ class ClassicSolver(FilmSolver):
 
     def __init__(self, film: ClassicSOR, grid, closure, *, squeeze: bool) -> None:
         super().__init__(grid, closure, squeeze=squeeze)
-        self.coarse = None
+        self.coarse, self.symmetric = None, False
         self.film = film
         self.step_x = float(grid.width_x[0])
         self.step_z = float(grid.z[1] - grid.z[0])
@@ -152,12 +152,17 @@ class ClassicSolver(FilmSolver):
         ok = sweeps > 0 and bool(np.all(np.isfinite(s.linear_pressure)))
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), abs(sweeps)
 
-    def solve_transposed(self, rhs: np.ndarray) -> None:
-        """Solve with the transposed difference operator; see `FilmSolver.solve_transposed`."""
-        h, unknowns = self.H.ravel(), self.work.order[: self.work.count]
+    def factor_solution(self) -> None:
+        """Factor the difference operator at the unknowns."""
+        w, h = self.work, self.H.ravel()
         by_slope = (diags_array(3.0 * h * h * (d @ h)) @ d for d in (self.slope_x, self.slope_z))
-        operator = csr_matrix(sum(by_slope, diags_array(h**3) @ self.curvature))
-        rhs[:] = splu(csc_matrix(operator[unknowns][:, unknowns])).solve(rhs.T, trans="T").T
+        unknowns = w.order[: w.count]
+        a = coo_matrix(csr_matrix(sum(by_slope, diags_array(h**3) @ self.curvature))[unknowns][:, unknowns])
+        (lower, upper), above = self._bands(), a.col >= a.row
+        lower[:] = upper[:] = 0.0
+        upper[a.row[above], (a.col - a.row)[above]] = a.data[above]
+        lower[a.col[~above], (a.row - a.col)[~above]] = a.data[~above]
+        factor_lu(lower, upper, w.count, w.width, w.inv_diag)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) through the difference equations."""

@@ -84,11 +84,8 @@ class FilmResponse:
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
         rows, followed = adjoint_rows(film), np.ones(order.size)
-        rho = rho_P = None
         self.matrix = s.matrix()
-        if s.law is not None:
-            rho, rho_P = s.rho, s.rho_P
-        density, denser = (1.0, 0.0) if rho is None or rho_P is None else (rho, rho_P)
+        density, denser = s.rho, 0.0 if s.rho_P is None else s.rho_P
         whole = s.area * s.H * density
         rises = s.area * s.fill * s.H * denser
         if s.oil_line is not None:
