@@ -19,7 +19,6 @@ from exudyn_ehd.film.reynolds.links import Coefficients, vertex_balance
 from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas
 from exudyn_ehd.film.solvers.film import Film
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
-from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
 
 
@@ -109,12 +108,6 @@ class FilmAnswers(Film):
         else:
             contract_fills(lam, fills, *self.fill_weights(), fields)
         return Sensitivities(*fields)
-
-    def motion_columns(self, e: LinerFilm, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
-        """Derivatives (10, count) of the balances of a film on a liner to the motion of a rigid journal, as for
-        `exudyn_ehd.film.sensitivity.rigid.motion_columns`."""
-        w = self.work
-        gap_columns(w.order, w.count, e.by, e.flows_by_speed(), e.slope_fields, *self.storage_weights(), at, out)
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to the rate and to the gap of

@@ -137,7 +137,7 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
     w, at = film.solver.work, film.grid.directions
     out = np.empty((MOTION_SIZE, w.count))
     if film.parts.liner is not None:
-        film.solver.motion_columns(film.parts.liner, at, out)
+        film.parts.liner.motion_columns(*film.solver.storage_weights(), at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
     if (line := true_line(film)) is not None:

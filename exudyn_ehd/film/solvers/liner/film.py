@@ -62,7 +62,7 @@ from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.film import Film
 from exudyn_ehd.film.solvers.liner.elements import plain_links
-from exudyn_ehd.film.solvers.liner.gap_response import speed_gradients
+from exudyn_ehd.film.solvers.liner.gap_response import gap_columns, speed_gradients
 from exudyn_ehd.film.solvers.liner.kernels import liner_residual
 from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, see_curves, straighten
 from exudyn_ehd.film.solvers.liner.line_kernels import open_gaps
@@ -250,13 +250,16 @@ class LinerFilm(WinklerElements):
         fill, rho, _ = self.oil_fields
         find_slopes(self.P, fill, rho, self.film_fields, *self._seen)
 
-    def flows_by_speed(self) -> np.ndarray:
-        """Derivatives (3, n, m) of the links' flows to the speeds, as `speed_gradients` sets them."""
-        f, by = self.film, np.empty((3, *self.P.shape))
-        fill = f.carried if self.kind == OIL else None
-        fields = self.term_fields, f.grid.fixed, self.gap_fields, f.flux, self.metric
-        speed_gradients(self.P, fill, self.oil_fields[1], *fields, by)
-        return by
+    def motion_columns(
+        self, by_rate: np.ndarray, by_gap: np.ndarray, at: tuple[np.ndarray, ...], out: np.ndarray
+    ) -> None:
+        """Derivatives (10, count) of the balances to the motion of a rigid journal, but for the rupture line's, as for
+        `exudyn_ehd.film.sensitivity.rigid.motion_columns`; ``by_rate``, ``by_gap``: `FilmSolver.storage_weights`."""
+        f, w, by_speed = self.film, self.film.work, np.empty((3, *self.P.shape))
+        oil = (f.carried if self.kind == OIL else None), self.oil_fields[1]
+        rest = self.term_fields, f.grid.fixed, self.gap_fields, f.flux, self.metric
+        speed_gradients(self.P, *oil, *rest, by_speed)
+        gap_columns(w.order, w.count, self.by, by_speed, self.slope_fields, by_rate, by_gap, at, out)
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
