@@ -30,7 +30,7 @@ from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter, LandContact
 
 
 class Liner(NamedTuple):
-    """What a liner has besides its compliance, None if absent.
+    """Parts of a liner besides its compliance, None if absent.
 
     Attributes
     ----------
