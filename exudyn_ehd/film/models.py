@@ -8,27 +8,21 @@ prescribed pressure is therefore required: the line of maximum gap or an axial g
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from exudyn_ehd.film.cavitation.closures import Closure, Gumbel
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients
 from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
-from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.status import InputError, Status, require_count, require_number
+from exudyn_ehd.status import InputError, require_count, require_number
 
 # Columns of a film that leaves them to the bearing.
 FEWEST_COLUMNS, MOST_COLUMNS = 96, 176
@@ -220,44 +214,6 @@ class LongBearing:
 Film = FiniteLength | ShortBearing | ClassicSOR | LongBearing | ImpedanceMap
 
 
-class LongSolver(FilmSolver):
-    """`FilmSolver` without any axial flow, that of an axially moving surface included."""
-
-    def solve(
-        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
-    ) -> tuple[Status, int]:
-        """Solve as `FilmSolver.solve`; vz is not used."""
-        return super().solve(vx, 0.0, cavity_pressure, mass_old, step)
-
-    def link_derivatives(self) -> np.ndarray:
-        """Return `FilmSolver.link_derivatives` with zero derivatives to vz."""
-        out = super().link_derivatives()
-        out[3] = 0.0
-        return out
-
-    def line_gradients(self) -> LineGradients | None:
-        """Return `FilmSolver.line_gradients` with zero derivatives to vz."""
-        out = super().line_gradients()
-        if out is not None:
-            out.by[7] = 0.0
-        return out
-
-    def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
-        """Return `FilmSolver.fill_gradients` with zero derivatives to vz."""
-        out = super().fill_gradients()
-        for line in out or ():
-            line.by[7] = 0.0
-        return out
-
-
-class LongThinningSolver(LongSolver, ThinningFilmSolver):
-    """`LongSolver` of an oil that thins."""
-
-
-class LongCompressibleSolver(LongSolver, CompressibleFilmSolver):
-    """`LongSolver` of an oil whose density follows the pressure."""
-
-
 def check_film(
     film: Film, closure: Closure, supply: tuple[SupplyArea, ...], open_ring: bool, end_pressures: tuple[float, float]
 ) -> None:
@@ -363,21 +319,17 @@ def film_solver(
     squeeze: bool,
     flux_effects: tuple[FluxEffect, ...],
     density: CompressibleLaw | None = None,
+    liner: Liner | None = None,
 ) -> FilmSolver:
-    """Solver of a film model on its grid; ``density``: of a compressible film."""
+    """Solver of a film model on its grid; ``density`` and ``liner`` as for `FilmSolver`."""
     if isinstance(film, ClassicSOR):
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
-    thins = any(isinstance(effect, ShearThinning) for effect in flux_effects)
-    kinds: tuple[Callable[..., FilmSolver], ...] = (FilmSolver, LongSolver)
-    if thins:
-        kinds = (ThinningFilmSolver, LongThinningSolver)
-    elif density is not None:
-        kinds = (CompressibleFilmSolver, LongCompressibleSolver)
-    return kinds[isinstance(film, LongBearing)](
+    return FilmSolver(
         grid,
         closure,
         squeeze=squeeze,
         flux_effects=flux_effects,
         circumferential_pressure_flow=film.circumferential_pressure_flow,
-        **({} if density is None else {"density": density}),
+        density=density,
+        liner=liner,
     )

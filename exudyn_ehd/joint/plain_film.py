@@ -27,6 +27,7 @@ def is_plain(parts: FilmParts, effects: Effects) -> bool:
     return (
         effects == Effects()
         and type(s) is FilmSolver
+        and s.axial
         and s.complementary
         and not s.closure.conserves_mass
         and parts.supply is None

@@ -29,7 +29,7 @@ from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.supply.recess import RecessShear
 from exudyn_ehd.film.surfaces.contact import Contact
@@ -142,9 +142,10 @@ class FilmParts:
     grid : FilmGrid
     solver : FilmSolver
         Holds gaps, links, factor and active set of the last evaluation.
-    liner, compressible, nonlinear : film solvers or None
-        The same solver, if it is one of an elastic liner, of a compressible film, or one that wants to know the scale
-        of pressures.
+    liner : LinerFilm or None
+        The solver's, on an elastic liner.
+    compressible : FilmSolver or None
+        The same solver, if its film is compressible.
     supply : SupplyMap or None
     contacts, limiter : buffers or None
     directions : Directions
@@ -163,7 +164,7 @@ class FilmParts:
     bearing: JournalBearing
     grid: FilmGrid
     solver: FilmSolver
-    liner: NonlinearFilmSolver | None
+    liner: LinerFilm | None
     compressible: FilmSolver | None
     supply: SupplyMap | None
     contacts: ContactFields | None

@@ -52,14 +52,11 @@ EFFECTS = {
     "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
     "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
     "shear law": (
-        ("film.lubricant.shear_thinning", "film.lubricant.shear_profile", "film.solvers.thinning"),
+        ("film.lubricant.shear_thinning", "film.lubricant.shear_profile"),
         oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6)),
     ),
     "density law": (
-        (
-            "film.lubricant.density",
-            "film.solvers.compressible",
-        ),
+        ("film.lubricant.density",),
         oil(density_law=ehd.DowsonHigginson()),
     ),
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
@@ -79,9 +76,8 @@ EFFECTS = {
     ),
     "liner": (
         (
-            "film.solvers.nonlinear",
             "film.solvers.liner.film",
-            "film.solvers.liner.balance",
+            "film.solvers.liner.winkler",
             "film.solvers.liner.elements",
             "film.solvers.liner.gap_response",
             "film.solvers.liner.continuation",
@@ -163,6 +159,7 @@ SHARED = {
     "lubricant.lubricant",
     "reynolds.links",
     "solvers.answers",
+    "solvers.film",
     "solvers.edge_flows",
     "solvers.linear",
     "reynolds.stepped_gap",
@@ -179,7 +176,6 @@ SHARED = {
     "reynolds.lagging_void",
     "cavitation.line_steps",
     "surfaces.patir_cheng",
-    "solvers.liner.parts",
     "surfaces.contact",
     "surfaces.elastic_liner",
     "reynolds.balance",

@@ -11,7 +11,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.lubricant import pressure_viscosity as viscosity
 from exudyn_ehd.film.reynolds import links
-from exudyn_ehd.film.solvers import linear as solver
+from exudyn_ehd.film.solvers import film as solver
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.seams import Effects
 

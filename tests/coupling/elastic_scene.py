@@ -185,7 +185,7 @@ class Scene:
         model = self.joint.element.model
         pressure = model.solver.pressure * model.scales.pressure
         area = model.grid.weight * model.grid.reference_length**2
-        return 0.5 * float(np.sum(pressure * model.solver.deflection * CLEARANCE * area))
+        return 0.5 * float(np.sum(pressure * model.solver.elements.deflection * CLEARANCE * area))
 
     def momentum(self):
         """Linear and angular momentum (6,) of bodies and bush about the global origin."""

@@ -284,7 +284,7 @@ def beyond_law(model, motion, past):
         return build_model(bearing).evaluate(motion, *past).quantities()["peak_pressure"] > LARGEST_PRESSURE
     if model.parts.liner is not None:
         # the last film that pseudo time reached on its way
-        highest = float(model.parts.liner.elements.load.p.max()) * model.scales.pressure
+        highest = float(model.parts.liner.load.p.max()) * model.scales.pressure
         return highest > 0.9 * law.largest_pressure
     highest = float(law.transform(np.array([law.largest_pressure]))[0])
     return float(model.solver.pressure.max()) * model.scales.pressure > highest * (1.0 - 1e-9)

@@ -6,7 +6,7 @@
 Sliding, squeeze and pressure flow thin the oil together: `exudyn_ehd.film.lubricant.shear_profile` integrates the
 profile across the gap. A link in theta or z then carries ``V H - a H^3 dP/ds``; the ratio a depends on the gap, the
 speed, the link's own gradient, and the gradient across it, the mean of those at its two vertices. The film so becomes
-nonlinear in its pressure (`exudyn_ehd.film.solvers.nonlinear`). Couette flux H unchanged, because pressure flow is odd
+nonlinear in its pressure (`exudyn_ehd.film.solvers.liner.film`). Couette flux H unchanged, because pressure flow is odd
 in the gradient; the shear on the walls is ``tau_m -+ (h / 2) dp/dx``, its mean ``tau_m = ratio mu_0 U / h``.
 
 What is left out: axial sliding, slow beside the turning, does not thin, and meets the ratio of the turning; the mean

@@ -1,8 +1,6 @@
-"""Answers of a solved film: adjoints and small changes by its matrix, pressure and viscosity by its oil's law."""
+"""Answers of a solved film: its factor, derivatives of its balances, and flows at prescribed vertices."""
 
 from __future__ import annotations
-
-import abc
 
 import numpy as np
 from scipy.sparse import csc_matrix, diags_array
@@ -10,73 +8,45 @@ from scipy.sparse import csc_matrix, diags_array
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
-from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.oil_line import contract_fills
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line
-from exudyn_ehd.film.cavitation.system import FilmSystem
-from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.cavitation.solve import factor_solution
+from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
-from exudyn_ehd.film.reynolds.links import Coefficients
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_terms
+from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links
+from exudyn_ehd.film.reynolds.links import Coefficients, vertex_balance
+from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas
+from exudyn_ehd.film.solvers.film import Film
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
 
 
-class FilmAnswers(abc.ABC):
-    """Answers of a solved film with its matrix A, factored as L D L^T if ``symmetric``, else as L U."""
+class FilmAnswers(Film):
+    """Answers of a solved film with its matrix A; attributes as for `FilmSolver`."""
 
-    grid: FilmGrid
-    work: Workspace
-    system: FilmSystem
-    closure: Closure
-    symmetric: bool
-    law: CompressibleLaw | None
-    rho: np.ndarray
-    H_t: np.ndarray
-    pressure_scale: float
+    elements: LinerFilm | None
+    # of `fill_gradients`, once they are asked for
+    _fills: tuple[LineGradients, LineGradients] | None = None
 
-    @property
-    @abc.abstractmethod
-    def carried(self) -> np.ndarray:
-        """Fill that the Couette flows of the last solution take along from every vertex (n, m)."""
-
-    @abc.abstractmethod
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
-
-    @abc.abstractmethod
-    def line_gradients(self) -> LineGradients | None:
-        """Derivatives of the balances through the rupture line inside its cells; None where it has no share."""
-
-    @abc.abstractmethod
-    def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
-        """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their
-        fills; None without."""
-
-    def with_line(self, lam: np.ndarray, *fields: np.ndarray) -> Sensitivities:
-        """Gradients ``fields`` of the functionals lam (k, n, m) with what the rupture line inside its cells adds."""
-        fills = self.fill_gradients()
-        if fills is None:
-            contract_line(lam, self.line_gradients(), *fields)
-        else:
-            contract_fills(lam, fills, *self.fill_weights(), fields)
-        return Sensitivities(*fields)
-
-    def fill_weights(self) -> tuple[Coefficients, np.ndarray]:
-        """Coefficients with the Couette flows of a full film, and its storage (n, m), of masses if compressible."""
-        s, rho = self.system, self.rho
-        film, store = s.coefficients, s.area * (s.inverse_step * s.H if s.inverse_step > 0.0 else s.H_t)
-        if self.law is None:
-            return film, store
-        fx, fz = (0.5 * f * (rho + np.roll(rho, -1, axis)) for axis, f in enumerate((film.fx, film.fz)))
-        return film._replace(fx=fx, fz=fz), store * rho
+        if self.elements is not None:
+            self.elements.factor_solution()
+        elif not self.symmetric:
+            factor_solution(self.system, self.work)
+        elif self.line is not None:
+            refine_factor(self.system, self.line, self.work)
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""
-        w = self.work
         self.solve_transposed(rhs)
-        fields = np.empty((rhs.shape[0], *self.grid.shape))
-        scatter(rhs, w.order, w.count, fields)
+        return self.fields_of(rhs)
+
+    def fields_of(self, rows: np.ndarray) -> np.ndarray:
+        """Fields (k, n, m) of rows (k, count) at the unknowns; 0 elsewhere."""
+        fields = np.empty((rows.shape[0], *self.grid.shape))
+        scatter(rows, self.work.order, self.work.count, fields)
         return fields
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
@@ -108,11 +78,6 @@ class FilmAnswers(abc.ABC):
             solve_lu(*self._bands(), w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
         self._couple(rhs[:, None], False)
 
-    def _couple(self, x: np.ndarray, transposed: bool) -> None:
-        """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
-        if self.system.column_line is not None:
-            self.system.column_line.couple(self.work, x, transposed)
-
     def matrix(self) -> csc_matrix:
         """A (count, count) of a film that is not symmetric."""
         self.factor_solution()
@@ -122,45 +87,114 @@ class FilmAnswers(abc.ABC):
         U = diags_array([upper[: count - k, k] for k in (0, *bands)], offsets=[0, *bands], shape=(count, count))
         return csc_matrix(U + L @ U)
 
-    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of
-        masses if compressible."""
-        if self.law is None:
-            return self.system.fx, self.system.fz, self.H_t
-        fill, rho = self.carried, self.rho
-        flow_x, flow_z = (
-            f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis)) * 0.5 * (rho + np.roll(rho, -1, axis))
-            for axis, f in enumerate((self.system.fx, self.system.fz))
-        )
-        return flow_x, flow_z, rho * self.H_t
-
-    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed
-        pressure.
-
-        False where that has no pressure; there the law goes on in a line.
-        """
-        assert self.law is not None
-        scale = self.pressure_scale
-        inside = self.law.inverse(self.system.pressure * scale, p_out, ratio_out, ratio_P_out)
-        ratio_P_out *= scale
-        # pressures that were cut off inside the cells are others than those that the film was solved for
-        rho = self.law.density.ratio(np.minimum(p_out, self.law.largest_pressure)) if self.closure.clips else self.rho
-        np.divide(ratio_out, rho, out=p_P_out)
-        p_out /= scale
-        return inside
-
-    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure of a compressible film (n, m) and its derivative to the transformed one; False where that has
-        no pressure."""
-        rest = np.empty((2, *p_out.shape))
-        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
-
-    def flow_work(self, P: np.ndarray) -> np.ndarray:
-        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DensityLaw.flow_work`."""
-        assert self.law is not None
-        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
+    def _couple(self, x: np.ndarray, transposed: bool) -> None:
+        """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
+        if self.system.column_line is not None:
+            self.system.column_line.couple(self.work, x, transposed)
 
     def _bands(self) -> tuple[np.ndarray, np.ndarray]:
         w = self.work
         return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m), to the gaps that the film sees."""
+        by_rate, by_gap = self.storage_weights()
+        cell, face, speed = contract_links(lam, self.link_derivatives())
+        cell -= lam * by_gap
+        fields = cell, face, -lam * by_rate, speed
+        fills = self.fill_gradients()
+        if fills is None:
+            contract_line(lam, self.line_gradients(), *fields)
+        else:
+            contract_fills(lam, fills, *self.fill_weights(), fields)
+        return Sensitivities(*fields)
+
+    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to the rate and to the gap of
+        the undeformed surfaces."""
+        s, e = self.system, self.elements
+        content = self.area if self.law is None else self.area * self.rho
+        if self.closure.conserves_mass:
+            content = content * s.fill
+        if s.inverse_step > 0.0 and not s.instant:
+            by_rate = self.area * self.follows
+            by_gap = content if e is None else content * e.gap_slopes.H_r
+            return by_rate, (by_gap - by_rate) * s.inverse_step
+        if not self.squeeze:
+            return self.nothing, self.nothing
+        if e is None:
+            return content, self.nothing
+        return content * e.gap_slopes.rate_t, content * e.gap_slopes.rate_r
+
+    def _at_line(self) -> AtLine:
+        """The film at its rupture line."""
+        return AtLine((self.H, self.HF), self.flux, None) if self.elements is None else self.elements.at_line
+
+    def _to_motion(self, line: LineGradients) -> LineGradients:
+        """Convert a line's gradients to the film's gaps, in place, to gradients to those of the undeformed surfaces."""
+        if not self.axial:
+            line.by[7] = 0.0
+        return undeformed(line, self._at_line().chain)
+
+    def line_gradients(self) -> LineGradients | None:
+        """Contribution of the rupture line inside the cells to the derivatives of the balances; None without one.
+
+        For the last solution, at fixed pressure.
+        """
+        fills = self.fill_gradients()
+        if fills is not None and self.oil_line is not None:
+            return self.oil_line.balance_gradients(fills, *self.fill_weights(), self.work.order[: self.work.count])
+        s = self.system
+        if s.column_line is not None:
+            return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
+        if self.line is None:
+            return None
+        (gaps, flux, _), v = self._at_line(), (self.vx, self.vz)
+        line = self.line.gradients(self.work, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh)
+        return self._to_motion(line)
+
+    def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
+        """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their
+        fills; None without.
+
+        For the last solution, at fixed pressure; ``rows`` are flat vertices.
+        """
+        if self.oil_line is None:
+            return None
+        if self._fills is None:
+            (gaps, flux, _), v = self._at_line(), (self.vx, self.vz)
+            carried, held = self.oil_line.gradients(gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh)
+            self._fills = self._to_motion(carried), self._to_motion(held)
+        return self._fills
+
+    def fill_weights(self) -> tuple[Coefficients, np.ndarray]:
+        """Coefficients with the Couette flows of a full film, and its storage (n, m), of masses if compressible."""
+        film, terms, rho = self.system.coefficients, self.terms, self.rho
+        if self.law is None:
+            return film, terms.area * terms.grow
+        fx, fz = (0.5 * f * (rho + np.roll(rho, -1, axis)) for axis, f in enumerate((film.fx, film.fz)))
+        return film._replace(fx=fx, fz=fz), terms.area * terms.grow * rho
+
+    @property
+    def terms(self) -> FilmTerms:
+        """Coefficients of the balances."""
+        s = self.system
+        if self.elements is not None:
+            return self.elements.terms
+        return film_terms(s.coefficients, (s.inverse_step, s.mass_old, s.instant))
+
+    def inflow(self, ended: bool = False) -> np.ndarray:
+        """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
+
+        ``ended``: films next to a cavity end within a link.
+        """
+        s, conserves_mass, (P, _) = self.system, self.closure.conserves_mass, self.flow_pressures()
+        balance = np.empty(self.grid.shape)
+        if conserves_mass or self.law is not None:
+            fill, rho = s.fill if conserves_mass else None, None if self.law is None else self.rho
+            film_balance(P, fill, rho, self.terms, balance)
+        else:
+            vertex_balance(P, s.kx, s.kz, s.b, balance)
+            if ended and self.complementary:
+                end_films_of_areas(s, self.work.active, self.grid, balance)
+        return np.where(self.grid.fixed, balance, 0.0)

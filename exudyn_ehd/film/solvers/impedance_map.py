@@ -264,20 +264,18 @@ def impedance_force(nodes, step_s, step_alpha, x, y, x_t, y_t, omega, force_out,
     size = np.exp(out[0])
     c, s = np.cos(sign * out[3]), np.sin(sign * out[3])
     fx, fy = -size * (vx * c - vy * s), -size * (vy * c + vx * s)
+    # Directions of the derivatives: dx, dy, then the velocities that follow. Without any, the force vanishes
+    # wherever the journal is, and only the velocity that a turned surface lends to a shifted journal counts.
+    shift = 0.0 if at_rest else 1.0
+    directions = (
+        (shift, 0.0, 0.0, -0.5 * omega),
+        (0.0, shift, 0.5 * omega, 0.0),
+        (0.0, 0.0, 1.0, 0.0),
+        (0.0, 0.0, 0.0, 1.0),
+        (0.0, 0.0, 0.5 * y, -0.5 * x),
+    )
     for k in range(5):
-        # Direction of the derivative: dx, dy, then the velocities that follow. Without any, the force vanishes
-        # wherever the journal is, and only the velocity that a turned surface lends to a shifted journal counts.
-        dx, dy, dvx, dvy = 0.0, 0.0, 0.0, 0.0
-        if k == 0:
-            dx, dvy = 0.0 if at_rest else 1.0, -0.5 * omega
-        elif k == 1:
-            dy, dvx = 0.0 if at_rest else 1.0, 0.5 * omega
-        elif k == 2:
-            dvx = 1.0
-        elif k == 3:
-            dvy = 1.0
-        else:
-            dvx, dvy = 0.5 * y, -0.5 * x
+        dx, dy, dvx, dvy = directions[k]
         turn_v = (vx * dvy - vy * dvx) / (q * q)
         turn_e = (ex * dy - ey * dx) / (eps * eps)
         ds = (ex * dx + ey * dy) / eps / (1.0 - eps)

@@ -29,11 +29,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+from scipy.sparse import coo_matrix, csr_matrix, diags_array, eye_array, kron
 
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.substitution import solve_lu_transposed
-from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.linear import FilmSolver
@@ -116,14 +115,13 @@ class ClassicSolver(FilmSolver):
 
     def __init__(self, film: ClassicSOR, grid, closure, *, squeeze: bool) -> None:
         super().__init__(grid, closure, squeeze=squeeze)
-        self.coarse = None
+        self.coarse, self.symmetric = None, False
         self.film = film
         self.step_x = float(grid.width_x[0])
         self.step_z = float(grid.z[1] - grid.z[0])
         chosen = film.relaxation
         self.relaxation = best_relaxation(film.n_z, self.step_x, self.step_z) if chosen is None else chosen
-        size, width = grid.x.size * grid.z.size, 2 * grid.z.size + 2 + PAD
-        self.lower, self.upper = np.zeros((size, width)), np.zeros((size, width))
+        self.slope_x, self.slope_z, self.curvature = difference_operators(grid.shape, self.step_x, self.step_z)
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
@@ -132,7 +130,7 @@ class ClassicSolver(FilmSolver):
         g, s, w = self.grid, self.system, self.work
         self.vx, self.vz = vx, vz
         s.cavity_pressure = cavity_pressure
-        self._set_links()
+        self.set_links()
         s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
         sweeps = sor_solve(
             self.H,
@@ -154,23 +152,49 @@ class ClassicSolver(FilmSolver):
         ok = sweeps > 0 and bool(np.all(np.isfinite(s.linear_pressure)))
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), abs(sweeps)
 
-    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve with the transposed difference operator; see `FilmSolver.adjoint`."""
-        w = self.work
-        assemble_differences(
-            self.H, self.step_x, self.step_z, w.number, w.order, w.count, w.width, self.lower, self.upper
-        )
-        factor_lu(self.lower, self.upper, w.count, w.width, w.inv_diag)
-        solve_lu_transposed(self.lower, self.upper, w.inv_diag, w.count, w.width, rhs)
-        fields = np.zeros((rhs.shape[0], self.H.size))
-        fields[:, w.order[: w.count]] = rhs
-        return fields.reshape((rhs.shape[0], *self.grid.shape))
+    def factor_solution(self) -> None:
+        """Factor the difference operator at the unknowns."""
+        w, h = self.work, self.H.ravel()
+        by_slope = (diags_array(3.0 * h * h * (d @ h)) @ d for d in (self.slope_x, self.slope_z))
+        unknowns = w.order[: w.count]
+        a = coo_matrix(csr_matrix(sum(by_slope, diags_array(h**3) @ self.curvature))[unknowns][:, unknowns])
+        (lower, upper), above = self._bands(), a.col >= a.row
+        lower[:] = upper[:] = 0.0
+        upper[a.row[above], (a.col - a.row)[above]] = a.data[above]
+        lower[a.col[~above], (a.row - a.col)[~above]] = a.data[~above]
+        factor_lu(lower, upper, w.count, w.width, w.inv_diag)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) through the difference equations."""
-        steps = self.step_x, self.step_z
-        cell, speed = difference_sensitivity(lam, self.system.linear_pressure, self.H, (self.vx, self.vz), steps)
-        return Sensitivities(cell, np.zeros_like(lam), lam.copy() if self.squeeze else np.zeros_like(lam), speed)
+        h, P, weights = self.H.ravel(), self.system.linear_pressure.ravel(), -lam.reshape(len(lam), -1)
+        by_gap, speed = 3.0 * h * h * (self.curvature @ P), []
+        cell = np.zeros_like(weights)
+        for d, v in ((self.slope_x, self.vx), (self.slope_z, self.vz)):
+            by_gap += 6.0 * h * (d @ h) * (d @ P)
+            cell += (weights * (3.0 * h * h * (d @ P) - v)) @ d
+            speed.append(-weights @ (d @ h))
+        cell = (cell + weights * by_gap).reshape(lam.shape)
+        rate = lam.copy() if self.squeeze else np.zeros_like(lam)
+        return Sensitivities(cell, np.zeros_like(lam), rate, np.stack(speed, axis=1))
+
+
+def difference_operators(
+    shape: tuple[int, int], step_x: float, step_z: float
+) -> tuple[csr_matrix, csr_matrix, csr_matrix]:
+    """Central differences on a ring of n columns and m rows: slopes in theta and z, and sum of the second ones.
+
+    They hold in the rows between both ends.
+    """
+    n, m = shape
+    on_x, on_z = (
+        diags_array([1.0, 1.0], offsets=[1, 1 - n], shape=(n, n)),
+        diags_array([1.0], offsets=[1], shape=(m, m)),
+    )
+    slope_x = kron((on_x - on_x.T) / (2.0 * step_x), eye_array(m))
+    slope_z = kron(eye_array(n), (on_z - on_z.T) / (2.0 * step_z))
+    bend_x = kron((on_x + on_x.T - 2.0 * eye_array(n)) / step_x**2, eye_array(m))
+    bend_z = kron(eye_array(n), (on_z + on_z.T - 2.0 * eye_array(m)) / step_z**2)
+    return csr_matrix(slope_x), csr_matrix(slope_z), csr_matrix(bend_x + bend_z)
 
 
 @njit(cache=True)
@@ -222,43 +246,3 @@ def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, lar
         if change <= tolerance * total:
             return sweep
     return -largest_sweeps
-
-
-@njit(cache=True)
-def assemble_differences(H, dx, dz, number, order, count, width, lower, upper):
-    """The difference operator on the numbered vertices (fixed ones are known) in the storage of `lu`."""
-    n, m = H.shape
-    lower[:count, : width + 1 + PAD] = upper[:count, : width + 1 + PAD] = 0.0
-    for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        _, _, upper[r, 0], around = _differences(H, prv, i, nxt, j, dx, dz)
-        for k, col in enumerate((number[prv, j], number[nxt, j], number[i, j - 1], number[i, j + 1])):
-            if col > r:
-                upper[r, col - r] += around[k]
-            elif col >= 0:
-                lower[col, r - col] += around[k]
-
-
-def difference_sensitivity(
-    lam: np.ndarray, P: np.ndarray, H: np.ndarray, speeds: tuple[float, float], steps: tuple[float, float]
-) -> tuple[np.ndarray, np.ndarray]:
-    """``-lam . dr`` by the gap (k, n, m) and by the speeds (k, 2), r the left minus the right side of the equation."""
-    (vx, vz), (dx, dz) = speeds, steps
-
-    def slopes(F: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        along = np.roll(F, -1, axis=0) - np.roll(F, 1, axis=0)
-        return along[:, 1:-1] / (2.0 * dx), (F[:, 2:] - F[:, :-2]) / (2.0 * dz)
-
-    g, h, (hx, hz), (px, pz) = -lam[:, :, 1:-1], H[:, 1:-1], slopes(H), slopes(P)
-    curvature = (np.roll(P, -1, axis=0) - 2.0 * P + np.roll(P, 1, axis=0))[:, 1:-1] / (dx * dx)
-    curvature += (P[:, 2:] - 2.0 * P[:, 1:-1] + P[:, :-2]) / (dz * dz)
-    by_hx, by_hz = g * (3.0 * h * h * px - vx) / (2.0 * dx), g * (3.0 * h * h * pz - vz) / (2.0 * dz)
-    cell = np.zeros_like(lam)
-    cell[:, :, 1:-1] = g * (3.0 * h * h * curvature + 6.0 * h * (hx * px + hz * pz))
-    cell[:, :, 1:-1] += np.roll(by_hx, 1, axis=1) - np.roll(by_hx, -1, axis=1)
-    cell[:, :, 2:] += by_hz
-    cell[:, :, :-2] -= by_hz
-    return cell, -np.stack((np.sum(g * hx, axis=(1, 2)), np.sum(g * hz, axis=(1, 2))), axis=1)

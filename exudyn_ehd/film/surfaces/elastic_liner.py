@@ -6,7 +6,7 @@ A layer of thickness t on a stiff housing, pressed by p without sliding sideways
     delta = K_nu t p / E,    K_nu = (1 + nu)(1 - 2 nu) / (1 - nu),
 
 the Winkler model: right for layers thinner than the contact is wide, and without meaning
-for incompressible ones. The film on it is that of `exudyn_ehd.film.solvers.nonlinear`.
+for incompressible ones. The film on it is that of `exudyn_ehd.film.solvers.liner.film`.
 """
 
 from __future__ import annotations

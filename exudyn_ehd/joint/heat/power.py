@@ -126,7 +126,7 @@ class OilFlows:
             # these flows hold the upstream film fraction and the links' density already
             fx, fz, _ = oil.couette_flows()
             fill, carried = oil.rho * fill, s.ones
-        stepped = conserves and y.inverse_step > 0.0 and not s.instant
+        stepped = conserves and y.inverse_step > 0.0 and not y.instant
         self.rate = content_rate(s.H, s.H_t, fill, y.mass_old, y.inverse_step if stepped else 0.0, s.squeeze)
         # in the middle of the step: the gap's half of a step on from its start as the rates have it
         before = y.mass_old if stepped else fill * s.H - film.step * self.rate

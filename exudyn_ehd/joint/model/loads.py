@@ -47,9 +47,9 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
     P_q, beyond = ratio, False
     if film is not None:
         P_q = np.empty(shape)
-        if film.law is not None and film.law.viscosity is None and shear is None:
-            return OilFields(P, P_q) if film.pressure_of_solution(P, P_q) else None
         beyond = not film.viscosity(P, ratio, ratio_q, P_q)
+        if film.law is not None and film.law.viscosity is None and shear is None:
+            return None if beyond else OilFields(P, P_q)
     elif law is not None:
         beyond = not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q)
         P /= pressure_scale

@@ -7,7 +7,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.models import film_grid, film_solver
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.surfaces.contact import Contact, LandContact
 from exudyn_ehd.joint.seams import Effects
@@ -42,26 +42,18 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     touching: list[Contact] = list(effects.contacts)
     if supply is not None:
         touching = [LandContact(contact, supply.land) for contact in effects.contacts]
-    liner: NonlinearFilmSolver | None = None
-    if effects.liner is not None:
-        liner = NonlinearFilmSolver(
-            grid,
-            bearing.closure,
-            squeeze=bearing.squeeze,
-            contact=next(iter(touching), None),
-            limiter=effects.limiter,
-            flux_effects=effects.flux,
-            oil=effects.pressure_law,
-            density=effects.density,
-        )
-    solver = liner or film_solver(
+    solver = film_solver(
         bearing.film,
         grid,
         bearing.closure,
         squeeze=bearing.squeeze,
         flux_effects=effects.flux,
         density=effects.density,
+        liner=None
+        if effects.liner is None
+        else Liner(next(iter(touching), None), effects.limiter, effects.pressure_law),
     )
+    liner = None if effects.liner is None else solver.elements
     contacts = None
     if touching:
         contacts = ContactFields(grid.shape, touching)

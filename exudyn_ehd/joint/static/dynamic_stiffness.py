@@ -66,7 +66,7 @@ class FilmResponse:
         rows, stored = adjoint_rows(film), np.zeros(film.grid.shape)
         self.matrix = s.matrix()
         if liner is not None:
-            stored -= liner.elements.deflection_weights(s.ones[None])[0] * liner.deflection_by_pressure
+            stored += s.storage_weights()[0] * liner.deflection_by_pressure
             rows = -liner_weights(film)[:2] @ rows / film.scales.force
         if s.closure.conserves_mass:
             whole = s.area * s.H

@@ -13,7 +13,6 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.joint.model.effects import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
@@ -182,17 +181,16 @@ def solve_film(
         inflow=solver.inflow() * c * R**2,
         load=float(np.sum(pressure * grid.weight)) * R**2,
         fill=fill,
-        content=fill * gap * (solver.rho if isinstance(solver, CompressibleFilmSolver) else 1.0),
+        content=fill * gap * solver.rho,
     )
 
 
 def _any_gap_solver(
     grid: FilmGrid, closure: Closure, law: PressureLaw | None, squeeze: bool, steps: SteppedGap | None, scale: float
 ) -> FilmSolver:
+    density = law if isinstance(law, CompressibleLaw) else None
     effects = () if steps is None else (steps,)
-    if not isinstance(law, CompressibleLaw):
-        return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
-    solver = CompressibleFilmSolver(grid, closure, density=law, squeeze=squeeze, flux_effects=effects)
+    solver = FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects, density=density)
     solver.pressure_scale = scale
     return solver
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_ehd.film.differences import on_links, to_ends
 from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.surfaces import drag
 from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
 
@@ -55,7 +55,7 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     contract_pose(cell, at.cos_x, at.sin_x, z, gradient[-len(cell) :, :4])
 
 
-def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
+def drag_by_deflection(film: SolvedFilm, liner: LinerFilm) -> np.ndarray:
     """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
     face, cell = _slopes(film)
     return np.stack((to_ends(face, 0), cell)) * liner.deflection_by_pressure

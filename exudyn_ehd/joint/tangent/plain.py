@@ -26,7 +26,9 @@ def is_plain(film: SolvedFilm) -> bool:
     s, p, oil = film.solver, film.parts, film.oil
     return (
         type(s) is FilmSolver
-        and not (s.closure.clips or s.closure.conserves_mass)
+        and s.axial
+        and s.symmetric
+        and not s.closure.clips
         and s.flux is None
         and oil.P_q is None
         and oil.ratio is None

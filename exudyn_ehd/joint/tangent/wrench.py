@@ -15,7 +15,7 @@ from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.surfaces.contact_wrench import contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
@@ -81,11 +81,14 @@ def film_gradient(film: SolvedFilm, slow_motion: bool, weights: np.ndarray | Non
     if weights is not None:
         rows = weights @ rows
     gradient = np.zeros((rows.shape[0], MOTION_SIZE))
-    if slow_motion or not (s.plain_links or p.liner is not None):
-        field_gradient(film, s.adjoint(rows), gradient, slow_motion)
-    else:
-        s.solve_transposed(rows)
-        functional_gradients(rows, balance_gradients(film), gradient)
+    if not s.plain_links:
+        field_gradient(film, s.adjoint(rows), gradient)
+        return gradient
+    s.solve_transposed(rows)
+    columns = balance_gradients(film)
+    functional_gradients(rows, columns, gradient)
+    if slow_motion and p.liner is not None:
+        gradient[:, 4:8] += _following_deflection(film, p.liner, s.fields_of(rows), columns)
     return gradient
 
 
@@ -103,18 +106,18 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     return gradient[:4], dc, extra
 
 
-def _following_deflection(film: SolvedFilm, solver: NonlinearFilmSolver, by_rate: np.ndarray) -> np.ndarray:
-    """Gradient (k, 4) to the scaled rates through the deflection's rate.
+def _following_deflection(film: SolvedFilm, liner: LinerFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Gradient (k, 4) of adjoint functionals lam (k, n, m) to the scaled rates through the deflection's rate.
 
-    A second adjoint solve, of ``by_rate`` (k, n, m) times beta.
+    A second adjoint solve. ``columns``: `balance_gradients`. The rupture line adds nothing, since its liner rests.
     """
-    p, w, z = film.parts, solver.work, film.grid.z
-    rows = (by_rate * solver.deflection_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
-    sens = solver.sensitivities(solver.adjoint(np.ascontiguousarray(rows)))
-    out = np.zeros((by_rate.shape[0], 4))
-    contract_pose(sens.cell, p.directions.cos_x, p.directions.sin_x, z, out)
-    contract_pose(sens.face, p.directions.cos_f, p.directions.sin_f, z, out)
-    contract_pose(by_rate * solver.gap_slopes.D_r, p.directions.cos_x, p.directions.sin_x, z, out)
+    p, s, w = film.parts, film.solver, film.solver.work
+    by_rate, gradient = -lam * s.storage_weights()[0], np.empty((len(lam), MOTION_SIZE))
+    rows = (by_rate * liner.deflection_by_pressure).reshape(len(lam), -1)[:, w.order[: w.count]].copy()
+    s.solve_transposed(rows)
+    functional_gradients(rows, columns, gradient)
+    out = gradient[:, :4].copy()
+    contract_pose(by_rate * liner.gap_slopes.D_r, p.directions.cos_x, p.directions.sin_x, film.grid.z, out)
     return out
 
 
@@ -126,11 +129,11 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
     w, at = film.solver.work, film.grid.directions
     out = np.empty((MOTION_SIZE, w.count))
     if film.parts.liner is not None:
-        film.parts.liner.motion_columns(at, out)
+        film.parts.liner.motion_columns(*film.solver.storage_weights(), at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
-        if (line := true_line(film)) is not None:
-            add_line_columns(tuple(line), at, out)
+    if (line := true_line(film)) is not None:
+        add_line_columns(tuple(line), at, out)
     return out
 
 
@@ -147,13 +150,10 @@ def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarra
     return d, slope, by_rate, by_gap
 
 
-def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow_motion: bool = False) -> Sensitivities:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through fields of sensitivities, for any film."""
-    p = film.parts
-    sens = p.solver.sensitivities(lam)
+def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray) -> Sensitivities:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through fields of sensitivities, of rigid surfaces."""
+    sens = film.solver.sensitivities(lam)
     add_by_motion(film, sens, gradient)
-    if slow_motion and p.liner is not None:
-        gradient[:, 4:8] += _following_deflection(film, p.liner, p.liner.elements.deflection_weights(lam))
     return sens
 
 

@@ -13,7 +13,7 @@ from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.joint.model.build import build_model
 
 MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6
@@ -77,7 +77,7 @@ def test_converging_slider_is_the_same_with_every_closure(closure):
 
 def bare_solver(closure, speed):
     grid = ehd.slider_grid(LENGTH, LENGTH, 80, 6, sealed_sides=True)
-    solver = CompressibleFilmSolver(grid, closure, density=CompressibleLaw(DENSITY, BARUS), squeeze=False)
+    solver = FilmSolver(grid, closure, density=CompressibleLaw(DENSITY, BARUS), squeeze=False)
     gap = 1.0 + 0.7 * np.cos(2.0 * np.pi * grid.x)[:, None] + 0.05 * grid.z
     solver.H[:] = gap
     solver.HF[:] = 0.5 * (gap + np.roll(gap, -1, axis=0))

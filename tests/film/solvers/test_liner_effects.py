@@ -12,6 +12,7 @@ from scipy.special import ndtr
 import exudyn_ehd as ehd
 from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
+from exudyn_ehd.film.cavitation.states import OIL
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -19,7 +20,7 @@ from exudyn_ehd.film.reynolds.balance import film_slopes
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import Rates
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor, shear_flow_factor
@@ -73,7 +74,7 @@ def flux_of(effect):
 def solver_of(closure, contact, grid=GRID, effect="none"):
     surfaces = CONTACTS[contact]()
     oil = BARUS if effect == "barus" else None
-    made = NonlinearFilmSolver(grid, closure, contact=surfaces, limiter=surfaces, flux_effects=flux_of(effect), oil=oil)
+    made = FilmSolver(grid, closure, flux_effects=flux_of(effect), liner=Liner(surfaces, surfaces, oil))
     made.pressure_scale = SCALE
     return made
 
@@ -84,10 +85,10 @@ def unknown(oil, p):
 
 
 def solve(solver, beta, eps=0.6, rate=0.0, cold=True, mass_old=None, delta_old=None, step=0.0):
-    solver.beta = beta
+    solver.elements.beta = beta
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(solver.grid, eps, rate=rate)
     solver.pressure[:, 0], solver.pressure[:, -1] = unknown(solver.elements.oil, ENDS)
-    solver.delta_old = delta_old
+    solver.elements.delta_old = delta_old
     if cold:
         solver.forget()
     status, _ = solver.solve(50.0, 3.0, solver.closure.cavity_pressure, mass_old, step)
@@ -246,12 +247,12 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     rng = np.random.default_rng(4)
     s = solver_of(closure, contact, SMALL, effect)
     e, w = s.elements, s.work
-    s.beta, s.vx, s.vz = 0.02, 2.0, -1.0
+    s.elements.beta, s.vx, s.vz = 0.02, 2.0, -1.0
     s.system.cavity_pressure = 0.1
     s.H[:], s.HF[:], s.H_t[:] = 0.2 + rng.random((3, *SMALL.shape))
     if contact != "none":
         s.H -= 0.25
-    e.take_rigid(True)
+    e.take_rigid()
     e.deflection_old[:] = 0.1 * rng.random(SMALL.shape)
     e.rates = Rates(mass=2.0 if closure.conserves_mass else 0.0, liner=3.0, pseudo=0.5, own=1.0)
     P, fill, full = e.P, e.fill, np.ones(SMALL.shape, dtype=np.bool_)
@@ -266,7 +267,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     thin = None if e.thin is None else e.thin.response()
     numbering = number_cells if thin is None else number_with_corners
     count, width = numbering(~SMALL.fixed, e.metric[0], w.order, w.number)
-    sides = (P, fill, full) if e.fills else (P, None, None)
+    sides = (P, fill, full) if e.kind == OIL else (P, None, None)
     film_slopes(*sides[1:], None, None, e.terms, slopes)
     if thin is not None:
         add_tangents(thin[0], e.terms.kx, e.terms.kz, sides[2], slopes)
@@ -309,7 +310,7 @@ def test_steps_compiled_as_a_whole_find_the_same_film(closure):
         peak = np.abs(compiled.pressure).max()
         np.testing.assert_allclose(other.pressure, compiled.pressure, atol=1e-11 * peak)
         np.testing.assert_allclose(other.H, compiled.H, atol=1e-11)
-        assert other.stored_power() == pytest.approx(compiled.stored_power(), rel=1e-9, abs=1e-12)
+        assert other.elements.stored_power() == pytest.approx(compiled.elements.stored_power(), rel=1e-9, abs=1e-12)
 
 
 CASES = [
@@ -351,7 +352,7 @@ def test_scipy_finds_the_same_film(closure, contact, effect, motion):
     rate = 5.0 if step > 0.0 and not closure.conserves_mass else 0.0
     rigid = gaps(g, eps, rate=rate)
     start = solve(solver_of(closure, contact, g, effect), beta, eps - 0.02)
-    delta = start.deflection
+    delta = start.elements.deflection
     mass = 0.97 * start.content if closure.conserves_mass and step > 0.0 else None
     s = solve(
         solver_of(closure, contact, g, effect),
@@ -442,10 +443,10 @@ def test_surfaces_that_overlap_have_a_film(closure, contact):
     for eps in (0.9, 1.0, 1.2, 2.0, 4.0):
         solve(s, 0.02, eps, cold=eps == 0.9)
         assert s.H.min() > 0.0 and s.HF.min() > 0.0
-        np.testing.assert_allclose(s.elements.true_gap - s.elements.rigid[0], s.deflection, atol=1e-15)
-        expected = s.beta * (s.pressure + s.contact_pressure / SCALE)
-        np.testing.assert_allclose(s.deflection, expected, atol=1e-12 * (1.0 + np.abs(expected).max()))
-        taken.append(s.deflection[:, 0].max())
+        np.testing.assert_allclose(s.elements.true_gap - s.elements.rigid[0], s.elements.deflection, atol=1e-15)
+        expected = s.elements.beta * (s.pressure + s.elements.contact_pressure / SCALE)
+        np.testing.assert_allclose(s.elements.deflection, expected, atol=1e-12 * (1.0 + np.abs(expected).max()))
+        taken.append(s.elements.deflection[:, 0].max())
     assert np.all(np.diff(taken) > 0.0) and taken[-1] > 2.0
 
 
@@ -469,7 +470,7 @@ def test_oil_is_kept_over_a_transient(contact):
     s, step = solver_of(ehd.ElrodAdams(), contact), 4e-4
     depth = 0.85 if contact == "none" else 1.0
     rest = solve(s, 0.01, 0.3)
-    mass, delta = rest.H.copy(), rest.deflection
+    mass, delta = rest.H.copy(), rest.elements.deflection
     lowest = 1.0
     for k in range(200):
         eps = depth * (0.6 + 0.4 * np.sin(0.2 * k))
@@ -479,14 +480,14 @@ def test_oil_is_kept_over_a_transient(contact):
         assert inflow.sum() == pytest.approx(gain.sum(), abs=1e-10 * (np.abs(inflow).sum() + np.abs(gain).sum()))
         assert s.fill.min() >= 0.0 and s.fill.max() <= 1.0
         lowest = min(lowest, s.fill.min())
-        mass, delta = s.content, s.deflection
+        mass, delta = s.content, s.elements.deflection
     assert lowest < 0.8
 
 
 def test_a_film_at_an_instant_keeps_deflection_and_content():
     """No time to deflect or to flow: content and deflection of the history, another gap's rate another pressure."""
     s = solve(solver_of(ehd.ElrodAdams(), "none"), 0.01, 0.5)
-    mass, delta, before = s.content, s.deflection, s.pressure.copy()
+    mass, delta, before = s.content, s.elements.deflection, s.pressure.copy()
     after = solve(s, 0.01, 0.5, cold=False, mass_old=mass, delta_old=delta)
     np.testing.assert_allclose(after.content, mass, atol=1e-3)
     np.testing.assert_allclose(after.pressure, before, atol=1e-3 * before.max())

@@ -6,7 +6,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.solvers.liner.winkler import Liner
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()]
@@ -23,10 +23,10 @@ def gaps(eps, angle=0.3, rate=0.0):
 
 
 def solve(closure, beta, eps=0.6, rate=0.0, cold=True, solver=None, delta_old=None, step=0.0):
-    solver = solver or NonlinearFilmSolver(GRID, closure)
-    solver.beta = beta
+    solver = solver or FilmSolver(GRID, closure, liner=Liner())
+    solver.elements.beta = beta
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(eps, rate=rate)
-    solver.delta_old = delta_old
+    solver.elements.delta_old = delta_old
     if cold:
         solver.forget()
     status, _ = solver.solve(50.0, 3.0, closure.cavity_pressure, None, step)
@@ -62,7 +62,7 @@ def balance(rigid, P, D, vx, vz, beta, inverse_step, delta_old):
 def test_balance(closure):
     """The kernels' balance of a state that no film has, against its twin: rounding."""
     rng, pc = np.random.default_rng(4), 0.1
-    solver = NonlinearFilmSolver(GRID, closure)
+    solver = FilmSolver(GRID, closure, liner=Liner())
     e = solver.elements
     e.beta, solver.vx, solver.vz, e.rates = 0.02, 2.0, -1.0, e.rates._replace(liner=3.0)
     solver.system.cavity_pressure = pc
@@ -125,8 +125,8 @@ def test_heavy_and_soft_films_converge():
 
 def test_a_bore_that_touches_at_its_ends_has_no_film():
     """Where the pressure is prescribed an element can't deflect."""
-    solver = NonlinearFilmSolver(GRID, ehd.SwiftStieber())
-    solver.beta = 0.01
+    solver = FilmSolver(GRID, ehd.SwiftStieber(), liner=Liner())
+    solver.elements.beta = 0.01
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(1.01)
     assert solver.solve(50.0, 0.0, 0.0)[0] is ehd.Status.NO_FILM
 
@@ -141,7 +141,7 @@ def test_rate_of_the_liner_is_backward_euler():
     r = balance(np.array(gaps(0.6)), P, P, 50.0, 3.0, beta, 1.0 / step, old)
     assert np.abs(r[~GRID.fixed & (P > 0.0)]).max() < 1e-9 * 50.0
     for _ in range(300):
-        s = solve(closure, beta, solver=s, cold=False, delta_old=s.deflection.copy(), step=step)
+        s = solve(closure, beta, solver=s, cold=False, delta_old=s.elements.deflection.copy(), step=step)
     np.testing.assert_allclose(s.pressure, solve(closure, beta).pressure, atol=1e-8 * P.max())
 
 
@@ -149,7 +149,7 @@ def test_pressure_at_an_instant_is_that_of_the_deflection():
     """A liner that has no time to deflect keeps its pressure; 1e-6 s against a period of 0.1 s: below 1e-3."""
     s = solve(ehd.SwiftStieber(), 0.01)
     before = s.pressure.copy()
-    after = solve(ehd.SwiftStieber(), 0.01, eps=0.5, delta_old=s.deflection.copy(), solver=s).pressure
+    after = solve(ehd.SwiftStieber(), 0.01, eps=0.5, delta_old=s.elements.deflection.copy(), solver=s).pressure
     np.testing.assert_allclose(after, before, atol=1e-3 * before.max())
 
 
@@ -169,22 +169,22 @@ def test_refused_values(option, value):
 def test_a_film_at_rest_carries_nothing(closure):
     """A soft liner, nearly touched, without speed or rate: no pressure against
     the one that would open it to its clearance, 1 / beta."""
-    solver = NonlinearFilmSolver(GRID, closure)
-    solver.beta = 0.1
+    solver = FilmSolver(GRID, closure, liner=Liner())
+    solver.elements.beta = 0.1
     solver.H[:], solver.HF[:], _ = gaps(0.994)
     solver.H_t[:] = 0.0
     assert solver.solve(0.0, 0.0, 0.0)[0] is ehd.Status.CONVERGED
-    assert np.abs(solver.pressure).max() < 1e-12 / solver.beta
+    assert np.abs(solver.pressure).max() < 1e-12 / solver.elements.beta
 
 
 def test_a_film_that_breaks_always_exists():
     """Soft to stiff liners, nearly touched, under speeds and rates of any
     direction and two orders of size: 150 films from afar and from a dry guess."""
-    rng, solver = np.random.default_rng(3), NonlinearFilmSolver(GRID, ehd.SwiftStieber())
+    rng, solver = np.random.default_rng(3), FilmSolver(GRID, ehd.SwiftStieber(), liner=Liner())
     for k in range(150):
         x, rate = 0.3 + GRID.x, 10.0 ** rng.uniform(-1.0, 4.0) * rng.choice([0.0, 1.0])
         waves = rng.normal(size=2)[:, None] * np.array([np.cos(x), np.sin(x)])
-        solver.beta = 10.0 ** rng.uniform(-5.0, 0.5)
+        solver.elements.beta = 10.0 ** rng.uniform(-5.0, 0.5)
         solver.H[:], solver.HF[:], _ = gaps(rng.choice([0.5, 0.9, 0.99, 0.995]))
         solver.H_t[:] = rate * np.outer(waves.sum(axis=0), GRID.z / GRID.z.max() if k % 2 else np.ones(GRID.z.size))
         if k % 3 == 0:
@@ -201,17 +201,17 @@ def test_separation_pulls_a_soft_liner_shut():
     closure, beta, factor = ehd.FullSommerfeld(), 1e-4, 2.0
     solver = solve(closure, beta, eps=0.5, rate=-30.0)
     while factor > 1.001:
-        solver.beta = factor * beta
+        solver.elements.beta = factor * beta
         solver.H[:], solver.HF[:], solver.H_t[:] = gaps(0.5, rate=-30.0)
         before = solver.pressure.copy()
         if solver.solve(50.0, 3.0, -np.inf)[0] is ehd.Status.CONVERGED:
-            beta, smallest = solver.beta, solver.H.min()
+            beta, smallest = solver.elements.beta, solver.H.min()
         else:
             factor = factor**0.5
             solver.pressure[:] = before
             solver.work.warm = True
     assert smallest < 0.01 * 0.5
-    solver.beta = 4.0 * beta
+    solver.elements.beta = 4.0 * beta
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(0.5, rate=-30.0)
     assert solver.solve(50.0, 3.0, -np.inf)[0] is ehd.Status.NO_FILM
     assert solve(closure, 1e4, eps=0.5).H.min() > 0.1
@@ -236,7 +236,7 @@ def test_a_journal_that_only_slides_along_meets_no_pressure(closure):
     model = bearing_on_liner(closure, 1e8, 0.005, 64, 16)
     evaluation = model.evaluate(np.array([1.9e-5, 4.4e-6, 0, 0, 0, 0, 0, 0, 0, -0.57]))
     assert evaluation.status is ehd.Status.CONVERGED
-    assert np.abs(model.solver.pressure).max() * model.solver.beta < 1e-10
+    assert np.abs(model.solver.pressure).max() * model.solver.elements.beta < 1e-10
     assert np.all(np.isfinite(evaluation.tangent()))
 
 
@@ -280,7 +280,7 @@ def test_status_of_films_that_are_not_found():
         (ehd.SwiftStieber(), -1.0, ehd.Status.NOT_CONVERGED),
         (ehd.Gumbel(), 0.0, ehd.Status.NOT_CONVERGED),
     ):
-        solver = NonlinearFilmSolver(GRID, closure)
+        solver = FilmSolver(GRID, closure, liner=Liner())
         e = solver.elements
         e.beta, e.rigid[0], e.cavity_load = 0.01, 0.1, cavity_load
         assert solver._failure() is status

@@ -86,7 +86,7 @@ def moving(bore, closure, ends, n_theta, n_z):
             # every gap full of oil before the step, in which the surfaces' approach and the liner's rate are those of
             # the film
             s = model.solver
-            history = dataclasses.replace(history, mass=s.H - step * s.H_t - 0.01 * s.deflection)
+            history = dataclasses.replace(history, mass=s.H - step * s.H_t - 0.01 * s.elements.deflection)
     evaluation = model.evaluate(motion, history, step)
     return evaluation.film, evaluation.quantities()["power_loss"]
 
@@ -147,7 +147,7 @@ def test_power_into_a_liner_by_contact(contact):
         law = model.effects.contacts[0]
         gaps = [model.solver.elements.true_gap.copy()]
         q = model.evaluate(after, history, step).quantities()
-        stored = model.solver.stored_power() * model.scales.pressure * model.parts.flow_scale
+        stored = model.solver.elements.stored_power() * model.scales.pressure * model.parts.flow_scale
         gaps.append(model.solver.elements.true_gap.copy())
         p, slope = np.empty_like(gaps[0]), np.empty_like(gaps[0])
         energy = np.zeros_like(p)

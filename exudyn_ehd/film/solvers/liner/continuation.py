@@ -1,4 +1,4 @@
-"""Start of a film on a liner without a usable last film; see `exudyn_ehd.film.solvers.nonlinear`.
+"""Start of a film on a liner without a usable last film; see `exudyn_ehd.film.solvers.liner.film`.
 
 Newton's method starts from a dry guess. If it fails, pseudo-transient continuation follows: an additional storage at
 every vertex slows the film down and is reduced step by step.
@@ -9,32 +9,37 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
+from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
+from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
-from exudyn_ehd.film.solvers.liner.balance import LinerBalance
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.status import Status
 
 # Limits of a dry guess: gap over the clearance that it may always open, and share of an oil's largest pressure that it
 # may always have.
 OPEN, MODERATE = 0.01, 0.1
 # Gap over the clearance below which a dry guess opens the liner.
 THIN = 0.1
+# Share of an oil's largest pressure above which a film that is not found gets NO_PRESSURE.
+NEARLY_SOLID = 0.9
 
 
-def cold_start(film: LinerBalance) -> tuple[bool, int]:
+def cold_start(film: LinerFilm) -> tuple[bool, int]:
     """Solve by Newton's method from a dry guess; returns (found, steps). A mass-conserving film is first solved without
     mass conservation."""
     film.film.work.warm, first = False, 0
     _dry_guess(film)
-    if film.conserves_mass:
-        film.count_oil(False)
+    if film.kind == OIL:
+        film.take_kind(RUPTURE)
         ok, first = film.solve()
-        film.count_oil(True)
+        film.take_kind(OIL)
         if not ok:
             return False, first
     ok, steps = film.solve()
     return ok, first + steps
 
 
-def _dry_guess(film: LinerBalance) -> None:
+def _dry_guess(film: LinerFilm) -> None:
     """Set a full film as the initial guess. Without a contact, its pressure opens gaps below `THIN` to `THIN`, within
     the limits of `_transformed`; in a film at rest it is at most the largest prescribed pressure."""
     H0 = film.rigid[0]
@@ -51,13 +56,13 @@ def _dry_guess(film: LinerBalance) -> None:
     film.fill_up()
 
 
-def _at_rest(film: LinerBalance) -> bool:
+def _at_rest(film: LinerFilm) -> bool:
     """Return whether nothing moves: the pressure then lies between the prescribed ones."""
     still = film.film.vx == film.film.vz == film.rates.liner == film.rates.mass == 0.0
     return still and not film.rigid[2].any()
 
 
-def _transformed(film: LinerBalance, oil: PressureLaw, guess: np.ndarray) -> np.ndarray:
+def _transformed(film: LinerFilm, oil: PressureLaw, guess: np.ndarray) -> np.ndarray:
     """Unknowns of guessed pressures (n, m), limited to the larger of what opens the gap to `OPEN` and the share
     `MODERATE` of the oil's largest pressure."""
     touching = np.maximum((OPEN - film.rigid[0]) / film.beta, 0.0)
@@ -65,7 +70,7 @@ def _transformed(film: LinerBalance, oil: PressureLaw, guess: np.ndarray) -> np.
     return oil.transform(np.minimum(p * film.scale, oil.largest_pressure)) / film.scale
 
 
-def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
+def pseudo_transient(film: LinerFilm) -> tuple[bool, int]:
     """Solve by pseudo-transient continuation from a dry guess; returns (found, Newton steps).
 
     The implicit steps in pseudo time grow; the last solution has no additional storage.
@@ -92,9 +97,25 @@ def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
     return pseudo_time(attempt, rate)
 
 
-def _stored(film: LinerBalance) -> np.ndarray:
+def _stored(film: LinerFilm) -> np.ndarray:
     """Quantity (n, m) that pseudo time stores at the present state: mass, or the deflection by the film's unclipped
     pressure."""
-    if not film.fills:
+    if film.kind != OIL:
         return film.beta * (film.load.p + (film.P - film.load.drive))
-    return film.fill * film.gaps.H if film.rho is None else film.rho * film.fill * film.gaps.H
+    return film.film.content
+
+
+def failure(film: LinerFilm) -> Status:
+    """Status of a film that was not found."""
+    f, s, rigid = film.film, film.film.system, film.rigid
+    # in pseudo time it ended with the last film that it found
+    unfed = s.turns > 0.0 and has_unfed_row(s.linear_pressure, f.H, s.fixed, s.turns, s.cavity_pressure)
+    if unfed and not rigid[2].any():
+        return Status.NO_OIL
+    if film.oil is not None and float(film.load.p.max()) * film.scale > NEARLY_SOLID * film.oil.largest_pressure:
+        return Status.NO_PRESSURE
+    if film.contact is not None or film.beta == 0.0:
+        return Status.NOT_CONVERGED
+    # tension may pull the liner shut: without cavitation, or by the cavity's own pressure
+    shut = not f.ruptures or float(rigid[0].min()) + film.beta * film.cavity_load <= 0.0
+    return Status.NO_FILM if shut else Status.NOT_CONVERGED

@@ -1,6 +1,6 @@
 """Winkler elements of an elastic liner: pressure on them, deflection, the gap that the film sees, and derivatives.
 
-The equations are in `exudyn_ehd.film.solvers.nonlinear`. Symbols, all scaled: P unknown of the film; p pressure on the
+The equations are in `exudyn_ehd.film.solvers.liner.film`. Symbols, all scaled: P unknown of the film; p pressure on the
 elements, P itself or p(P) of an oil whose viscosity or density follows its pressure; pc cavity pressure in P; beta
 compliance; G true gap; H gap that the film sees, HF that on the links i -> i+1; D deflection; E = H - (film gap of the
 undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to the undeformed gap. ``rigid``

@@ -1,108 +1,141 @@
-"""Film on the Winkler elements of a liner, with contact, oil laws, flow factors and density; the equations are in
-`exudyn_ehd.film.solvers.nonlinear`."""
+"""Film on an elastic liner, alone or with contact, mass-conserving cavitation, oil laws, density or flow factors.
+
+The liner is a layer of Winkler elements. Each deflects in proportion to the pressure of the film and of the contact,
+
+    G = G_rigid + D,    D = beta (p + P_c(G)).
+
+The contact pressure P_c falls with the true gap G. So the relation has one root G(p), which rises with p:
+
+    dG/dp = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1].
+
+The effective compliance beta T is at most that of the liner, and nearly 0 where the contact is stiff against it. The
+liner takes up any overlap of the undeformed surfaces; at the ends and in grooves, whose pressure is prescribed, it does
+so by the contact alone. The film sees ``H = lim(G)``, with the gap limiter of a wall or of rough surfaces; on links
+``lim`` is taken of the true gap with the mean deflection of both ends. Where the pressure falls steeply, so does the
+gap. The conductance of a link is therefore the mean of H^3 over the linear course of the deflection between its ends,
+
+    g = H (H^2 + d^2),    d half the difference of E = lim(G) - lim(G_rigid) between the ends,
+
+exact for a rigid gap that is constant along the link. Flow factors, shear thinning and temperature multiply it by their
+values at the mean gap.
+
+In motion the squeeze contains the liner's rate, ``dH/dt = lim'(G) (rigid rate + (D - D_old) / dt)``. This is backward
+Euler with the deflection at the start of the step from the history: a soft liner feeds and drains the film as it
+deflects. Without a history (a prescribed position) the deflection is steady.
+
+A viscosity or a density may follow the pressure. The film's unknown is then the transformed pressure P of
+`exudyn_ehd.film.lubricant.pressure_viscosity` or `exudyn_ehd.film.lubricant.density`, in which the pressure flow is
+that of a constant viscosity and density. The elements have the pressure p(P) itself, which grows exponentially with P.
+A Newton step that raises the pressure goes to the pressure that the tangent of p(P) predicts, which is less than its P
+would give; one that lowers it goes to its P. Either is the shorter way, and both agree to second order. Thick oil lifts
+the liner: the gap opens where a rigid bore has no film any more. A film that would need solid oil ends with
+NO_PRESSURE. Couette flows and storage contain the density as in `exudyn_ehd.film.solvers.film`.
+
+`ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.elrod_adams` with the content ``rho fill H(P)``. At full
+vertices the storage depends on the unknown pressure through liner and density; at cavitated ones the unknown is the
+fill, and the element has the cavity pressure. `SwiftStieber` always has a film as long as the cavity pressure leaves a
+gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a solution (Ph.
+Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear pressure below the cavity pressure, but
+the liner deflects under the clipped one. No theorem says that such a film exists, and some extreme steady ones are not
+found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
+
+The unknowns are those of `exudyn_ehd.film.cavitation.solve`. Newton's method
+(`exudyn_ehd.film.solvers.liner.steps`) starts from the last film, else from a dry guess. If it fails,
+pseudo-transient continuation follows (`exudyn_ehd.film.solvers.liner.continuation`). The rupture line inside the cells
+is that of `exudyn_ehd.film.solvers.liner.line`.
+
+Between rigid surfaces (beta 0) it is the film of an oil that thins by shear, whose conductances follow the pressure.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import copy
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.oil_line import straight
+from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
+from exudyn_ehd.film.cavitation.oil_line import Curve, straight
+from exudyn_ehd.film.cavitation.solve import FOUND, GOES_ON, LEFT, base_of, is_exact
+from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms
-from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner.elements import (
-    Gaps,
-    GapSlopes,
-    Load,
-    Rates,
-    deflect,
-    drive_elements,
-    move_elements,
-    plain_links,
-    press_elements,
-    scale_load,
-    smallest_of,
-)
-from exudyn_ehd.film.solvers.liner.gap_response import speed_gradients
-from exudyn_ehd.film.solvers.liner.kernels import density_of_load, liner_residual
-from exudyn_ehd.film.solvers.liner.line import FilmLine, OilFilmLine
-from exudyn_ehd.film.solvers.liner.parts import LinerParts
-from exudyn_ehd.film.surfaces.contact import Contact
+from exudyn_ehd.film.reynolds.links import add_squeeze, right_hand_side
+from exudyn_ehd.film.solvers.film import Film
+from exudyn_ehd.film.solvers.liner.elements import plain_links
+from exudyn_ehd.film.solvers.liner.gap_response import gap_columns, speed_gradients
+from exudyn_ehd.film.solvers.liner.kernels import liner_residual
+from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, see_curves, straighten
+from exudyn_ehd.film.solvers.liner.line_kernels import open_gaps
+from exudyn_ehd.film.solvers.liner.steps import begin, factor_film, find_slopes, proceed, solve_plain
+from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements
 
 
-class LinerFilm:
-    """Film on Winkler elements: gaps, links, mass balances and derivatives for given unknowns.
+class LinerFilm(WinklerElements):
+    """Film on Winkler elements: gaps, links, mass balances and derivatives for given unknowns, and Newton's method.
 
     Parameters
     ----------
-    film : FilmSolver
-        Its gaps, links and factor are this film's own.
-    set_links : callable
-        Sets conductances and Couette fluxes for the present gaps.
-    parts : LinerParts
+    film : Film
+        Takes over this object's gaps and links; its factor is that of Newton's matrix.
+    liner : Liner
+
+    Attributes
+    ----------
+    beta, scale : float
+        Scaled compliance (deflection over clearance per scaled pressure), and the scale of pressures, Pa.
+    delta_old : (n, m) array or None
+        Scaled deflection at the start of the step, set by the caller before a film is solved; None: steady.
+    true_gap, contact_pressure, contact_slope : (n, m) arrays
+        Gap of the deformed surfaces, contact pressure, Pa, and its derivative to the undeformed gap.
+    gap_slopes : GapSlopes
+        Derivatives of the gaps that the film sees, for the last solution.
+    at_line : AtLine
+        The film at the cavity's pressure.
     """
 
-    def __init__(self, film: FilmSolver, set_links: Callable[[], None], parts: LinerParts) -> None:
-        self.film, self.set_links = film, set_links
-        self.contact, self.limiter, self.oil, self.density = contact, limiter, oil, density = parts
-        # coefficients of links that effects change
-        self.links: LinkFlux | None = None
+    def __init__(self, film: Film, liner: Liner) -> None:
+        super().__init__(film, liner)
+        s, g, w, shape = film.system, film.grid, film.work, film.grid.shape
         # the flux effect that follows the pressure
         self.thin = next((e for e in film.flux_effects if isinstance(e, ShearThinning)), None)
         if self.thin is not None:
             self.thin.place(film.grid, film.flow_x)
-        self.to_pressure: Callable[..., bool] | None = None if oil is None else oil.inverse
-        if density is not None:
-            self.to_pressure = density.pressure
-        s, g, closure = film.system, film.grid, film.closure
-        shape = g.shape
-        self.clips = closure.clips
-        # whether vertices may be cavitated
-        self.fills = self.conserves_mass = closure.conserves_mass
-        self.beta, self.scale = 0.0, 1.0
-        self.rates = Rates(0.0, 0.0, 0.0, 1.0)
-        self.deflection_old = np.zeros(shape)
-        self.rigid = np.ones((3, *shape))
-        self.rigid_slope = np.ones(shape)
-        self.known = np.zeros((3, *shape))
-        self.rigid_film, self.mass_old, self.pseudo_old = self.known
-        self.true_gap, self.pressed = np.ones(shape), np.ones(shape)
-        self.contact_pressure, self.contact_G, self.bend = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        # whether contact_pressure, contact_G, bend and gap_slopes have their values for surfaces apart
-        self.apart = True
-        self.gap_fields, self.slope_fields, self.load_fields = (np.zeros((k, *shape)) for k in (5, 9, 4))
-        self.gaps, self.gap_slopes = Gaps(*self.gap_fields), GapSlopes(*self.slope_fields)
-        self.load = Load(*self.load_fields)
-        for field in (self.gaps.H, self.gaps.HF, self.gap_slopes.link, self.gap_slopes.rate_t, self.load.slope):
-            field[:] = 1.0
-        # the cavity's pressure on the elements
-        self.cavity_load = 0.0
-        self.rho = None if density is None else np.ones(shape)
-        self.rho_P = None if density is None else np.zeros(shape)
+        # whether the pressure changes the deflection of the liner alone
+        self.plain = self.contact is None and self.limiter is None and self.oil is None and not film.flux_effects
         self.term_fields = np.zeros((10, *shape))
-        kx, kz, fx, fz, grow, known, kept, area, s.prompt, s.late = self.term_fields
-        s.prompt[:] = 1.0
-        self.terms = FilmTerms(kx, kz, fx, fz, grow, known, kept, area, s.prompt, s.late, g.fixed)
-        self.terms.area[:] = film.area
+        self.terms = FilmTerms(*(*self.term_fields, g.fixed))
+        self.terms.area[:], self.terms.prompt[:] = film.area, 1.0
+        s.kx, s.kz, s.fx, s.fz = self.terms[:4]
+        s.prompt, s.late = self.terms.prompt, self.terms.late
         # Couette flows pass through the widths where links conduct
         across = np.append(g.link_z, 0.0)
         x, z = (g.link_x, g.width_x, g.link_x != 0.0, g.width_x), (g.width_z, across, g.width_z, across != 0.0)
         self.metric = np.stack([np.outer(a, b) for a, b in zip(x, z, strict=True)])
         self.uncut = self.metric[:2].copy()
+        self.by = np.zeros((4, w.order.size))
+        self.fill = s.fill if s.kind == OIL else np.ones(shape)
+        # rupture line inside the cells: curves of the vertices, ``late`` of flows without them, film at that pressure
+        self.curve, self.late = straight(shape), s.late
+        if isinstance(film.line, FilmLine):
+            self.curve = film.line.curve
+        elif film.oil_line is not None:
+            film.oil_line.late, s.late, self.late = s.late, np.zeros(shape), np.zeros(shape)
+            self.curve = film.oil_line.block
+        self.at_line, self.shut = AtLine((film.H, film.HF), None, None), np.zeros(shape, dtype=np.bool_)
+        self.residual, self.above, steep, u, above = np.zeros((5, *shape))
+        # what the kernels of `exudyn_ehd.film.solvers.liner.steps` take
+        self.state = w.oil.u, self.above, self.fill
+        self.film_fields = self.term_fields, g.fixed, self.late, self.curve
+        self.matrix = w.order, w.number, w.lower, w.upper, w.inv_diag, w.oil.slopes, steep
+        self.places = self.P, self.residual, w.unknowns, u, np.zeros(shape, dtype=np.bool_), above
+        self.exact = False
+        self.take_kind(s.kind)
         self.cut_links()
-        self.residual = np.zeros(shape)
-        self.by = np.zeros((4, film.work.order.size))
-        # the unknown pressure, and the film fraction
-        self.P, self.fill = s.linear_pressure, s.fill if self.fills else np.ones(shape)
-        # whether vertices in the cavity have no unknown
-        self.chooses = film.complementary and not self.fills
-        # rupture line inside the cells, curves of the vertices, and ``late`` of the flows without curves
-        self.line, self.curve, self.late = edge_of(film, s.late)
-        # whether the pressure changes the deflection of the liner alone
-        self.plain = contact is None and limiter is None and oil is None and not film.flux_effects
-        self.smallest = 1.0
+
+    def take_kind(self, kind: int) -> None:
+        """Solve films of this kind from now on, see `exudyn_ehd.film.cavitation.states`."""
+        self.kind, self.reusable = kind, False
+        self.oil_fields = (self.fill if kind == OIL else None), *self.densities
 
     def cut_links(self) -> None:
         """Apply the grid's cuts to the links, which invalidates the last factor."""
@@ -110,168 +143,150 @@ class LinerFilm:
         self.metric[:2] = self.uncut
         self.film.grid.cut(*self.metric[:2])
 
-    def take_rigid(self, squeeze: bool) -> None:
-        """Store gaps and rate of the undeformed surfaces, and the film gap that a limiter makes of them."""
-        f, r = self.film, self.rigid
-        r[0], r[1] = f.H, f.HF
-        r[2] = f.H_t if squeeze else 0.0
-        self.rigid_film[:] = r[0]
-        if self.limiter is not None:
-            scratch = np.empty_like(r)
-            self.limiter.limit(self.rigid_film, f.HF, scratch[0], self.rigid_slope, scratch[1], scratch[2])
+    def forget_gradients(self) -> None:
+        """Let the sliding alone thin the oil."""
+        if self.thin is not None:
+            self.thin.see(self.film.nothing)
 
-    def set_known_loads(self) -> bool:
-        """Set the elements' pressures at prescribed vertices and in the cavity; returns False if the oil's law has
-        none."""
-        fixed, pc = self.film.grid.fixed, self.film.system.cavity_pressure
-        self.cavity_load = pc if self.film.ruptures else 0.0
-        P = self.P
-        if self.to_pressure is None:
-            return True
-        known = np.append(P[fixed], self.cavity_load)[None] * self.scale
-        p, slope, bend = np.empty_like(known), np.empty_like(known), np.empty_like(known)
-        if not self.to_pressure(known, p, slope, bend):
-            return False
-        p /= self.scale
-        self.load.p[fixed] = p[0, :-1]
-        self.cavity_load = float(p[0, -1])
-        return True
-
-    def press(self, P: np.ndarray) -> bool:
-        """Set the pressure on every element for the film's unknown P; returns False if the oil would be solid."""
-        load, f = self.load, self.film
-        drive_elements(P, f.grid.fixed, f.system.cavity_pressure, self.clips, self.load_fields)
-        if self.oil is None or self.to_pressure is None:
-            return True
-        if not self.to_pressure(load.drive * self.scale, load.p, load.slope, load.bend):
-            return False
-        if scale_load(self.load_fields, self.scale) > self.oil.largest_pressure:
-            return False
-        if self.density is not None and self.rho is not None:
-            table = self.density.kernel_table
-            density_of_load(self.load_fields, P, self.scale, table.a, table.b, self.rho, self.rho_P)
-        return True
-
-    def update_elements(self, P: np.ndarray) -> bool:
-        """Update the elements and the gaps that the film sees for its unknown P; returns False if the oil's law has no
-        such pressure."""
-        f, contact = self.film, self.contact
-        if contact is None and self.oil is None:
-            smallest, on_links = deflect(
-                P,
-                f.grid.fixed,
-                f.system.cavity_pressure,
-                self.clips,
-                self.load_fields,
-                self.rigid,
-                self.beta,
-                self.true_gap,
-                self.deflection_old,
-                self.rates.liner,
-                self.gap_fields,
-            )
-        else:
-            if not self.press(P):
-                return False
-            gap = self.true_gap if contact is None else self.pressed
-            smallest = press_elements(self.rigid, self.load_fields, self.beta, gap)
-            if contact is not None:
-                self._touch(contact, smallest)
-            on_links = move_elements(self.rigid, self.true_gap, self.deflection_old, self.rates.liner, self.gap_fields)
-        if self.limiter is not None and (not self.apart or min(smallest, on_links) < self.limiter.limits_below):
-            self.limiter.limit(f.H, f.HF, f.H_t, self.gap_slopes.rate_t, self.bend, self.gap_slopes.link)
-            self.apart = False
-            self.smallest = float(smallest_of(self.gap_fields))
-        else:
-            self.smallest = min(smallest, on_links)
-        return True
-
-    def _touch(self, contact: Contact, smallest: float) -> None:
-        """Set the gaps of elements on which a contact presses as well."""
-        if smallest < contact.presses_below:
-            contact.solve_gap(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
-            self.apart = False
+    def _set_links(self, P: np.ndarray) -> None:
+        """Set conductances and Couette fluxes for the present gaps, and for the gradients of P (n, m)."""
+        f = self.film
+        if f.flux is None:
+            plain_links(self.gap_fields, self.metric, f.vx, f.vz, self.term_fields)
             return
-        self.true_gap[:] = self.pressed
-        if not self.apart:
-            for field in (self.contact_pressure, self.contact_G, self.bend):
-                field[:] = 0.0
-            self.gap_slopes.rate_t[:] = self.gap_slopes.link[:] = 1.0
-            self.apart = True
+        if self.thin is not None:
+            self.thin.see(P)
+        f.set_links()
 
     def balance(self) -> tuple[float, float]:
         """Update gaps, links and residual; returns (norm of the residual, smallest film gap), (inf, -1) if the oil's
         law has no such pressure."""
-        f, fill = self.film, self.fill if self.fills else None
+        f, (fill, rho, _) = self.film, self.oil_fields
         if not self.update_elements(self.P):
             return np.inf, -1.0
         if not self.smallest > 0.0:
             return np.inf, self.smallest
-        if self.links is None:
-            plain_links(self.gap_fields, self.metric, f.vx, f.vz, self.term_fields)
-        else:
-            if self.thin is not None:
-                self.thin.see(self.P)
-            self.set_links()
-        norm = liner_residual(
-            self.P,
-            fill,
-            self.rho,
-            self.load_fields,
-            self.gap_fields,
-            self.term_fields,
-            f.grid.fixed,
-            self.known,
-            tuple(self.rates),
-            self.beta,
-            f.system.cavity_pressure,
-            self.chooses,
-            self.curve,
-            self.residual,
-        )
+        self._set_links(self.P)
+        fields = self.load_fields, self.gap_fields, self.term_fields, f.grid.fixed, self.known
+        rates, pc = tuple(self.rates), f.system.cavity_pressure
+        chooses = self.kind == RUPTURE
+        norm = liner_residual(self.P, fill, rho, *fields, rates, self.beta, pc, chooses, self.curve, self.residual)
         return norm, self.smallest
 
-    def storage_gradients(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (n, m) of the storage to the undeformed gap and to its rate."""
-        a, content = self.gap_slopes, self.film.area
-        if self.rho is not None:
-            content = content * self.rho
-        if self.fills:
-            content = content * self.fill
-        if self.rates.own == 0.0:
-            kept = self.film.area * self.film.follows
-            return (content * a.H_r - kept) * self.rates.mass, kept
-        return content * a.rate_r, content * a.rate_t
+    def see_cavity(self) -> None:
+        """Set the rupture line's coefficients for the film to be solved. Gaps and links are left at their values at the
+        cavity pressure."""
+        f, rates = self.film, self.rates
+        if f.oil_line is None and f.line is None:
+            return
+        s, g = f.system, f.grid
+        self.rates = rates._replace(liner=0.0)
+        self.update_elements(np.where(g.fixed, self.P, s.cavity_pressure))
+        self.rates = rates
+        open_gaps(self.gap_fields, self.shut)
+        self._set_links(f.nothing)
+        flux, chain = copy.deepcopy(f.flux), None
+        if self.thin is not None and flux is not None:
+            s.kx *= self.thin.slide(flux, f.vx)
+        density = 1.0 if f.law is None else float(f.rho[~g.fixed].min(initial=np.inf))
+        gaps, shut = self.gap_fields[:2].copy(), (self.shut, g.fixed)
+        rest = s.b, f.squeeze, (g.width_x, g.width_z), density, (self.beta, f.vx)
+        if isinstance(f.line, FilmLine):
+            f.line.see(self.gap_fields, self.term_fields, shut, *rest, gaps)
+        elif f.oil_line is not None:
+            see_curves(f.oil_line, self.gap_fields, self.terms, shut, *rest)
+        if self.limiter is not None or self.contact is not None:
+            a, follow = self.gap_slopes, 1.0 / (1.0 - self.beta * self.contact_G) - 1.0
+            chain = GapChain(a.rate_t.copy(), self.bend.copy(), a.link.copy(), follow)
+        self.at_line = AtLine((gaps[0], gaps[1]), flux, chain)
 
-    def flows_by_speed(self) -> np.ndarray:
-        """Derivatives (3, n, m) of the links' flows to the speeds, as `speed_gradients` sets them."""
-        by = np.empty((3, *self.P.shape))
-        fill = self.film.carried if self.fills else None
-        speed_gradients(
-            self.P,
-            fill,
-            self.rho,
-            self.term_fields,
-            self.film.grid.fixed,
-            self.gap_fields,
-            self.links,
-            self.metric,
-            by,
-        )
-        return by
+    def fill_up(self) -> None:
+        """Remove the cavity: every vertex is full and has at least the pressure of a fully developed curve."""
+        w, curve = self.film.work, Curve(*self.curve).whole.reshape(self.P.shape)
+        np.logical_not(self.film.grid.fixed, out=w.active)
+        self.fill[:] = 1.0
+        np.maximum(self.P, base_of(self.film.system) + curve, out=self.P, where=curve > 0.0)
 
+    def solve(self) -> tuple[bool, int]:
+        """Solve by Newton's method from the present pressures and sets, in place; returns (found, steps)."""
+        f, w, s = self.film, self.film.work, self.film.system
+        if f.oil_line is not None:
+            np.multiply(s.late, s.prompt < 1.0, out=self.late)
+            straighten(f.oil_line, self.late)
+        ready = self.reusable and w.warm
+        self.reusable = self.exact = False
+        course, outcome = (0, False, -1, 1.0, 0.0, w.count, w.width, (ready, False, False, 0.0, LEFT)), GOES_ON
+        rest = self.kind, base_of(s), w.active, self.state, self.oil_fields, self.film_fields, *self._seen
+        if self.plain and self.kind != OIL:
+            numbers = s.cavity_pressure, f.vx, f.vz, self.beta
+            plain = numbers, f.closure.clips, self.rigid, self.true_gap, self.deflection_old, self.known
+            outcome, course = solve_plain(course, *rest, self.matrix, self.places, plain)
+        else:
+            begin(self.film_fields, self.kind, base_of(s), w.active, self.state, self.P)
+        while outcome == GOES_ON:
+            norm, gap = self.balance()
+            outcome, course = proceed(norm, gap, course, *rest, self._response, self.matrix, self.places)
+        steps, *_, w.count, w.width, progress = course
+        self.reusable, self.exact = outcome == FOUND, is_exact(progress)
+        return self.reusable, steps
 
-def edge_of(film: FilmSolver, late: np.ndarray) -> tuple[FilmLine | OilFilmLine | None, np.ndarray, np.ndarray]:
-    """Return the rupture line inside the cells (None without), the curves of its vertices, and ``late`` without curves.
+    @property
+    def _seen(self) -> tuple[tuple[object, ...], tuple[object, ...]]:
+        """Arguments ``elements`` and ``links`` of `find_slopes`."""
+        f = self.film
+        elements = (
+            self.slope_fields, self.gap_fields, self.load_fields, tuple(self.rates), self.beta, self.by,
+            self.rigid_slope, self.contact_G, self.bend,
+        )  # fmt: skip
+        return elements, (f.flux, self.metric, f.vx, f.vz)
 
-    ``late`` (n, m): that of the film's coefficients, see `exudyn_ehd.film.reynolds.lagging_void`.
-    """
-    s, shape = film.system, late.shape
-    if film.closure.clips or not film.closure.line_in_cells:
-        return None, straight(shape), late
-    if not film.closure.conserves_mass:
-        line = FilmLine(shape)
-        return line, line.curve, late
-    film.oil_line = s.oil_line = edge = OilFilmLine(shape)
-    edge.late, s.late = late, np.zeros(shape)
-    return edge, edge.block, edge.kept
+    @property
+    def _response(self) -> tuple[np.ndarray, ...] | None:
+        """`ShearThinning.response` for Newton's matrix; None if no conductance follows the pressure."""
+        return None if self.thin is None else self.thin.response()
+
+    def gradients(self) -> None:
+        """Update ``gap_slopes`` and ``by``: derivatives of the gaps and of the links' flows at the present state."""
+        fill, rho, _ = self.oil_fields
+        find_slopes(self.P, fill, rho, self.film_fields, *self._seen)
+
+    def motion_columns(
+        self, by_rate: np.ndarray, by_gap: np.ndarray, at: tuple[np.ndarray, ...], out: np.ndarray
+    ) -> None:
+        """Derivatives (10, count) of the balances to the motion of a rigid journal, but for the rupture line's, as for
+        `exudyn_ehd.film.sensitivity.rigid.motion_columns`; ``by_rate``, ``by_gap``: `FilmSolver.storage_weights`."""
+        f, w, by_speed = self.film, self.film.work, np.empty((3, *self.P.shape))
+        oil = (f.carried if self.kind == OIL else None), self.oil_fields[1]
+        rest = self.term_fields, f.grid.fixed, self.gap_fields, f.flux, self.metric
+        speed_gradients(self.P, *oil, *rest, by_speed)
+        gap_columns(w.order, w.count, self.by, by_speed, self.slope_fields, by_rate, by_gap, at, out)
+
+    def factor_solution(self) -> None:
+        """Make the factor in the workspace that of the last solution."""
+        w = self.film.work
+        if not self.exact:
+            fields = self.kind, self.P, self.oil_fields, self.film_fields, *self._seen
+            _, w.count, w.width = factor_film(*fields, self._response, self.matrix, w.active)
+            self.exact = True
+
+    def finish(self) -> None:
+        """Set the fields of a solution: rupture line, clipped pressure, gap derivatives, rates, right-hand side."""
+        f, s, w = self.film, self.film.system, self.film.work
+        g, pc = f.grid, s.cavity_pressure
+        if isinstance(f.line, FilmLine):
+            f.line.settle(w.active)
+        if f.closure.clips:
+            clip_pressure(self.P, g.fixed, pc, s.pressure, w.active)
+            if s.continued is not None:
+                mean_in_cells(self.P, g.fixed, s.linked, pc, w.active, s.pressure)
+        elif not f.ruptures:
+            np.logical_not(g.fixed, out=w.active)
+        self.gradients()
+        if s.kind == OIL and self.deflection_inverse > 0.0:
+            f.H_t += self.gap_slopes.rate_t * self.deflection_rate
+        if self.contact is not None:
+            pressed = self.touching * self.contact_G * self.scale
+            np.multiply(pressed, 1.0 + self.gap_slopes.D_r, out=self.contact_slope)
+        right_hand_side(s.fx, s.fz, s.b)
+        if f.squeeze:
+            add_squeeze(f.H_t, g.width_x, g.width_z, s.b)

@@ -31,8 +31,7 @@ import numpy as np
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, curve_terms, straight
 from exudyn_ehd.film.cavitation.rupture_line import Line, LineGradients, RuptureLine, line_terms, to_true_gap
-from exudyn_ehd.film.cavitation.system import FilmSystem
-from exudyn_ehd.film.reynolds.balance import terms_of
+from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux, add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.liner.line_kernels import add_yielding, see_line, weigh_yielding
 
@@ -48,65 +47,53 @@ class GapChain(NamedTuple):
     follow: np.ndarray
 
 
-class OilFilmLine(OilLine):
-    """Rupture line of a mass-conserving film on a liner; further attributes as for `FilmLine`.
+class AtLine(NamedTuple):
+    """A film at its rupture line.
 
     Attributes
     ----------
-    kept : (n, m) array
-        ``late`` of the film without curves.
+    gaps : two (n, m) arrays
+        At vertices and links.
+    flux : LinkFlux or None
+        Coefficients of the links; None of a plain film.
+    chain : GapChain or None
+        None without contact and gap limiter.
     """
 
-    def __init__(self, shape: tuple[int, int]) -> None:
-        super().__init__(shape)
-        self.gaps, self.kept = np.ones((2, *shape)), np.zeros(shape)
-        self.flux: LinkFlux | None = None
-        self.chain: GapChain | None = None
-        self.touching = np.zeros(shape, dtype=np.bool_)
+    gaps: tuple[np.ndarray, np.ndarray]
+    flux: LinkFlux | None
+    chain: GapChain | None
 
-    def see(
-        self,
-        gap_fields: np.ndarray,
-        term_fields: np.ndarray,
-        b: np.ndarray,
-        squeeze: bool,
-        widths: tuple[np.ndarray, np.ndarray],
-        fixed: np.ndarray,
-        beta: float,
-        vx: float,
-    ) -> None:
-        """Set the curves from the fields of `LinerFilm` at the cavity pressure; parameters as for `FilmLine.see`."""
-        self.lift_by_speed = 0.5 * beta * np.sign(vx) * widths[1]
-        film, c = terms_of(term_fields, fixed), self.fields
-        self.gaps[:], film.kx[self.touching] = gap_fields[:2], 0.0
-        right_hand_side(film.fx, film.fz, b)
-        if squeeze:
-            add_squeeze(gap_fields[4], *widths, b)
-        curve_terms(film, b, c)
-        c.k[:] += np.tile(self.lift_by_speed * vx, len(b))
-        c.f[:], c.out[:] = self.density * c.f, self.density * c.out
-        np.divide(0.5 * c.f, c.k, out=c.whole, where=c.f > 0.0)
 
-    def straighten(self, s: FilmSystem) -> None:
-        """Remove the curves of all vertices, and take over ``late`` of the flows."""
-        np.multiply(s.late, s.prompt < 1.0, out=self.kept)
-        self.late[:], self.fields.s[:] = self.kept, 1.0
-        self.fields.slope[:] = self.fields.rise[:] = 0.0
+def see_curves(
+    line: OilLine,
+    gap_fields: np.ndarray,
+    film: FilmTerms,
+    shut: tuple[np.ndarray, np.ndarray],
+    b: np.ndarray,
+    squeeze: bool,
+    widths: tuple[np.ndarray, np.ndarray],
+    density: float,
+    liner: tuple[float, float],
+) -> None:
+    """Set the curves of a mass-conserving film from its fields at the cavity pressure; parameters as for
+    `FilmLine.see`."""
+    (beta, vx), (touching, _), c = liner, shut, line.fields
+    line.density, line.lift_by_speed = density, 0.5 * beta * np.sign(vx) * widths[1]
+    film.kx[touching] = 0.0
+    right_hand_side(film.fx, film.fz, b)
+    if squeeze:
+        add_squeeze(gap_fields[4], *widths, b)
+    curve_terms(film, b, c)
+    c.k[:] += np.tile(line.lift_by_speed * vx, len(b))
+    c.f[:], c.out[:] = density * c.f, density * c.out
+    np.divide(0.5 * c.f, c.k, out=c.whole, where=c.f > 0.0)
 
-    def gradients(
-        self,
-        gaps: tuple[np.ndarray, np.ndarray],
-        flux: LinkFlux | None,
-        speeds: tuple[float, float],
-        flow_x: float,
-        squeeze: bool,
-        mesh: tuple[np.ndarray, ...],
-    ) -> tuple[LineGradients, LineGradients]:
-        """Return `OilLine.gradients` to the undeformed gaps, with the stored gaps and flux of the cavity."""
-        carried, held = super().gradients((self.gaps[0], self.gaps[1]), self.flux, speeds, flow_x, squeeze, mesh)
-        if self.chain is None:
-            return carried, held
-        return undeformed(carried, self.chain), undeformed(held, self.chain)
+
+def straighten(line: OilLine, late: np.ndarray) -> None:
+    """Remove the curves of all vertices; ``late`` (n, m): that of the flows without curves."""
+    line.late[:], line.fields.s[:] = late, 1.0
+    line.fields.slope[:] = line.fields.rise[:] = 0.0
 
 
 class FilmLine(RuptureLine):
@@ -116,49 +103,45 @@ class FilmLine(RuptureLine):
     ----------
     curve : (9, n m) array
         Fields of the `Curve` of its vertices, as kernels take them.
-    gaps : (2, n, m) array
-        Gaps at vertices and links, at the cavity pressure.
-    flux : LinkFlux or None
-        Coefficients of the links there; None of a plain film.
-    chain : GapChain or None
-        Derivatives of the gaps there; None without contact and gap limiter.
+    density : float
+        Density in the cavity over that at ambient pressure.
+    lean : (n, m) array
+        t of the module.
+    liner : (float, float, (m,) array)
+        Compliance, vx and widths in z.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
         super().__init__(shape)
-        self.curve = straight(shape)
-        self.gaps = np.ones((2, *shape))
-        self.flux: LinkFlux | None = None
-        self.chain: GapChain | None = None
-        self.density = 1.0
-        # where surfaces touch at the cavity's pressure; t of the module, and (compliance, vx, widths) of the liner
-        self.touching, self.lean = np.zeros(shape, dtype=np.bool_), np.zeros(shape)
+        self.curve, self.density, self.lean = straight(shape), 1.0, np.zeros(shape)
         self.liner = 0.0, 0.0, np.zeros(shape[1])
 
-    def take(self, gaps: tuple[np.ndarray, np.ndarray], kx: np.ndarray, b: np.ndarray, fixed: np.ndarray) -> None:
-        """Set f and k from the film's gaps, conductances and right-hand side (n, m) at the cavity pressure."""
-        self.gaps[:], self.s[:] = gaps, 1.0
-        line_terms(kx, self.density * b, fixed, True, self.block)
+    def take(self, kx: np.ndarray, b: np.ndarray, fixed: np.ndarray, density: float) -> None:
+        """Set f and k from the film's conductances and right-hand side (n, m) at the cavity pressure."""
+        self.density, self.s[:] = density, 1.0
+        line_terms(kx, density * b, fixed, True, self.block)
 
     def see(
         self,
         gap_fields: np.ndarray,
         term_fields: np.ndarray,
+        shut: tuple[np.ndarray, np.ndarray],
         b: np.ndarray,
         squeeze: bool,
         widths: tuple[np.ndarray, np.ndarray],
-        fixed: np.ndarray,
-        beta: float,
-        vx: float,
+        density: float,
+        liner: tuple[float, float],
+        gaps_out: np.ndarray,
     ) -> None:
-        """Set f, k, t and the gaps from the fields of `LinerFilm` at the cavity pressure.
+        """Set f, k, t and the gaps (2, n, m) from the fields of `LinerFilm` at the cavity pressure.
 
-        ``beta``: scaled compliance of the liner; ``widths`` of the vertices in theta and z.
+        ``shut``: links on which surfaces touch there, and prescribed vertices (n, m); ``widths`` of the vertices in
+        theta and z; ``liner``: its scaled compliance, and vx.
         """
-        self.liner = beta, vx, widths[1]
+        self.density, self.liner, (touching, fixed) = density, (*liner, widths[1]), shut
         see_line(
-            gap_fields, term_fields, self.touching, b, squeeze, widths, fixed, self.density, (beta, vx), self.block,
-            self.gaps, self.lean,
+            gap_fields, term_fields, touching, b, squeeze, widths, fixed, density, liner, self.block, gaps_out,
+            self.lean,
         )  # fmt: skip
         line, curve = Line(*self.block), Curve(*self.curve)
         curve.f[:], curve.k[:], curve.whole[:] = line.f, line.k, line.whole
@@ -184,14 +167,16 @@ class FilmLine(RuptureLine):
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> LineGradients:
-        """Return `RuptureLine.gradients` to the undeformed gaps, with the stored gaps and flux of the cavity."""
-        line = super().gradients(work, (self.gaps[0], self.gaps[1]), self.flux, speeds, flow_x, squeeze, mesh)
-        add_yielding(line.places, self.block, self.lean, self.gaps[1], self.liner, line.by)
-        return line if self.chain is None else undeformed(line, self.chain)
+        """Return `RuptureLine.gradients`, with what the liner adds, for gaps and flux at the cavity's pressure."""
+        line = super().gradients(work, gaps, flux, speeds, flow_x, squeeze, mesh)
+        add_yielding(line.places, self.block, self.lean, gaps[1], self.liner, line.by)
+        return line
 
 
-def undeformed(line: LineGradients, chain: GapChain) -> LineGradients:
+def undeformed(line: LineGradients, chain: GapChain | None) -> LineGradients:
     """Convert gradients to the film's gap to gradients to the undeformed gap, with a contact or a limiter."""
+    if chain is None:
+        return line
     n, m = chain.slope.shape
     out = to_true_gap(line, chain.slope, chain.bend, chain.face_slope)
     i, j = np.divmod(line.places, m)

@@ -1,0 +1,247 @@
+"""One film on one grid: its arrays, its links, its oil and the rupture line inside its cells.
+
+The density may follow the pressure. With the density ratio rho = rho(p) / rho_0 and the transformed pressure q of
+`exudyn_ehd.film.lubricant.density`, scaled to P, the mass balance of a control volume reads
+
+    sum over its links of (sigma V H - H^3 dP/ds) + d(rho fill H)/dt area = 0,
+
+the compressible Reynolds equation (D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, 1966) in the scaled
+form of `exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's ends (second order) times the fill of
+its upstream end. The closures are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over
+the whole film, cut off afterwards; the density follows the clipped pressure), `SwiftStieber` and `ElrodAdams`.
+
+Storage. `ElrodAdams` with a history: the difference of the void, the gap less ``rho fill H``. Without a history
+there is no rate of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as
+the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H:
+1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
+out likewise. A flooded start holds oil of ambient density, so that its film builds up the pressure over some steps.
+
+Rupture lines lie inside the cells where the closure says so, with f and the pressure at s = 1 (symbols of
+`exudyn_ehd.film.cavitation.rupture_line` and `exudyn_ehd.film.cavitation.oil_line`) times the density of oil at the
+cavity's pressure. Oil that no pressure of the law's range carries has no film.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.film.banded.workspace import Workspace
+from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.oil_line import OilLine
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
+from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
+from exudyn_ehd.film.cavitation.system import FilmSystem
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
+from exudyn_ehd.film.reynolds.lagging_void import lag_void, outflow_of
+from exudyn_ehd.film.reynolds.link_derivatives import add_cuts, link_derivatives
+from exudyn_ehd.film.reynolds.links import FluxEffect, link_flux, set_links
+from exudyn_ehd.film.solvers.edge_flows import flow_pressures
+from exudyn_ehd.film.solvers.liner.line import FilmLine
+
+# Stands for a vanishing time step where only the rates at one instant are asked for, share of the time in which the
+# film changes.
+INSTANT = 1e-7
+
+
+class Film:
+    """Arrays, links, oil and rupture line of one film; attributes as for `FilmSolver`.
+
+    Parameters
+    ----------
+    grid, closure, squeeze, flux_effects, density
+        As for `FilmSolver`.
+    flow_x : float
+        0 drops the circumferential pressure flow, else 1.
+    yields : bool
+        Whether gaps or conductances follow the pressure.
+    """
+
+    def __init__(
+        self,
+        grid: FilmGrid,
+        closure: Closure,
+        flow_x: float,
+        squeeze: bool,
+        flux_effects: tuple[FluxEffect, ...],
+        density: CompressibleLaw | None,
+        yields: bool,
+    ) -> None:
+        shape = grid.shape
+        self.grid, self.closure, self.squeeze, self.flux_effects = grid, closure, squeeze, flux_effects
+        self.flow_x, self.area, self.work = flow_x, grid.area, Workspace(*shape)
+        self.ones, self.nothing, self.link_fields = np.ones(shape), np.zeros(shape), np.zeros((5, *shape))
+        self.vx = self.vz = 0.0
+        # whether oil flows in z; without links it does not, the flow by an axially moving surface included
+        self.axial = bool(grid.link_z.any())
+        self.lagging = False
+        # whether there is a cavity, and whether no unknown pressure is below the cavity's
+        self.ruptures = bool(np.isfinite(closure.cavity_pressure))
+        self.complementary = self.ruptures and not closure.clips
+        ruptures = RUPTURE if self.ruptures else FULL
+        self.system = s = FilmSystem(grid, OIL if closure.conserves_mass else CLIPPED if closure.clips else ruptures)
+        self.take_gaps(s.H, s.HF, s.H_t)
+        # whether the film's matrix is symmetric: factored as L D L^T, else as L U
+        self.symmetric = not (closure.conserves_mass or density is not None or yields)
+        self.line: RuptureLine | None = None
+        self.oil_line: OilLine | None = None
+        if closure.line_in_cells and closure.conserves_mass:
+            self.oil_line = s.oil_line = OilLine(shape)
+        elif closure.line_in_cells and (closure.clips or flow_x == 0.0):
+            s.count_in_cells(grid, closure.clips)
+        elif closure.line_in_cells:
+            self.line = s.rupture if self.symmetric else FilmLine(shape)
+            s.line = None if yields else self.line
+        # density over that at ambient pressure (n, m), of the last solution, and at the last factor its derivative to
+        # the unknown pressures; without a law it does not follow the pressure
+        self.law, self.density = density, None if density is None or yields else DensityField(density, shape)
+        self.rho: np.ndarray = self.ones
+        self.rho_P: np.ndarray | None = None
+        if self.density is not None:
+            self.rho, self.rho_P = self.density.rho, self.density.rho_P
+            s.take_density(self.density)
+        # Pa per unit of the scaled pressure
+        self.pressure_scale = 1.0
+        # derivative of what `keep` returned to the gap
+        self.follows = self.nothing
+
+    def take_gaps(self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray) -> None:
+        """Let these arrays (n, m) hold the gaps at vertices and on links, and the rate of the gap."""
+        self.H, self.HF, self.H_t = H, HF, H_t
+        self.system.H, self.system.HF, self.system.H_t = H, HF, H_t
+        self.flux = link_flux(HF, self.flux_effects) if self.flux_effects else None
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Scaled pressure of the last solution (n, m)."""
+        return self.system.pressure
+
+    @property
+    def fill(self) -> np.ndarray:
+        """Film fraction of the last solution (n, m); empty if the closure does not conserve mass."""
+        return self.system.fill
+
+    @property
+    def carried(self) -> np.ndarray:
+        """Fill that the Couette flows of the last solution take along from every vertex (n, m)."""
+        s = self.system
+        if not self.closure.conserves_mass:
+            return self.ones
+        return s.prompt * s.fill + s.coefficients.late if self.lagging or self.oil_line is not None else s.fill
+
+    @property
+    def content(self) -> np.ndarray:
+        """Scaled oil content fill H, or mass rho fill H, of the last solution (n, m)."""
+        content = self.system.fill * self.H
+        return content if self.law is None else self.rho * content
+
+    def forget(self) -> None:
+        """Drop the warm start; the next solution starts from a coarser grid where there is one."""
+        self.work.warm = self.work.known = False
+
+    def set_links(self) -> None:
+        """Conductances and Couette fluxes of the links, and the right-hand side."""
+        s, f = self.system, self.flux
+        if f is not None:
+            first, *others = self.flux_effects
+            first.start(f, self.H, self.vx, self.vz)
+            for effect in others:
+                effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
+        speeds, out = (self.vx, self.vz, self.flow_x), (s.kx, s.kz, s.fx, s.fz, s.b)
+        set_links(self.H, self.HF, self.H_t, self.squeeze, None if f is None else f.flow, *speeds, self.grid.mesh, *out)
+        self.grid.cut(s.kx, s.kz)
+
+    def inverse_instant(self) -> float:
+        """1 / a step that stands for none, 1/s, for the speeds and rates now stored."""
+        return (abs(self.vx) + abs(self.vz) + float(np.abs(self.H_t).max()) or 1.0) / INSTANT
+
+    def set_times(self, mass_old: np.ndarray | None, step: float) -> None:
+        """Set the rate of the storage of a film that conserves mass, and what was stored at the start of the step."""
+        s = self.system
+        if not self.closure.conserves_mass:
+            return
+        s.see_motion(mass_old is None, self.H_t, self.vx, self.vz)
+        s.instant, s.inverse_step = mass_old is not None and step <= 0.0, 0.0
+        if mass_old is not None:
+            s.inverse_step = self.inverse_instant() if s.instant else 1.0 / step
+            s.mass_old[:] = mass_old
+
+    def stored(self, mass: np.ndarray | None, step: float) -> tuple[np.ndarray, np.ndarray]:
+        """Void at the end of the last solution's step, and the oil that flows have brought, ``mass`` at its start."""
+        content = self.content
+        known = mass is not None and step > 0.0
+        return self.H - content, mass + content - self.system.mass_old if known else content
+
+    def lag(self, outflow: np.ndarray | None, step: float) -> None:
+        """Let the next solution's flows out of cavities lag, by what `outflow` (3, n, m) was at the start of its
+        step; None, or a step of 0: they do not."""
+        s = self.system
+        if outflow is not None and step > 0.0:
+            lag_void(outflow, step, s.fixed, s.prompt, s.late)
+            self.lagging = True
+        elif self.lagging:
+            s.prompt[:], s.late[:] = 1.0, 0.0
+            self.lagging = False
+
+    def outflow(self) -> np.ndarray:
+        """Fields (3, n, m) of the last solution that `exudyn_ehd.film.reynolds.lagging_void` needs in the next step.
+
+        Flows from the line inside its cells follow the pressure, whatever a vertex holds: it counts as full.
+        """
+        s, line = self.system, self.oil_line
+        fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
+        return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, fill)
+
+    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of
+        masses if compressible."""
+        if self.law is None:
+            return self.system.fx, self.system.fz, self.H_t
+        fill, rho = self.carried, self.rho
+        flow_x, flow_z = (
+            f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis)) * 0.5 * (rho + np.roll(rho, -1, axis))
+            for axis, f in enumerate((self.system.fx, self.system.fz))
+        )
+        return flow_x, flow_z, rho * self.H_t
+
+    def flow_pressures(self) -> tuple[np.ndarray, np.ndarray]:
+        """Pressures (n, m) that drive flows at prescribed vertices, and where the film is full, see `edge_flows`."""
+        return flow_pressures(self.system, self.work.active, self.closure.clips)
+
+    def link_derivatives(self) -> np.ndarray:
+        """Derivatives (5, n, m) of the links' flows, or mass flows, with respect to their gaps and the speeds, for the
+        last solution at fixed pressure."""
+        s, f, fill, couette = self.system, self.flux, None, None
+        if self.closure.conserves_mass:
+            fill, couette = self.carried, (s.fx, s.fz)
+        slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
+        rho, speeds = None if self.law is None else self.rho, (self.vx, self.vz, self.flow_x, self.grid.mesh)
+        P = s.linear_pressure
+        link_derivatives(P, self.H, self.HF, slopes, by_speed, fill, rho, couette, *speeds, self.link_fields)
+        if self.grid.cuts is not None:
+            flow = None if f is None else f.flow
+            add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)
+        if not self.axial:
+            self.link_fields[3] = 0.0
+        return self.link_fields
+
+    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed
+        pressure.
+
+        False where that has no pressure; there the law goes on in a line.
+        """
+        assert self.law is not None
+        scale = self.pressure_scale
+        inside = self.law.inverse(self.system.pressure * scale, p_out, ratio_out, ratio_P_out)
+        ratio_P_out *= scale
+        # pressures that were cut off inside the cells are others than those that the film was solved for
+        rho = self.law.density.ratio(np.minimum(p_out, self.law.largest_pressure)) if self.closure.clips else self.rho
+        np.divide(ratio_out, rho, out=p_P_out)
+        p_out /= scale
+        return inside
+
+    def flow_work(self, P: np.ndarray) -> np.ndarray:
+        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DensityLaw.flow_work`."""
+        assert self.law is not None
+        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale

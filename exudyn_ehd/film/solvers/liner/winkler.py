@@ -1,0 +1,231 @@
+"""Winkler elements of a liner: pressure on them, deflection, contact, and the gap that the film sees.
+
+The equations are in `exudyn_ehd.film.solvers.liner.film`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from exudyn_ehd.film.cavitation.states import OIL
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
+from exudyn_ehd.film.solvers.film import Film
+from exudyn_ehd.film.solvers.liner.elements import (
+    Gaps,
+    GapSlopes,
+    Load,
+    Rates,
+    drive_elements,
+    ends_open,
+    move_elements,
+    press_elements,
+    scale_load,
+    smallest_of,
+)
+from exudyn_ehd.film.solvers.liner.kernels import density_of_load
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter, LandContact
+
+
+class Liner(NamedTuple):
+    """Parts of a liner besides its compliance, None if absent.
+
+    Attributes
+    ----------
+    contact : Contact or None
+        Contact whose pressure acts on the liner, as the film's does.
+    limiter : GapLimiter or None
+        Limiter of the gap that the film sees; comes with a contact or with flow factors.
+    oil : PressureLaw or None
+        Law of a viscosity that follows the pressure; of a compressible film that of its density.
+    """
+
+    contact: Contact | None = None
+    limiter: GapLimiter | None = None
+    oil: PressureLaw | None = None
+
+
+class WinklerElements:
+    """Elements under a film, and the gaps that it sees, for given unknowns; parameters and attributes as for
+    `LinerFilm`."""
+
+    def __init__(self, film: Film, liner: Liner) -> None:
+        self.film, s, shape = film, film.system, film.grid.shape
+        # the unknown pressure
+        self.P = s.linear_pressure
+        self.contact, self.limiter, self.oil = liner
+        self.to_pressure: Callable[..., bool] | None = None if self.oil is None else self.oil.inverse
+        # density ratio and its derivative to the unknown; None where the oil is incompressible
+        self.densities: tuple[np.ndarray | None, np.ndarray | None] = (None, None)
+        if film.law is not None:
+            self.to_pressure = film.law.pressure
+            film.rho, film.rho_P = self.densities = np.ones(shape), np.zeros(shape)
+        self.beta, self.scale, self.smallest = 0.0, 1.0, 1.0
+        self.rates = Rates(0.0, 0.0, 0.0, 1.0)
+        self.delta_old: np.ndarray | None = None
+        self.deflection_old, self.deflection_inverse = np.zeros(shape), 0.0
+        self.rigid, self.rigid_slope, self.known = np.ones((3, *shape)), np.ones(shape), np.zeros((3, *shape))
+        self.rigid_film, s.mass_old, self.pseudo_old = self.known
+        self.true_gap, self.pressed = np.ones(shape), np.ones(shape)
+        self.contact_pressure, self.contact_slope, self.contact_G, self.bend = np.zeros((4, *shape))
+        # the part of a vertex that the contact presses on
+        self.touching = self.contact.land if isinstance(self.contact, LandContact) else 1.0
+        # whether contact_pressure, contact_G, bend and gap_slopes have their values for surfaces apart
+        self.apart = True
+        self.gap_fields, self.slope_fields, self.load_fields = (np.zeros((k, *shape)) for k in (5, 9, 4))
+        self.gaps, self.gap_slopes = Gaps(*self.gap_fields), GapSlopes(*self.slope_fields)
+        self.load = Load(*self.load_fields)
+        for field in (self.gaps.H, self.gaps.HF, self.gap_slopes.link, self.gap_slopes.rate_t, self.load.slope):
+            field[:] = 1.0
+        film.take_gaps(self.gaps.H, self.gaps.HF, self.gaps.rate)
+        # the cavity's pressure on the elements
+        self.cavity_load = 0.0
+
+    @property
+    def deflection(self) -> np.ndarray:
+        """Scaled deflection of the last solution (n, m)."""
+        return self.gaps.D.copy()
+
+    @property
+    def limited(self) -> bool:
+        """Return whether the film's gap differs from that of the surfaces."""
+        return self.limiter is not None and not self.apart
+
+    @property
+    def true_link(self) -> np.ndarray:
+        """Gap of the deformed surfaces on the links i -> i+1 (n, m)."""
+        return self.rigid[1] + 0.5 * (self.gaps.D + np.roll(self.gaps.D, -1, axis=0))
+
+    @property
+    def deflection_by_pressure(self) -> np.ndarray:
+        """dD/dP at the unknown pressures (n, m) of the last solution; zero elsewhere."""
+        return np.where(self.film.work.active, self.gap_slopes.D_P, 0.0)
+
+    @property
+    def contact_by_pressure(self) -> np.ndarray:
+        """d(contact pressure)/dP, Pa, at the unknown pressures (n, m) of the last solution; zero elsewhere."""
+        return self.touching * self.contact_G * self.scale * self.deflection_by_pressure
+
+    def smallest_gap(self) -> float:
+        """Smallest scaled gap of the deformed surfaces."""
+        return float(min(self.true_gap.min(), self.true_link.min()))
+
+    def stored_power(self) -> float:
+        """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
+        pressure = self.load.p + self.contact_pressure / self.scale
+        return float(np.sum(pressure * self.deflection_rate * self.film.grid.weight))
+
+    @property
+    def deflection_rate(self) -> np.ndarray:
+        """dD/dt (n, m)."""
+        return (self.gaps.D - self.deflection_old) * self.deflection_inverse
+
+    @property
+    def true_rate(self) -> np.ndarray:
+        """Rate of `true_gap` (n, m)."""
+        return self.rigid[2] + self.deflection_rate
+
+    def deform(self, gap: np.ndarray) -> np.ndarray:
+        """Deform the gap (n, m) at the start of a step, in place, to the one that the film saw; returns its
+        derivative."""
+        if self.delta_old is not None:
+            gap += self.delta_old
+        slope, link, rate, bend, face_slope = np.ones((5, *gap.shape))
+        if self.limiter is not None:
+            self.limiter.limit(gap, link, rate, slope, bend, face_slope)
+        return slope
+
+    def take_rigid(self) -> None:
+        """Store gaps and rate of the undeformed surfaces, and the film gap that a limiter makes of them."""
+        f, r = self.film, self.rigid
+        self.scale = f.pressure_scale
+        r[0], r[1] = f.H, f.HF
+        r[2] = f.H_t if f.squeeze else 0.0
+        self.rigid_film[:] = r[0]
+        if self.limiter is not None:
+            scratch = np.empty_like(r)
+            self.limiter.limit(self.rigid_film, f.HF, scratch[0], self.rigid_slope, scratch[1], scratch[2])
+
+    def set_rates(self, step: float) -> None:
+        """Set the rates of the storage, for the system's of a film that conserves mass."""
+        f, s = self.film, self.film.system
+        self.deflection_inverse = 0.0
+        if self.delta_old is not None:
+            self.deflection_old[:] = self.delta_old
+            if f.squeeze:
+                self.deflection_inverse = 1.0 / step if step > 0.0 else f.inverse_instant()
+        # the liner's own rate is part of the mass rho fill H
+        by_liner = 0.0 if s.kind == OIL else self.deflection_inverse
+        self.rates = Rates(s.inverse_step, by_liner, 0.0, float(s.inverse_step == 0.0 or s.instant))
+
+    def set_known_loads(self) -> bool:
+        """Set the elements' pressures at prescribed vertices and in the cavity; returns False if the oil's law has
+        none."""
+        s, fixed, P = self.film.system, self.film.grid.fixed, self.P
+        if self.film.closure.clips:
+            P[fixed] = s.pressure[fixed]
+        self.cavity_load = s.cavity_pressure if self.film.ruptures else 0.0
+        if self.to_pressure is None:
+            return True
+        known = np.append(P[fixed], self.cavity_load)[None] * self.scale
+        p, slope, bend = np.empty_like(known), np.empty_like(known), np.empty_like(known)
+        if not self.to_pressure(known, p, slope, bend):
+            return False
+        p /= self.scale
+        self.load.p[fixed] = p[0, :-1]
+        self.cavity_load = float(p[0, -1])
+        return True
+
+    def ends_open(self) -> bool:
+        """Return whether gaps of prescribed pressure are open; those with a contact always are."""
+        p = self.P if self.oil is None else self.load.p
+        return self.contact is not None or bool(ends_open(self.rigid, p, self.beta, self.film.grid.fixed))
+
+    def press(self, P: np.ndarray) -> bool:
+        """Set the pressure on every element for the film's unknown P; returns False if the oil would be solid."""
+        load, f = self.load, self.film
+        drive_elements(P, f.grid.fixed, f.system.cavity_pressure, f.closure.clips, self.load_fields)
+        if self.oil is None or self.to_pressure is None:
+            return True
+        if not self.to_pressure(load.drive * self.scale, load.p, load.slope, load.bend):
+            return False
+        if scale_load(self.load_fields, self.scale) > self.oil.largest_pressure:
+            return False
+        if f.law is not None:
+            table = f.law.kernel_table
+            density_of_load(self.load_fields, P, self.scale, table.a, table.b, *self.densities)
+        return True
+
+    def update_elements(self, P: np.ndarray) -> bool:
+        """Update the elements and the gaps that the film sees for its unknown P; returns False if the oil's law has no
+        such pressure."""
+        f, contact = self.film, self.contact
+        if not self.press(P):
+            return False
+        smallest = press_elements(
+            self.rigid, self.load_fields, self.beta, self.true_gap if contact is None else self.pressed
+        )
+        if contact is not None:
+            self._touch(contact, smallest)
+        on_links = move_elements(self.rigid, self.true_gap, self.deflection_old, self.rates.liner, self.gap_fields)
+        self.smallest = min(smallest, on_links)
+        if self.limiter is not None and (not self.apart or self.smallest < self.limiter.limits_below):
+            self.limiter.limit(f.H, f.HF, f.H_t, self.gap_slopes.rate_t, self.bend, self.gap_slopes.link)
+            self.apart = False
+            self.smallest = float(smallest_of(self.gap_fields))
+        return True
+
+    def _touch(self, contact: Contact, smallest: float) -> None:
+        """Set the gaps of elements on which a contact presses as well."""
+        if smallest < contact.presses_below:
+            contact.solve_gap(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
+            self.apart = False
+            return
+        self.true_gap[:] = self.pressed
+        if not self.apart:
+            for field in (self.contact_pressure, self.contact_G, self.bend):
+                field[:] = 0.0
+            self.gap_slopes.rate_t[:] = self.gap_slopes.link[:] = 1.0
+            self.apart = True
