@@ -155,7 +155,6 @@ SHARED = {
     "banded.substitution",
     "banded.workspace",
     "banded.ldl",
-    "sensitivity.vertex_stencil",
     "reynolds.gap",
     "grid",
     "loads",
