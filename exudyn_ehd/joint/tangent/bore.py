@@ -22,7 +22,7 @@ from __future__ import annotations
 import functools
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix, identity
+from scipy.sparse import csc_matrix, csr_matrix
 
 from exudyn_ehd.film.banded.many_sides import products
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
@@ -87,7 +87,7 @@ class Balances:
 
     def __init__(self, film: SolvedFilm) -> None:
         p, work = film.parts, film.solver.work
-        self.clearance = p.bearing.radial_clearance
+        self.clearance, self.size = p.bearing.radial_clearance, work.order.size
         self.places = work.order[: work.count]
         self.gaps = gap_derivatives(film)
         self.motion = np.empty((MOTION_SIZE, work.count))
@@ -98,26 +98,32 @@ class Balances:
             if film.solver.oil_line is not None:
                 self.beyond, self.line = line_matrices(self.line, p.grid.shape, work.count), None
 
-    def times(self, fields: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray | csr_matrix:
-        """``by_place d/d delta + by_rate d/d delta_t`` (count, r) of displacements delta (n m, r), SI units."""
+    def matrix(self, by_place: float, by_rate: float) -> csr_matrix:
+        """``by_place d/d delta + by_rate d/d delta_t`` (count, n m) of the bore's displacement delta, SI units."""
+        weight, vertices = self._stencil(by_place, by_rate)
+        starts = np.arange(0, weight.size + 1, 5)
+        near = csr_matrix((weight.ravel(), vertices.ravel(), starts), shape=(len(weight), self.size))
+        return near if self.beyond is None else near + self._beyond(by_place, by_rate)
+
+    def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray | csr_matrix:
+        """Return `matrix` times the shapes (n m, k) of a bore, dense or sparse as they are."""
+        if not isinstance(shapes, np.ndarray):
+            return self.matrix(by_place, by_rate) @ shapes
+        out = np.empty((len(self.places), shapes.shape[1]))
+        sum_rows(*self._stencil(by_place, by_rate), shapes, out)
+        return out if self.beyond is None else out + self._beyond(by_place, by_rate) @ shapes
+
+    def _stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
         count, place, rate = len(self.places), by_place / self.clearance, by_rate / self.clearance
         weight, vertices = np.empty((count, 5)), np.empty((count, 5), dtype=np.int64)
         gap_stencil(self.places, count, *self.gaps, place, rate, weight, vertices)
         if self.line is not None:
             weight[self.line.rows] += self.line.by[:6].T @ (place * _LINE_BY_GAP + rate * _LINE_BY_RATE)
-        found = weighted_rows(weight, vertices, fields)
-        return found if self.beyond is None else found + (place * self.beyond[0] + rate * self.beyond[1]) @ fields
+        return weight, vertices
 
-
-def weighted_rows(weight: np.ndarray, places: np.ndarray, fields: np.ndarray | csr_matrix) -> np.ndarray | csr_matrix:
-    """Sums (count, r) of the rows ``places`` of fields (., r) times ``weight``, both (count, s); dense or sparse."""
-    count, s = places.shape
-    if isinstance(fields, np.ndarray):
-        out = np.empty((count, fields.shape[1]))
-        sum_rows(weight, places, fields, out)
-        return out
-    starts = np.arange(0, s * count + 1, s)
-    return csr_matrix((weight.ravel(), places.ravel(), starts), shape=(count, fields.shape[0])) @ fields
+    def _beyond(self, by_place: float, by_rate: float) -> csr_matrix:
+        assert self.beyond is not None
+        return (by_place * self.beyond[0] + by_rate * self.beyond[1]) / self.clearance
 
 
 def pressure_tangent(
@@ -134,7 +140,7 @@ def pressure_tangent(
     film.solver.adjoint_columns(lam)
     whole = np.empty((lam.shape[1], size + k * len(combinations)))
     np.matmul(lam.T, -balances.motion.T, out=whole[:, :size])
-    (in_wrench, direct), vertices = wrench_weights(film, bore), identity(len(film.solver.work.order), format="csr")
+    in_wrench, direct = wrench_weights(film, bore)
     wrench = np.empty((6, whole.shape[1]))
     wrench[:, :size] = wrench_tangent(film, gradient=whole[:own, :size].copy())
     for i, (by_place, by_rate) in enumerate(combinations):
@@ -143,7 +149,7 @@ def pressure_tangent(
             products(lam, balances.times(bore.shapes, -by_place, -by_rate), whole[:, part])
         else:
             # few rows, which meet the many shapes last
-            whole[:, part] = lam.T @ balances.times(vertices, -by_place, -by_rate) @ bore.shapes
+            whole[:, part] = lam.T @ balances.matrix(-by_place, -by_rate) @ bore.shapes
         wrench[:, part] = in_wrench @ whole[:own, part] + by_place * direct[0] + by_rate * direct[1]
     whole[own:, :size] *= film.parts.motion_scale
     # the wrench takes the rows of the last integrals
@@ -158,8 +164,12 @@ def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray:
     weight = np.where(w.active, film.scales.force * film.grid.weight, 0.0)
     if film.oil.P_q is not None:
         weight *= film.oil.P_q
-    columns = weighted_rows(weight.ravel()[places, None], places[:, None], bore.shapes)
-    columns = columns if isinstance(columns, np.ndarray) else columns.toarray()
+    weights, S = weight.ravel()[places, None], bore.shapes
+    if isinstance(S, np.ndarray):
+        columns = np.empty((places.size, bore.size))
+        sum_rows(weights, places[:, None], S, columns)
+    else:
+        columns = S[places].multiply(weights).toarray()
     if film.solver.system.continued is not None:
         columns = pressures_by_unknowns(film)[places].T @ columns
     return np.asarray(columns)

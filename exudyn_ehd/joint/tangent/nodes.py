@@ -18,7 +18,7 @@ derivatives (`TractionChange`), and one adjoint solve each gives their gradients
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags, identity
+from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.film.banded.many_sides import add_product
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
@@ -302,8 +302,7 @@ class NodalProduct:
         self.wrench, self.wrench_place, self.wrench_rate = np.split(whole, (MOTION_SIZE, MOTION_SIZE + k), axis=1)
         self.film, self.bore, self.forces = film, bore, forces
         self.motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
-        vertices = identity(bore.shapes.shape[0], format="csr")
-        self.by_place, self.by_rate = balances.times(vertices, 1.0, 0.0), balances.times(vertices, 0.0, 1.0)
+        self.by_place, self.by_rate = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
         self.change = TractionChange(film, forces)
         self.columns = _pose_columns(film) * film.parts.pose_scale
 
