@@ -164,12 +164,11 @@ def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray:
     weight = np.where(w.active, film.scales.force * film.grid.weight, 0.0)
     if film.oil.P_q is not None:
         weight *= film.oil.P_q
-    weights, S = weight.ravel()[places, None], bore.shapes
-    if isinstance(S, np.ndarray):
+    if isinstance(bore.shapes, np.ndarray):
         columns = np.empty((places.size, bore.size))
-        sum_rows(weights, places[:, None], S, columns)
+        sum_rows(weight.ravel()[places, None], places[:, None], bore.shapes, columns)
     else:
-        columns = S[places].multiply(weights).toarray()
+        columns = (at_unknowns(film, weight).T @ bore.shapes).toarray()
     if film.solver.system.continued is not None:
         columns = pressures_by_unknowns(film)[places].T @ columns
     return np.asarray(columns)
