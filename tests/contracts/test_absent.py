@@ -151,7 +151,6 @@ SHARED = {
     "banded.substitution",
     "banded.workspace",
     "banded.ldl",
-    "sensitivity.vertex_stencil",
     "reynolds.gap",
     "grid",
     "differences",

@@ -9,5 +9,5 @@ ldl           symmetric matrices: blocked L D L^T
 assemble      matrices from the derivatives of flows between vertices
 lu            non-symmetric matrices, without pivoting
 substitution  a handful of right-hand sides, for both factors
-many_sides    dozens of them, as columns and tiles
+many_sides    dozens of them, as columns
 """

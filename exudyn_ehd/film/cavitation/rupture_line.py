@@ -262,14 +262,6 @@ def add_line_columns(line, at, out):
         out[9, r] += by[7, c]
 
 
-def add_line_stencil(line: LineGradients, by_gap: float, by_rate: float, weight: np.ndarray) -> None:
-    """Add the line's part to the weights (count, 5) of `exudyn_ehd.film.sensitivity.bore_stencil.gap_stencil`."""
-    by = line.by
-    half_on, half_back = 0.5 * by[0], 0.5 * by[1]
-    own = by_gap * (half_on + half_back + by[2]) + by_rate * by[5]
-    weight[line.rows] += np.column_stack((own, *(by_gap * part for part in (half_on, half_back, by[3], by[4]))))
-
-
 def line_matrices(line: LineGradients, shape: tuple[int, int], count: int) -> tuple[csr_matrix, csr_matrix]:
     """Derivatives (count, n m) to gap and rate at all vertices, of gaps whose links are the mean of their columns."""
     n, m = shape

@@ -2,7 +2,6 @@
 
 Module map
 ----------
-rigid           from the balances to the motion of a rigid journal, and the wrench
-vertex_stencil  a stencil by vertices in place of unknowns
-bore_stencil    from the adjoint film to the elastic bore
+rigid         from the balances to the motion of a rigid journal, and the wrench
+bore_stencil  from the adjoint film to the elastic bore
 """

@@ -60,44 +60,16 @@ def gap_stencil(order, count, d, slope, AR, AC, by_gap, by_rate, weight_out, pla
 
 
 @njit(cache=True, fastmath=_FAST)
-def put_rows(shapes, place, weight, first, out):
-    """Rows ``place`` of shapes (., k) times ``weight``, both (count,), to the columns from ``first`` on.
-
-    ``out``: tiles (tiles, >= count, width).
-    """
-    k, wide, done = shapes.shape[1], out.shape[2], 0
-    while done < k:
-        tile = (first + done) // wide
-        low = first + done - tile * wide
-        size = min(wide - low, k - done)
-        for r in range(place.size):
-            own, target, w = shapes[place[r], done : done + size], out[tile, r, low : low + size], weight[r]
-            for q in range(size):
-                target[q] = w * own[q]
-        done += size
-
-
-@njit(cache=True, fastmath=_FAST)
-def balance_change(motion, by_place, place, by_rate, change, moved, speed, out):
-    """Change of the balances at the unknowns.
-
-    Parameters
-    ----------
-    motion : (count, 10) array
-        Derivatives to the motion, whose change is ``change`` (10,).
-    by_place, place : (count, 5) arrays
-        Stencil for displacements ``moved`` (n m,).
-    by_rate : (count,) array
-        Derivative to the own vertex's rate ``speed`` (n m,).
-    out : (count,) array
-    """
-    for r in range(out.size):
-        total = by_rate[r] * speed[place[r, 0]]
-        for c in range(5):
-            total += by_place[r, c] * moved[place[r, c]]
-        for c in range(10):
-            total += motion[r, c] * change[c]
-        out[r] = total
+def sum_rows(weight, place, fields, out):
+    """Sums (count, r) of the rows ``place`` of fields (., r) times ``weight``, both (count, s)."""
+    for r in range(out.shape[0]):
+        target = out[r]
+        for q in range(target.size):
+            target[q] = 0.0
+        for c in range(place.shape[1]):
+            own, w = fields[place[r, c]], weight[r, c]
+            for q in range(target.size):
+                target[q] += w * own[q]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -185,38 +157,3 @@ def shear_fields(P, weight, width, z, couette, ends, factors, out):
         for i in range(n):
             for j in range(m):
                 out[r, i, j] = a * couette[i, j] + b * along_x[i, j] + c * along_z[i, j] + d * ends[i, j]
-
-
-@njit(cache=True, fastmath=_FAST)
-def spread_gradient(tiles, by_bore, weights, direct, scale, motion_scale, motion_out, bore_out):
-    """Rows of the tangent of an elastic film from the gradients of its r integrals and k loads of the bore.
-
-    Parameters
-    ----------
-    tiles : (tiles, 10, width) array
-        Minus gradients of integrals and loads to the motion; only those of the loads are wanted.
-    by_bore : (r + k, k) array
-        Gradients of integrals and loads to the bore.
-    weights, direct : (6, r), (6, k) arrays
-        Integrals in the wrench; gradient of the wrench to the bore at fixed pressure.
-    scale, motion_scale : float, (10,) array
-        Units of the loads and of the motion.
-    motion_out, bore_out : (k, 10), (6 + k, k) arrays
-        Gradients of the loads to the motion; of wrench and loads to the bore.
-    """
-    r, k, width = weights.shape[1], direct.shape[1], tiles.shape[2]
-    for a in range(k):
-        tile, q = (r + a) // width, (r + a) % width
-        own, target = by_bore[r + a], bore_out[6 + a]
-        for c in range(10):
-            motion_out[a, c] = -scale * motion_scale[c] * tiles[tile, c, q]
-        for b in range(k):
-            target[b] = scale * own[b]
-    for i in range(6):
-        for b in range(k):
-            bore_out[i, b] = direct[i, b]
-        for c in range(r):
-            w = weights[i, c]
-            if w != 0.0:
-                for b in range(k):
-                    bore_out[i, b] += w * by_bore[c, b]

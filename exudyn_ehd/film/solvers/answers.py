@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags_array
 
 from exudyn_ehd.film.banded.assemble import dense_band
-from exudyn_ehd.film.banded.many_sides import solve_in_tiles
+from exudyn_ehd.film.banded.many_sides import solve_columns
 from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.cavitation.oil_line import contract_fills
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line
@@ -60,13 +60,12 @@ class FilmAnswers(Film):
             solve_lu_transposed(*self._bands(), w.inv_diag, w.count, w.width, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
+        """Solve ``A^T lam = rhs`` for every column of rhs (count, k), in place: the faster way for dozens of them."""
         w = self.work
         self.factor_solution()
-        for tile in rhs:
-            self._couple(tile, True)
+        self._couple(rhs, True)
         upper, lower = (w.band, w.band) if self.symmetric else self._bands()[::-1]
-        solve_in_tiles(upper, lower, w.inv_diag, self.symmetric, w.count, w.width, rhs)
+        solve_columns(upper, lower, w.inv_diag, self.symmetric, w.count, w.width, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` for rhs (count,), in place."""

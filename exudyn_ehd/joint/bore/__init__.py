@@ -4,7 +4,6 @@ Module map
 ----------
 shapes       displacement of the bore on the film's grid
 transfer     between the film's vertices and the faces of the bore
-columns      products with the displacement of a nodal bore
 equilibrium  bore in balance with its film
 solid        the same for the mesh of a nodal bush, at any strain
 """

@@ -9,82 +9,64 @@ on the bush is its work on q.
 
 from __future__ import annotations
 
-from typing import Protocol
+import abc
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags_array
 
-from exudyn_ehd.film.banded.many_sides import TILE
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.bore_stencil import put_rows
-from exudyn_ehd.film.sensitivity.vertex_stencil import stencil_by_vertices, stencil_products
-from exudyn_ehd.joint.bore.columns import (
-    by_columns,
-    column_displacements,
-    column_loads,
-    project_columns,
-    put_sparse,
-)
 from exudyn_ehd.joint.bore.transfer import end_means, separate_means, vertex_means
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.modes import JournalModes
 from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.solid.modes.static import BoreModes
 
-# Singular values of the shapes' courses along z, over the largest one, that count as round-off.
-ROUNDING = 1e-13
 # Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
 TURNED = 1e-6
-_NO_PLACES, _NO_VALUES = np.zeros(0, dtype=np.int32), np.zeros(0)
 
 
-class Bore(Protocol):
-    """Flexible bore with k coordinates on an (n, m) film grid, as a bearing model uses it."""
+class Bore(abc.ABC):
+    """Flexible bore with k coordinates on an (n, m) film grid.
+
+    Attributes
+    ----------
+    grid : FilmGrid
+    shapes : array or csr matrix (n m, k)
+        S.
+    own : int
+        Number of the bore's coordinates; those of an elastic journal follow.
+    twist : (k,) array or None
+        Loads of a moment of 1 Nm of the film about the axis, 1/m; None: none.
+    """
+
+    def __init__(self, grid: FilmGrid, shapes: np.ndarray | csr_matrix, own: int) -> None:
+        self.grid, self.shapes, self.own = grid, shapes, own
+        self._onto = shapes.T if isinstance(shapes, np.ndarray) else shapes.T.tocsr()
+        self.twist: np.ndarray | None = None
 
     @property
     def size(self) -> int:
         """k, the number of coordinates."""
-
-    @property
-    def shapes(self) -> np.ndarray | csr_matrix:
-        """S (n m, k)."""
-
-    @property
-    def twist(self) -> np.ndarray | None:
-        """Loads (k,) of a moment of 1 Nm of the film about the axis, 1/m; None: none."""
+        return int(self.shapes.shape[1])
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m) for coordinates or rates q (k,)."""
+        return np.asarray(self.shapes @ q).reshape(self.grid.shape)
 
-    def load(self, field: np.ndarray) -> np.ndarray:
-        """S^T f (k,) for a field f (n, m)."""
-
-    def contract(self, fields: np.ndarray) -> np.ndarray:
-        """Every field's S^T f, (r, k) for (r, n, m)."""
-
-    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """S q and S q_t (n, m)."""
-
-    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at flat vertices ``places`` times ``weight``, both (count,), into tiles from column ``first`` on.
-
-        Tiles as made by `exudyn_ehd.film.banded.many_sides.make_tiles`.
-        """
-
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
-        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and the stencil B.
-
-        B is that of `exudyn_ehd.film.sensitivity.bore_stencil.gap_stencil`.
-
-        It has five weights at five flat vertices per row, both (count, 5), the first of which is the row's own.
-        """
+    def load(self, fields: np.ndarray) -> np.ndarray:
+        """S^T f (..., k) for every field f of (..., n, m)."""
+        return np.asarray((self._onto @ fields.reshape(*fields.shape[:-2], -1).T).T)
 
     def product(self, field: np.ndarray) -> np.ndarray:
-        """S^T diag(f) S (k, k)."""
+        """S^T diag(f) S (k, k) for a field f (n, m)."""
+        found = self._onto @ (diags_array(field.ravel()) @ self.shapes)
+        return found if isinstance(found, np.ndarray) else np.asarray(found.toarray())
 
-    def of_journal(self, q: np.ndarray) -> np.ndarray | float:
+    def of_journal(self, q: np.ndarray) -> np.ndarray:
         """Return the opening of the gap (n, m) by an elastic journal's part of q."""
+        return self.displacement(np.where(np.arange(self.size) < self.own, 0.0, q))
 
+    @abc.abstractmethod
     def end_shapes(self) -> np.ndarray:
         """Return S (2, k) for linear pressures that vanish at one end: the first at L/2, the second at -L/2.
 
@@ -103,12 +85,10 @@ def _centres(grid: FilmGrid) -> np.ndarray:
     return grid.z[-1] * np.array([-1.0, 1.0]) / 3.0
 
 
-class ModalBore:
+class ModalBore(Bore):
     """Bore that moves in modes, journal that does, or both: what either opens the gap by adds up.
 
-    ``S = [S_bore, S_journal]``, ``q`` likewise. Along z a bush moves as its mesh does, by a few polynomials (nine with
-    four quadratic elements). With a basis N of these courses every shape is N C at each column in theta, and fields
-    that meet N first meet C in place of S in the large products.
+    ``S = [S_bore, S_journal]``, ``q`` likewise.
 
     Parameters
     ----------
@@ -123,10 +103,6 @@ class ModalBore:
         Modal stiffness, N/m.
     modes : BoreModes, ReducedBore or None
     journal : JournalModes or None
-    own : int
-        Number of the bore's modes.
-    shapes : (n m, k) array
-        S.
     twist : (k,) array or None
         As in `Bore`. A reduced body gets the film's moment by the mean motion of its bore.
     """
@@ -134,15 +110,8 @@ class ModalBore:
     def __init__(
         self, modes: BoreModes | ReducedBore | None, grid: FilmGrid, journal: JournalModes | None = None
     ) -> None:
-        self.modes, self.grid, self.journal = modes, grid, journal
-        self.grid_shape = grid.shape
+        self.modes, self.journal = modes, journal
         self.stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
-        self.own = 0 if modes is None else modes.count
-        self.twist = None
-        if isinstance(modes, BoreModes):
-            turned = modes.twist(2.0 * float(grid.z[-1]) * grid.reference_length)
-            if np.abs(turned).max() * grid.reference_length > TURNED:
-                self.twist = np.concatenate((turned, np.zeros(self.size - self.own)))
         shapes = []
         if modes is not None:
             places = _on_lines(grid, grid.z)
@@ -150,60 +119,12 @@ class ModalBore:
         if journal is not None:
             theta, around, z, along, _ = separate_means(grid, journal.edges)
             shapes.append((around @ journal.around(theta))[:, None] * (along @ journal.along(z)))
-        whole = np.concatenate(shapes, axis=2) if len(shapes) > 1 else shapes[0]
-        self.shapes = np.ascontiguousarray(whole).reshape(-1, self.size)
-        self._along, coordinates = courses(whole)
-        # twice around: every run of columns is one block
-        self._courses = np.tile(coordinates, (2, 1))
-
-    @property
-    def size(self) -> int:
-        """k, the number of modes."""
-        return self.stiffness.size
-
-    def displacement(self, q: np.ndarray) -> np.ndarray:
-        """S q (n, m)."""
-        return self.displacements(q, q)[0]
-
-    def load(self, field: np.ndarray) -> np.ndarray:
-        """S^T f (k,)."""
-        return self.contract(field[None])[0]
-
-    def contract(self, fields: np.ndarray) -> np.ndarray:
-        """Every field's S^T f, (r, k)."""
-        found: np.ndarray = fields.reshape(len(fields), -1) @ self.shapes
-        return found
-
-    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """S q and S q_t (n, m)."""
-        return (self.shapes @ q).reshape(self.grid_shape), (self.shapes @ q_t).reshape(self.grid_shape)
-
-    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at vertices, weighted, into columns of out."""
-        put_rows(self.shapes, places, weight, first, out)
-
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
-        """X^T B S (size, k)."""
-        if not len(places):
-            return np.zeros((size, self.size))
-        out = np.empty((size, self.size))
-        first, by_vertex, row = stencil_by_vertices(weight, places[:, 0], self.grid_shape)
-        seen = np.empty((len(row), TILE))
-        # one tile after the other: a tile's fields stay in the cache until they are multiplied
-        for start in range(0, size, TILE):
-            rows = min(TILE, size - start)
-            stencil_products(by_vertex, row, fields[start // TILE], seen)
-            along = (self._along @ seen.reshape(-1, self.grid_shape[1], TILE)).reshape(-1, TILE)
-            # columns behind the last one are the first ones again
-            np.matmul(
-                along[:, :rows].T, self._courses[first * len(self._along) :][: len(along)], out[start : start + rows]
-            )
-        return out
-
-    def product(self, field: np.ndarray) -> np.ndarray:
-        """S^T diag(f) S (k, k)."""
-        found: np.ndarray = (self.shapes * field.reshape(-1, 1)).T @ self.shapes
-        return found
+        whole = np.concatenate(shapes, axis=2).reshape(-1, self.stiffness.size)
+        super().__init__(grid, whole, 0 if modes is None else modes.count)
+        if isinstance(modes, BoreModes):
+            turned = modes.twist(2.0 * float(grid.z[-1]) * grid.reference_length)
+            if np.abs(turned).max() * grid.reference_length > TURNED:
+                self.twist = np.concatenate((turned, np.zeros(self.size - self.own)))
 
     def end_shapes(self) -> np.ndarray:
         """S for linear pressures (2, k)."""
@@ -217,10 +138,6 @@ class ModalBore:
             parts.append((courses @ self.journal.along(z)) * (self.journal.waves == 0.0))
         return np.concatenate(parts, axis=1)
 
-    def of_journal(self, q: np.ndarray) -> np.ndarray:
-        """Return the opening of the gap (n, m) by the journal's part of q."""
-        return self.displacement(np.where(np.arange(self.size) < self.own, 0.0, q))
-
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return the opening of the gap by unit coordinates on the grid theta x z, m, (len(theta), len(z), k)."""
         return np.concatenate(
@@ -228,23 +145,7 @@ class ModalBore:
         )
 
 
-def courses(shapes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Basis along z and coordinates of shapes (n, m, k).
-
-    Returns
-    -------
-    basis : (u, m) array
-        N^T.
-    coordinates : (n u, k) array
-        C: shape = N C at every column in theta.
-    """
-    n, m, k = shapes.shape
-    directions, sizes, _ = np.linalg.svd(shapes.transpose(1, 0, 2).reshape(m, n * k), full_matrices=False)
-    basis = np.ascontiguousarray(directions[:, sizes > ROUNDING * sizes[0]].T)
-    return basis, (basis @ shapes).reshape(-1, k)
-
-
-class NodalBore:
+class NodalBore(Bore):
     """Bore that moves with the nodes of a mesh; q holds their x and y displacements in the joint frame, node by node.
 
     Parameters
@@ -257,78 +158,15 @@ class NodalBore:
     ----------
     values : csr matrix (n m, nodes)
         Of `exudyn_ehd.joint.bore.transfer.vertex_means`.
-    columns : Columns
-        The same with the normals.
-    shapes : csr matrix (n m, k)
-        S, k twice the number of nodes.
     """
 
+    shapes: csr_matrix
+
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
-        self.grid_shape, self.grid = grid.shape, grid
-        theta, _ = _on_lines(grid, grid.z)
         self.surface, self.values = surface, vertex_means(surface, grid)
-        self.columns = by_columns(self.values, grid)
-        self.shapes: csr_matrix = directed(self.values, np.stack([np.cos(theta), np.sin(theta)], axis=1), 2)
-        self.twist = None
-
-    @property
-    def size(self) -> int:
-        """k, two coordinates per node."""
-        return self.shapes.shape[1]
-
-    def displacement(self, q: np.ndarray) -> np.ndarray:
-        """S q (n, m)."""
-        return self.displacements(q, q)[0]
-
-    def load(self, field: np.ndarray) -> np.ndarray:
-        """S^T f (k,)."""
-        out = np.empty(self.size)
-        column_loads(self.columns, np.ascontiguousarray(field), out)
-        return out
-
-    def contract(self, fields: np.ndarray) -> np.ndarray:
-        """Every field's S^T f, (r, k)."""
-        return np.stack([self.load(field) for field in fields])
-
-    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """S q and S q_t (n, m)."""
-        place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
-        column_displacements(self.columns, q, q_t, place.reshape(-1), rate.reshape(-1))
-        return place, rate
-
-    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at vertices, weighted, into columns of out."""
-        rows = self.shapes[places]
-        put_sparse(rows.indptr, rows.indices, rows.data, weight, first, out)
-
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
-        """X^T B S (size, k)."""
-        out = np.empty((size, self.size))
-        self.project_on(weight, places, fields, (np.zeros(size + 1, dtype=np.int32), _NO_PLACES, _NO_VALUES), out)
-        return out
-
-    def project_on(
-        self,
-        weight: np.ndarray,
-        places: np.ndarray,
-        fields: np.ndarray,
-        direct: tuple[np.ndarray, np.ndarray, np.ndarray],
-        out: np.ndarray,
-    ) -> None:
-        """(X^T B + D) S (size, k) into out; D (size, n m) by indptr, indices and data of a CSR matrix."""
-        # without a film no row of the fields is read
-        stencil = stencil_by_vertices(weight, places[:, 0], self.grid_shape)
-        if not len(places):
-            stencil = 0, stencil[1][:0], stencil[2][:0]
-        project_columns(self.columns, stencil, fields, direct, out)
-
-    def of_journal(self, q: np.ndarray) -> float:
-        """Return zero: the journal is rigid."""
-        return 0.0
-
-    def product(self, field: np.ndarray) -> np.ndarray:
-        """S^T diag(f) S (k, k)."""
-        return (self.shapes.T.multiply(field.ravel()) @ self.shapes).toarray()
+        theta, _ = _on_lines(grid, grid.z)
+        shapes = directed(self.values, np.stack([np.cos(theta), np.sin(theta)], axis=1), 2)
+        super().__init__(grid, shapes, shapes.shape[1])
 
     def end_shapes(self) -> np.ndarray:
         """S for linear pressures (2, k)."""

@@ -244,7 +244,7 @@ class ElasticBearingModel(BearingModel):
         journal = super()._journal(motion)
         self._coordinates = journal.motion[MOTION_SIZE : MOTION_SIZE + k]
         scaled = journal.motion[MOTION_SIZE:] / self.bearing.radial_clearance
-        self._term.displacement, self._term.rate = self.bore.displacements(scaled[:k], scaled[k:])
+        self._term.displacement, self._term.rate = (self.bore.displacement(q) for q in (scaled[:k], scaled[k:]))
         return journal
 
     def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:

@@ -30,14 +30,14 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import block_diag
 from scipy.optimize import brentq
-from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags_array, issparse
+from scipy.sparse import csc_matrix, csr_matrix, diags_array
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.cavitation.rupture_line import line_matrices
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
-from exudyn_ehd.joint.tangent.bore import Balances, load_weights
+from exudyn_ehd.joint.tangent.bore import Balances, load_columns
 from exudyn_ehd.joint.tangent.line import line_by_motion, true_fills, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients, liner_weights
 
@@ -142,27 +142,14 @@ class FilmOnBoreResponse(FilmResponse):
 
     def _add_bore(self, film: SolvedFilm, bore: Bore) -> None:
         """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
-        balances, vertices = Balances(film), film.grid.x.size * film.grid.z.size
-        unknowns, force = np.arange(len(balances.places)), film.scales.force
+        balances, force = Balances(film), film.scales.force
 
-        def on_shapes(weight: np.ndarray, places: np.ndarray) -> np.ndarray:
-            """Rows (count, k) of S, weighted."""
-            rows = np.repeat(unknowns, weight.size // unknowns.size)
-            return sums(coo_matrix((weight.ravel(), (rows, places.ravel())), shape=(unknowns.size, vertices)).tocsr())
-
-        def sums(matrix: csr_matrix) -> np.ndarray:
-            """A matrix (count, n m) times S."""
-            found = matrix @ bore.shapes
-            return np.asarray(found.toarray() if issparse(found) else found)
-
-        loads = on_shapes(load_weights(film), balances.places)
-        self.rows = np.concatenate((self.rows, -loads), axis=1)
-        place, rate = (-force * on_shapes(*balances.stencil(*ends)).T for ends in ((1.0, 0.0), (0.0, 1.0)))
+        self.rows = np.concatenate((self.rows, -load_columns(film, bore) / force), axis=1)
+        place, rate = (-force * _dense(balances.times(bore.shapes, *ends)).T for ends in ((1.0, 0.0), (0.0, 1.0)))
         sway = content = np.zeros_like(rate)
-        if balances.beyond is not None and self.contents is not None:
-            parts = *balances.beyond, *line_matrices(self.contents, film.grid.shape, unknowns.size)
-            flows, rates, content, sway = (-force / balances.clearance * sums(part).T for part in parts)
-            place, rate = place + flows, rate + rates
+        if self.contents is not None:
+            parts = line_matrices(self.contents, film.grid.shape, len(balances.places))
+            content, sway = (-force / balances.clearance * _dense(part @ bore.shapes).T for part in parts)
         self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
         self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
 
@@ -186,6 +173,10 @@ class FilmOnBoreResponse(FilmResponse):
         self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
         self.stiffness = V[2:, 2:].T @ self.stiffness @ V[2:, 2:]
+
+
+def _dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
+    return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
 
 
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:

@@ -6,8 +6,8 @@ The bore's loads are more integrals S = sum w p of the film, with weights w = W 
 one sweep over the factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point
 stencil on S, since the gap on a link is the mean of its two columns; those to the motion are ten columns. What flows
 carry from the line of a mass-conserving film inside its cells follows the gaps around it, also in the balances of its
-neighbours: a sparse matrix on S besides. What an
-integrator asks for is one combination of the derivatives to q and q_t, which costs as much as one of them.
+neighbours: a sparse matrix on S besides. What an integrator asks for is one combination of the derivatives to q and
+q_t, which costs as much as one of them.
 
 What an iterative solver needs are products with vectors, one film solve each: with the balances r(u, m, delta,
 delta_t) = 0 of the film's unknowns u,
@@ -22,14 +22,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
-from exudyn_ehd.film.banded.many_sides import TILE, make_tiles
+from exudyn_ehd.film.banded.many_sides import products
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, add_line_stencil, line_matrices
-from exudyn_ehd.film.sensitivity.bore_stencil import (
-    gap_stencil,
-    shear_fields,
-    spread_gradient,
-)
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_matrices
+from exudyn_ehd.film.sensitivity.bore_stencil import gap_stencil, shear_fields, sum_rows
 from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.film.surfaces.contact_wrench import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
@@ -46,6 +42,11 @@ from exudyn_ehd.joint.tangent.wrench import (
 
 # Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
 _WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
+# Weights of a `gap_stencil` (columns) by the first six derivatives of `LineGradients` (rows), to the gap and its rate:
+# the gap on a link in theta is the mean of its two columns.
+_LINE_BY_GAP, _LINE_BY_RATE = np.zeros((6, 5)), np.zeros((6, 5))
+_LINE_BY_GAP[0, :2] = _LINE_BY_GAP[1, :3:2] = 0.5
+_LINE_BY_GAP[2, 0] = _LINE_BY_GAP[3, 3] = _LINE_BY_GAP[4, 4] = _LINE_BY_RATE[5, 0] = 1.0
 
 
 def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, float]) -> np.ndarray:
@@ -64,29 +65,11 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
         d/d motion, then the combinations.
     """
     k, size = bore.size, MOTION_SIZE
-    lam, count = _adjoints(film, bore, whole=True)
-    balances = Balances(film)
-    gradient = balances.gradient(lam)
-    out = np.empty((6 + k, size + k * len(combinations)))
-    out[:6, :size] = wrench_tangent(film, gradient=np.negative(gradient[0, :, :count].T, order="C"))
-    weights, direct = wrench_weights(film, bore)
-    for i, (by_gap, by_rate) in enumerate(combinations):
-        block = out[:, size + i * k : size + (i + 1) * k]
-        by_bore = balances.project(bore, lam, count + k, -by_gap, -by_rate)
-        spread_gradient(
-            gradient,
-            by_bore,
-            weights,
-            by_gap * direct[0] + by_rate * direct[1],
-            film.scales.force,
-            film.parts.motion_scale,
-            out[6:, :size],
-            block,
-        )
-        if film.pressing is not None:
-            contact = bore.product(contact_slope(film, film.pressing))
-            block[6:] += contact * (by_gap / film.parts.bearing.radial_clearance)
+    out = pressure_tangent(film, bore, Balances(film), load_columns(film, bore), *combinations)
     if film.pressing is not None:
+        contact = bore.product(contact_slope(film, film.pressing)) / film.parts.bearing.radial_clearance
+        for i, (by_place, _) in enumerate(combinations):
+            out[6:, size + i * k : size + (i + 1) * k] += by_place * contact
         out[6:, :4] -= _contact_columns(film, bore, film.pressing)
     if bore.twist is not None:
         out[6:] -= np.multiply.outer(bore.twist, out[5])
@@ -103,87 +86,96 @@ class Balances:
     motion : (10, count) array
         To (scaled pose, scaled rates, vx, vz).
     beyond : two csr matrices (count, n m) or None
-        To the scaled gap and its rate at all vertices, what `stencil` has no place for.
+        To the scaled gap and its rate at all vertices, from a line inside the cells of a mass-conserving film.
     """
 
     def __init__(self, film: SolvedFilm) -> None:
         p, work = film.parts, film.solver.work
-        self.clearance = p.bearing.radial_clearance
+        self.clearance, self.size = p.bearing.radial_clearance, work.order.size
         self.places = work.order[: work.count]
-        self.links, self.slope, self.by_rate, self.by_gap = gap_derivatives(film)
+        self.gaps = gap_derivatives(film)
         self.motion = np.empty((MOTION_SIZE, work.count))
-        motion_columns(
-            self.places, work.count, self.links, self.slope, self.by_rate, self.by_gap, p.grid.directions, self.motion
-        )
+        motion_columns(self.places, work.count, *self.gaps, p.grid.directions, self.motion)
         self.line, self.beyond = true_line(film), None
         if self.line is not None:
             add_line_columns(tuple(self.line), p.grid.directions, self.motion)
             if film.solver.oil_line is not None:
                 self.beyond, self.line = line_matrices(self.line, p.grid.shape, work.count), None
 
-    def gradient(self, lam: np.ndarray) -> np.ndarray:
-        """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""
-        return self.motion @ lam[:, : len(self.places)]
+    def matrix(self, by_place: float, by_rate: float) -> csr_matrix:
+        """``by_place d/d delta + by_rate d/d delta_t`` (count, n m) of the bore's displacement delta, SI units."""
+        weight, vertices = self._stencil(by_place, by_rate)
+        starts = np.arange(0, weight.size + 1, 5)
+        near = csr_matrix((weight.ravel(), vertices.ravel(), starts), shape=(len(weight), self.size))
+        return near if self.beyond is None else near + self._beyond(by_place, by_rate)
 
-    def stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
-        """Weights and flat vertices (count, 5) of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
-        count, c = len(self.places), self.clearance
+    def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray | csr_matrix:
+        """Return `matrix` times the shapes (n m, k) of a bore, dense or sparse as they are."""
+        if not isinstance(shapes, np.ndarray):
+            return self.matrix(by_place, by_rate) @ shapes
+        out = np.empty((len(self.places), shapes.shape[1]))
+        sum_rows(*self._stencil(by_place, by_rate), shapes, out)
+        return out if self.beyond is None else out + self._beyond(by_place, by_rate) @ shapes
+
+    def _stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
+        count, place, rate = len(self.places), by_place / self.clearance, by_rate / self.clearance
         weight, vertices = np.empty((count, 5)), np.empty((count, 5), dtype=np.int64)
-        gap_stencil(
-            self.places,
-            count,
-            self.links,
-            self.slope,
-            self.by_rate,
-            self.by_gap,
-            by_place / c,
-            by_rate / c,
-            weight,
-            vertices,
-        )
+        gap_stencil(self.places, count, *self.gaps, place, rate, weight, vertices)
         if self.line is not None:
-            add_line_stencil(self.line, by_place / c, by_rate / c, weight)
+            weight[self.line.rows] += self.line.by[:6].T @ (place * _LINE_BY_GAP + rate * _LINE_BY_RATE)
         return weight, vertices
 
-    def matrix(self, by_place: float, by_rate: float) -> csr_matrix | None:
-        """`stencil` of ``beyond``, (count, n m); None without."""
-        return None if self.beyond is None else (by_place * self.beyond[0] + by_rate * self.beyond[1]) / self.clearance
-
-    def project(self, bore: Bore, lam: np.ndarray, size: int, by_place: float, by_rate: float) -> np.ndarray:
-        """Products (size, k) of the first adjoints in tiles with `stencil` and `matrix` on the bore's shapes."""
-        found = bore.project(*self.stencil(by_place, by_rate), lam, size)
-        return found + self.project_beyond(bore, lam, size, by_place, by_rate)
-
-    def project_beyond(
-        self, bore: Bore, lam: np.ndarray, size: int, by_place: float, by_rate: float
-    ) -> np.ndarray | float:
-        """The part of `matrix` in `project`."""
-        matrix = self.matrix(by_place, by_rate)
-        if matrix is None:
-            return 0.0
-        # few balances and few vertices
-        rows, vertices = np.flatnonzero(np.diff(matrix.indptr)), np.unique(matrix.indices)
-        fields = np.concatenate(lam[:, rows], axis=1)[:, :size]
-        weights = matrix[rows][:, vertices].T @ fields
-        return np.asarray((bore.shapes[vertices].T @ weights).T)
+    def _beyond(self, by_place: float, by_rate: float) -> csr_matrix:
+        assert self.beyond is not None
+        return (by_place * self.beyond[0] + by_rate * self.beyond[1]) / self.clearance
 
 
-def wrench_rows(film: SolvedFilm, bore: Bore, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """d wrench / d motion (6, 10), / dq and / dq_t (6, k): the upper rows of `elastic_tangent` alone."""
-    lam, count = _adjoints(film, bore, whole=False)
-    weights, direct = wrench_weights(film, bore)
-    by_place, by_rate = (weights @ balances.project(bore, lam, count, *f) for f in ((-1.0, 0.0), (0.0, -1.0)))
-    wrench = wrench_tangent(film, gradient=np.negative(balances.gradient(lam)[0, :, :count].T, order="C"))
-    return wrench, by_place + direct[0], by_rate + direct[1]
+def pressure_tangent(
+    film: SolvedFilm, bore: Bore, balances: Balances, weights: np.ndarray, *combinations: tuple[float, float]
+) -> np.ndarray:
+    """Tangent (6 + r, 10 + k * combinations) of the wrench and of r sums over the film's unknowns.
+
+    ``weights`` (count, r): of the unknowns in the sums, whose derivatives at fixed unknowns are left out; the rest as
+    for `elastic_tangent`.
+    """
+    integrals, size, k = adjoint_rows(film), MOTION_SIZE, bore.size
+    own = len(integrals)
+    lam = np.concatenate((integrals.T, weights), axis=1)
+    film.solver.adjoint_columns(lam)
+    whole = np.empty((lam.shape[1], size + k * len(combinations)))
+    np.matmul(lam.T, -balances.motion.T, out=whole[:, :size])
+    in_wrench, direct = wrench_weights(film, bore)
+    wrench = np.empty((6, whole.shape[1]))
+    wrench[:, :size] = wrench_tangent(film, gradient=whole[:own, :size].copy())
+    for i, (by_place, by_rate) in enumerate(combinations):
+        part = slice(size + i * k, size + (i + 1) * k)
+        if weights.size:
+            products(lam, balances.times(bore.shapes, -by_place, -by_rate), whole[:, part])
+        else:
+            # few rows, which meet the many shapes last
+            whole[:, part] = lam.T @ balances.matrix(-by_place, -by_rate) @ bore.shapes
+        wrench[:, part] = in_wrench @ whole[:own, part] + by_place * direct[0] + by_rate * direct[1]
+    whole[own:, :size] *= film.parts.motion_scale
+    # the wrench takes the rows of the last integrals
+    whole[own - 6 : own] = wrench
+    return whole[own - 6 :]
 
 
-def load_weights(film: SolvedFilm) -> np.ndarray:
-    """Weight (count,) of the pressure at every unknown in the scaled pressure integral over the bore."""
+def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray:
+    """Weights (count, k) of the unknowns in the film's loads on the bore, one column per coordinate, N."""
     w = film.solver.work
-    weight = np.where(w.active, film.grid.weight, 0.0)
+    places = w.order[: w.count]
+    weight = np.where(w.active, film.scales.force * film.grid.weight, 0.0)
     if film.oil.P_q is not None:
         weight *= film.oil.P_q
-    return weight.ravel()[w.order[: w.count]]
+    if isinstance(bore.shapes, np.ndarray):
+        columns = np.empty((places.size, bore.size))
+        sum_rows(weight.ravel()[places, None], places[:, None], bore.shapes, columns)
+    else:
+        columns = (at_unknowns(film, weight).T @ bore.shapes).toarray()
+    if film.solver.system.continued is not None:
+        columns = pressures_by_unknowns(film)[places].T @ columns
+    return np.asarray(columns)
 
 
 def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
@@ -200,22 +192,6 @@ def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:
     w = film.solver.work
     places = w.order[: w.count]
     return csc_matrix((field.reshape(-1)[places], places, np.arange(w.count + 1)), shape=(field.size, w.count))
-
-
-def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, int]:
-    """Adjoint solutions as tiles: of integrals, if ``whole`` then of the k loads; and the number of integrals."""
-    integrals = adjoint_rows(film)
-    count, unknowns = integrals.shape
-    lam = make_tiles(integrals, count + (bore.size if whole else 0))
-    if whole:
-        places = film.solver.work.order[:unknowns]
-        bore.fill_rows(places, load_weights(film), count, lam)
-        if film.solver.system.continued is not None:
-            rows = np.concatenate(lam[:, :unknowns], axis=1)
-            rows[:, count:] = pressures_by_unknowns(film)[places].T @ rows[:, count:]
-            lam[:, :unknowns] = rows.reshape(unknowns, -1, TILE).transpose(1, 0, 2)
-    film.solver.adjoint_columns(lam)
-    return lam, count
 
 
 def wrench_weights(film: SolvedFilm, bore: Bore) -> tuple[np.ndarray, np.ndarray]:
@@ -244,7 +220,7 @@ def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
         by_gap, by_rate = line_matrices(weigh_fills(fills, shear_of_fills(film)), g.shape, 1)
         rows += factors[:, 0, None, None] * by_gap.toarray().reshape(g.shape)
         out[1, 2::3] = np.outer(factors[:, 0], bore.load(by_rate.toarray().reshape(g.shape)))
-    out[0, 2::3] = bore.contract(rows)
+    out[0, 2::3] = bore.load(rows)
     if film.pressing is not None:
         out[0] += _contact_wrench(film, bore, film.pressing)
     return out
@@ -272,7 +248,7 @@ def _contact_wrench(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarra
     motion, R = film.journal.motion, film.grid.reference_length
     out = np.zeros((6, bore.size))
     for law, by_gap in zip(f.friction, f.slope, strict=True):
-        rows = bore.contract(by_gap * film.grid.weight * film.grid.moments) / film.parts.bearing.radial_clearance
+        rows = bore.load(by_gap * film.grid.weight * film.grid.moments) / film.parts.bearing.radial_clearance
         out += contact_weights(motion, *law, R) @ rows
     return out
 
@@ -287,4 +263,4 @@ def _contact_columns(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarr
     """Minus the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
     slope, z, p = contact_slope(film, f), film.grid.z, film.parts
     cos, sin = slope * p.directions.cos_x[:, None], slope * p.directions.sin_x[:, None]
-    return bore.contract(np.stack([cos, sin, cos * z, sin * z])).T * p.pose_scale
+    return bore.load(np.stack([cos, sin, cos * z, sin * z])).T * p.pose_scale

@@ -18,14 +18,12 @@ derivatives (`TractionChange`), and one adjoint solve each gives their gradients
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags, vstack
+from scipy.sparse import csr_matrix, diags
 
-from exudyn_ehd.film.banded.many_sides import make_tiles
+from exudyn_ehd.film.banded.many_sides import add_product
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.bore_stencil import balance_change
 from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
-from exudyn_ehd.joint.bore.columns import column_forces, put_sparse
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import (
@@ -33,12 +31,10 @@ from exudyn_ehd.joint.tangent.bore import (
     at_unknowns,
     contact_slope,
     couette_field,
+    pressure_tangent,
     pressures_by_unknowns,
-    wrench_rows,
-    wrench_weights,
 )
 from exudyn_ehd.joint.tangent.line import line_by_motion, ratio_of, true_fills
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, wrench_tangent
 
 
 class BoreForces:
@@ -51,16 +47,16 @@ class BoreForces:
 
     def __init__(self, bore: NodalBore) -> None:
         self.bore, grid = bore, bore.grid
-        self.count = bore.values.shape[1]
+        self.count, self.onto_nodes = bore.values.shape[1], bore.values.T.tocsr()
         self.cos = np.repeat(np.cos(grid.x), grid.shape[1])
         self.sin = np.repeat(np.sin(grid.x), grid.shape[1])
         self.slope_x, self.slope_z = slope_matrices(grid)
 
     def nodal(self, forces: np.ndarray) -> np.ndarray:
         """Forces (nodes, 3) of vertex forces (3, n m), joint frame."""
-        out = np.empty((self.count, 3))
-        column_forces(self.bore.columns, forces, out)
-        return out
+        f, t, z = forces
+        along = np.stack((self.cos * f - self.sin * t, self.sin * f + self.cos * t, z), axis=1)
+        return np.asarray(self.onto_nodes @ along)
 
     def columns(self, forces: list[csr_matrix]) -> csr_matrix:
         """Transpose (r, 3 nodes) of E^T times three sparse maps (n m, r) to vertex forces."""
@@ -266,41 +262,27 @@ def nodal_tangent(film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> tupl
     nodal : (nodes, 3, 10 + 2 k) array
         d/d motion, then d/dq and d/dq_t.
     """
-    k, rows, size = bore.size, 3 * forces.count, MOTION_SIZE
-    change, balances = TractionChange(film, forces), Balances(film)
-    integrals = adjoint_rows(film)
-    count, unknowns = integrals.shape
-    lam = make_tiles(integrals, count + rows)
-    loads = forces.columns(change.by_unknown())
-    put_sparse(loads.indptr, loads.indices, loads.data, np.ones(unknowns), count, lam)
-    film.solver.adjoint_columns(lam)
-    gradient = -balances.gradient(lam).transpose(0, 2, 1).reshape(-1, size)
-    wrench, whole = np.empty((6, size + 2 * k)), np.empty((count + rows, size + 2 * k))
-    nodal = whole[count:]
-    wrench[:, :size] = wrench_tangent(film, gradient=gradient[:count])
-    nodal[:, :size] = gradient[count : count + rows] * film.parts.motion_scale + _by_motion(film, forces, change)
-    weights, direct = wrench_weights(film, bore)
-    gaps = [diags(field / film.parts.bearing.radial_clearance) for field in change.gap]
-    slope = diags(change.slope / film.parts.bearing.radial_clearance)
+    k, size, clearance = bore.size, MOTION_SIZE, film.parts.bearing.radial_clearance
+    change = TractionChange(film, forces)
+    loads = forces.columns(change.by_unknown()).toarray()
+    whole = pressure_tangent(film, bore, Balances(film), loads, (1.0, 0.0), (0.0, 1.0))
+    wrench, nodal = whole[:6], whole[6:]
+    nodal[:, :size] += _by_motion(film, forces, change)
+    gaps, slope = [diags(field / clearance) for field in change.gap], diags(change.slope / clearance)
     gaps[1:] = [gap + slope @ along for gap, along in zip(gaps[1:], (forces.slope_x, forces.slope_z), strict=True)]
-    nothing = csr_matrix((count, len(change.slope)))
-    at_once = vstack((nothing, forces.columns(gaps).T), format="csr")
-    following = csr_matrix(at_once.shape)
     if change.line is not None:
-        a, b = change.speeds / film.parts.bearing.radial_clearance
-        parts = [forces.columns([0.0 * f, a * f, b * f]).T for f in (change.line.gap, change.line.rate)]
-        at_once, following = (old + vstack((nothing, f)) for old, f in zip((at_once, following), parts, strict=True))
-    for i, (by_gap, by_rate, at_fixed) in enumerate(((1.0, 0.0, at_once), (0.0, 1.0, following))):
-        part = slice(size + i * k, size + (i + 1) * k)
-        bore.project_on(
-            *balances.stencil(-by_gap, -by_rate),
-            lam,
-            (at_fixed.indptr, at_fixed.indices, at_fixed.data),
-            whole[:, part],
-        )
-        whole[:, part] += balances.project_beyond(bore, lam, count + rows, -by_gap, -by_rate)
-        wrench[:, part] = weights @ whole[:count, part] + direct[i]
+        a, b = change.speeds / clearance
+        gaps[1:] = [gap + speed * change.line.gap for gap, speed in zip(gaps[1:], (a, b), strict=True)]
+        rates = [0.0 * change.line.rate, a * change.line.rate, b * change.line.rate]
+        _add_through(bore, forces.columns(rates), nodal[:, size + k :])
+    _add_through(bore, forces.columns(gaps), nodal[:, size : size + k])
     return wrench, nodal.reshape(forces.count, 3, -1)
+
+
+def _add_through(bore: NodalBore, columns: csr_matrix, out: np.ndarray) -> None:
+    """Add the derivatives to the bore's coordinates to ``out`` (r, k), of those (n m, r) to its displacement."""
+    by_vertex, S = columns.T.tocsr(), bore.shapes
+    add_product((by_vertex.indptr, by_vertex.indices, by_vertex.data), (S.indptr, S.indices, S.data), out)
 
 
 class NodalProduct:
@@ -315,15 +297,13 @@ class NodalProduct:
     """
 
     def __init__(self, film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> None:
-        self.film, self.bore = film, bore
-        balances = Balances(film)
-        self.wrench, self.wrench_place, self.wrench_rate = wrench_rows(film, bore, balances)
+        k, balances, none = bore.size, Balances(film), np.empty((film.solver.work.count, 0))
+        whole = pressure_tangent(film, bore, balances, none, (1.0, 0.0), (0.0, 1.0))
+        self.wrench, self.wrench_place, self.wrench_rate = np.split(whole, (MOTION_SIZE, MOTION_SIZE + k), axis=1)
+        self.film, self.bore, self.forces = film, bore, forces
         self.motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
-        self.by_place, self.vertices = balances.stencil(1.0, 0.0)
-        # the rate acts on a vertex's own storage alone
-        self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]
-        self.beyond = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
-        self.forces, self.change = forces, TractionChange(film, forces)
+        self.by_place, self.by_rate = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
+        self.change = TractionChange(film, forces)
         self.columns = _pose_columns(film) * film.parts.pose_scale
 
     def nodal_forces(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -334,40 +314,18 @@ class NodalProduct:
         RuntimeError
             If the model has evaluated another state since.
         """
-        moved, speed, residual = self._residual(motion, place, rate)
-        p = self.film.parts
+        self.film.require_current()
+        moved, speed, p = self.bore.shapes @ place, self.bore.shapes @ rate, self.film.parts
+        unknowns = -(self.motion @ motion + self.by_place @ moved + self.by_rate @ speed)
+        self.film.solver.direct(unknowns)
         scaled = moved / p.bearing.radial_clearance
         gap, line = scaled - self.columns @ motion[:4], self.change.line
-        forces = self.change.vertex_forces(-residual, gap, scaled, motion[8:])
+        forces = self.change.vertex_forces(unknowns, gap, scaled, motion[8:])
         if line is not None:
             shear = line.gap @ scaled + line.rate @ (speed / p.bearing.radial_clearance)
             shear += (motion * p.motion_scale) @ line.motion
             forces[1:] += np.multiply.outer(self.change.speeds, shear)
         return self.forces.nodal(forces)
-
-    def _residual(
-        self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement (n m,) of the bore and its rate, m, m/s, and minus the change (count,) of the film's
-        unknowns."""
-        self.film.require_current()
-        moved, speed = (field.reshape(-1) for field in self.bore.displacements(place, rate))
-        residual = np.empty(len(self.vertices))
-        balance_change(
-            self.motion,
-            self.by_place,
-            self.vertices,
-            self.by_rate,
-            motion,
-            moved,
-            speed,
-            residual,
-        )
-        for matrix, field in zip(self.beyond, (moved, speed), strict=True):
-            if matrix is not None:
-                residual += matrix @ field
-        self.film.solver.direct(residual)
-        return moved, speed, residual
 
 
 def _pose_columns(film: SolvedFilm) -> np.ndarray:

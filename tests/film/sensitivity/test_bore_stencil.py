@@ -5,7 +5,6 @@ import numpy as np
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     gap_slopes,
     gap_stencil,
-    put_rows,
     transposed_slopes,
 )
 
@@ -46,14 +45,3 @@ def test_stencil_is_the_derivative_of_the_balances():
     gap_stencil(order, 20, d, slope, AR, AC, 0.0, 0.7, weight, place)
     got += np.sum(weight * H_t.ravel()[place], axis=1)
     np.testing.assert_allclose(got, balance.ravel()[order], rtol=1e-12, atol=1e-13)
-
-
-def test_rows_in_tiles():
-    rng = np.random.default_rng(2)
-    shapes, weight, place = rng.normal(size=(30, 6)), rng.normal(size=8), rng.integers(0, 30, 8)
-    for first, width in ((2, 9), (1, 3), (5, 4)):
-        tiles = np.zeros((3, 8, width))
-        put_rows(shapes, place, weight, first, tiles)
-        wide = tiles.transpose(1, 0, 2).reshape(8, -1)
-        np.testing.assert_allclose(wide[:, first : first + 6], shapes[place] * weight[:, None], rtol=1e-15)
-        assert not wide[:, :first].any() and not wide[:, first + 6 :].any()
