@@ -1,6 +1,6 @@
 """Sides on beams whose kinematics are known in closed form: geometrically exact beams, and cables.
 
-The frame on a cable that knows its position and slope only, with exact variations.
+The frame on a cable that knows its position and slope only, with exact variations: array kernels.
 
 Legend: S, Sx (3, n) maps from coordinates to the centreline r = S (q_ref + q) and its slope s = Sx (q_ref + q); t = s /
 |s|; d0 a fixed global unit vector, the director, normal to t in the reference configuration; d = d0 - (d0 t) t
@@ -8,39 +8,144 @@ normalised, b = t x d. The cable's frame is [t, d, b]: t is what the cable knows
 stays as close to d0 as t allows. rho joint point in this frame relative to the centreline [m]; w = A rho its lever arm;
 a_loc joint frame to cable frame.
 
-With tau = t d0, r = 1 - tau^2 and c = t x d0, the frame turns with omega = G ds/dt, where G = U P, U = skew(t) -
-tau / r t c^T and P = (I - t t^T) / |s|. A change ds of the slope changes G v by (M P + U N) ds, with x = P v,
-
-    M = -skew(x) - (1 + tau^2) / r^2 (c x) t d0^T - tau / r ((c x) I + t (d0 x x)^T),
-    N = -(((t v) I + t v^T) P + x t^T) / |s|,
-
-and the product a G v of a fixed vector a by ds H v, with b = U^T a,
-
-    H = P (-skew(a) - (a t) (1 + tau^2) / r^2 d0 c^T - tau / r (a c^T + (a t) skew(d0))) P
-        - (P b t^T + (b t) P + t (P b)^T) / |s|.
+With tau = t d0 and c = t x d0, the frame turns with omega = G ds/dt, G = (skew(t) - tau / (1 - tau^2) t c^T) (I - t
+t^T) / |s|.
 """
 
 from __future__ import annotations
 
 import exudyn as exu
 import numpy as np
+from numba import njit
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.rigid_nodes import cross, dot
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
-_UNIT = np.eye(3)
 LARGEST_TURN = 0.9
 """|tau| from which the roll is undefined: the cable has turned by some 64 degrees towards its director."""
 
 
-def slope_rotation(s: np.ndarray, d0: np.ndarray) -> np.ndarray:
+@njit(cache=True)
+def _outer_add(a, b, factor, out):
+    for i in range(3):
+        for j in range(3):
+            out[i, j] += factor * a[i] * b[j]
+
+
+@njit(cache=True)
+def _skew_add(a, out):
+    out[0, 1] -= a[2]
+    out[0, 2] += a[1]
+    out[1, 0] += a[2]
+    out[1, 2] -= a[0]
+    out[2, 0] -= a[1]
+    out[2, 1] += a[0]
+
+
+@njit(cache=True)
+def _roll_map(t, d0):
+    """U (3, 3) = skew(t) - tau / (1 - tau^2) t c^T with omega = U dt/dt."""
+    tau = dot(t, d0)
+    u = np.zeros((3, 3))
+    _skew_add(t, u)
+    _outer_add(t, cross(t, d0), -tau / (1.0 - tau * tau), u)
+    return u
+
+
+@njit(cache=True)
+def _direction_map(t, length):
+    """P (3, 3) = (I - t t^T) / |s| with dt = P ds."""
+    p = np.eye(3) / length
+    _outer_add(t, t, -1.0 / length, p)
+    return p
+
+
+@njit(cache=True)
+def slope_rotation(s, d0):
     """Frame (3, 3) of a cable with slope s."""
-    t = s / np.sqrt(s @ s)
-    d = d0 - (d0 @ t) * t
-    d = d / np.sqrt(d @ d)
-    return np.column_stack((t, d, skew(t) @ d))
+    t = s / np.sqrt(dot(s, s))
+    d = d0 - dot(d0, t) * t
+    d /= np.sqrt(dot(d, d))
+    a = np.empty((3, 3))
+    c = cross(t, d)
+    for i in range(3):
+        a[i, 0], a[i, 1], a[i, 2] = t[i], d[i], c[i]
+    return a
+
+
+@njit(cache=True)
+def slope_frame(S, Sx, q, q_t, d0, rho, a_loc, frame_out, jac_out):
+    """Fill frame (3, 6) and Jp, Jr at total coordinates ``q`` (n,) and rates; nan where the roll is undefined."""
+    s, s_t = Sx @ q, Sx @ q_t
+    length = np.sqrt(dot(s, s))
+    if not (length > 0.0 and abs(dot(s, d0)) < LARGEST_TURN * length):
+        frame_out[:] = np.nan
+        return
+    t = s / length
+    a = slope_rotation(s, d0)
+    G = _roll_map(t, d0) @ _direction_map(t, length)
+    w = a @ rho
+    omega = G @ s_t
+    axes, place, speed, turn = a @ a_loc, S @ q, S @ q_t, G @ Sx
+    spun = cross(omega, w)
+    for i in range(3):
+        for j in range(3):
+            frame_out[i, j] = axes[i, j]
+        frame_out[i, 3], frame_out[i, 4], frame_out[i, 5] = place[i] + w[i], speed[i] + spun[i], omega[i]
+    for k in range(q.size):
+        arm = cross(turn[:, k].copy(), w)
+        for i in range(3):
+            jac_out[0, i, k], jac_out[1, i, k] = S[i, k] + arm[i], turn[i, k]
+
+
+@njit(cache=True)
+def _map_change(t, length, d0, ds):
+    """Change (3, 3) of G for a change ds of the slope."""
+    U, P = _roll_map(t, d0), _direction_map(t, length)
+    dt = P @ ds
+    tau, c = dot(t, d0), cross(t, d0)
+    r = 1.0 - tau * tau
+    dU, dP = np.zeros((3, 3)), np.zeros((3, 3))
+    _skew_add(dt, dU)
+    _outer_add(t, c, -(1.0 + tau * tau) / (r * r) * dot(dt, d0), dU)
+    _outer_add(dt, c, -tau / r, dU)
+    _outer_add(t, cross(dt, d0), -tau / r, dU)
+    _outer_add(dt, t, -1.0 / length, dP)
+    _outer_add(t, dt, -1.0 / length, dP)
+    return dU @ P + U @ (dP - P * (dot(t, ds) / length))
+
+
+@njit(cache=True)
+def slope_variation(Sx, q, q_t, d0, rho, jac_out):
+    """Fill Vq, Wq at the state for which ``jac_out`` holds Jr."""
+    s, s_t = Sx @ q, Sx @ q_t
+    length = np.sqrt(dot(s, s))
+    t = s / length
+    w = slope_rotation(s, d0) @ rho
+    omega = jac_out[1] @ q_t
+    for k in range(q.size):
+        turn = jac_out[1, :, k].copy()
+        dw = _map_change(t, length, d0, Sx[:, k].copy()) @ s_t
+        turned, moved = cross(dw, w), cross(omega, cross(turn, w))
+        for i in range(3):
+            jac_out[2, i, k], jac_out[3, i, k] = turned[i] + moved[i], dw[i]
+
+
+@njit(cache=True)
+def slope_geometric(Sx, q, d0, rho, jac, force, moment, out):
+    """d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment; ``jac`` holds Jr."""
+    s = Sx @ q
+    length = np.sqrt(dot(s, s))
+    t = s / length
+    w = slope_rotation(s, d0) @ rho
+    total = moment + np.array(cross(w, force))
+    for b in range(q.size):
+        change = _map_change(t, length, d0, Sx[:, b].copy()).T @ total
+        arm = cross(cross(jac[1, :, b].copy(), w), force)
+        for a in range(q.size):
+            out[a, b] = dot(Sx[:, a], change) + dot(jac[1, :, a], arm)
 
 
 class BeamSide:
@@ -166,8 +271,8 @@ class SlopeSide:
         self.nodes = nodes
         self.reference = reference
         self.size = reference.size
-        self.place, self.slope, self.director = place, slope, director
-        self.across = skew(director)
+        self.place, self.slope = np.ascontiguousarray(place), np.ascontiguousarray(slope)
+        self.director = np.ascontiguousarray(director)
         own = slope_rotation(self.slope @ reference, self.director)
         self.rho = own.T @ (point - self.place @ reference)
         self.rotation = own.T @ rotation
@@ -177,47 +282,25 @@ class SlopeSide:
     def update(
         self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
     ) -> None:
-        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,); nan where the roll is undefined."""
-        total = self.reference + q
-        s = self.slope @ total
-        length = float(np.sqrt(s @ s))
-        if not (length > 0.0 and abs(s @ self.director) < LARGEST_TURN * length):
-            self.frame[:] = np.nan
-            return
-        self.length, self.tangent = length, s / length
-        t, cross, tau = self.tangent, skew(self.tangent), float(s @ self.director) / length
-        self.tau, self.normal = tau, cross @ self.director
-        self.by_tangent = cross - tau / (1.0 - tau**2) * t[:, None] * self.normal
-        self.by_slope = (_UNIT - t[:, None] * t) / length
-        root = np.sqrt(1.0 - tau**2)
-        axes = np.array((t, (self.director - tau * t) / root, self.normal / root)).T
-        lever = axes @ self.rho
-        self.arm = skew(lever)
-        self.jac[1] = self.by_tangent @ self.by_slope @ self.slope
-        self.jac[0] = self.place - self.arm @ self.jac[1]
-        self.frame[:, :3], self.frame[:, 3] = axes @ self.rotation, self.place @ total + lever
-        self.frame[:, 4:] = (self.jac[:2] @ q_t).T
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+        slope_frame(
+            self.place,
+            self.slope,
+            self.reference + q,
+            q_t,
+            self.director,
+            self.rho,
+            self.rotation,
+            self.frame,
+            self.jac,
+        )
 
     def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
-        t, tau, v = self.tangent, self.tau, self.slope @ q_t
-        x, r = self.by_slope @ v, 1.0 - tau**2
-        along = float(self.normal @ x)
-        M = -skew(x) - (1.0 + tau**2) / r**2 * along * t[:, None] * self.director
-        M -= tau / r * (along * _UNIT + t[:, None] * (self.across @ x))
-        N = ((t @ v) * _UNIT + t[:, None] * v) @ self.by_slope + x[:, None] * t
-        self.jac[3] = (M @ self.by_slope - self.by_tangent @ N / self.length) @ self.slope
-        self.jac[2] = -self.arm @ self.jac[3] - skew(self.frame[:, 5]) @ self.arm @ self.jac[1]
+        slope_variation(self.slope, self.reference + q, q_t, self.director, self.rho, self.jac)
 
     def geometric(
         self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
     ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        t, tau, total = self.tangent, self.tau, moment + self.arm @ force
-        r, along, pulled = 1.0 - tau**2, float(total @ t), total @ self.by_tangent
-        K = -skew(total) - along * (1.0 + tau**2) / r**2 * self.director[:, None] * self.normal
-        K -= tau / r * (total[:, None] * self.normal + along * self.across)
-        turned = self.by_slope @ pulled
-        H = turned[:, None] * t + (pulled @ t) * self.by_slope + t[:, None] * turned
-        H = self.by_slope @ K @ self.by_slope - H / self.length
-        out[:] = self.slope.T @ H.T @ self.slope + self.jac[1].T @ skew(force) @ self.arm @ self.jac[1]
+        slope_geometric(self.slope, self.reference + q, self.director, self.rho, self.jac, force, moment, out)

@@ -143,7 +143,6 @@ class FilmOnBoreResponse(FilmResponse):
     def _add_bore(self, film: SolvedFilm, bore: Bore) -> None:
         """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
         balances, force = Balances(film), film.scales.force
-
         self.rows = np.concatenate((self.rows, -load_columns(film, bore) / force), axis=1)
         place, rate = (-force * _dense(balances.times(bore.shapes, *ends)).T for ends in ((1.0, 0.0), (0.0, 1.0)))
         sway = content = np.zeros_like(rate)
