@@ -18,7 +18,6 @@ from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side,
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.failures import Failures
-from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.element.sensors import OUTPUTS, reader
@@ -99,7 +98,7 @@ class SphericalFilmElement(FilmElement):
         super().__init__(model, socket, ball, name)
         self.failures = SphericalFailures(name, model.bearing)
         self.steps.record = BallRecord(model.bearing)
-        self.outer = OuterLoad(self.sides, outer_load.BALL)
+        self.outer = outer_load.OuterLoad(self.sides, outer_load.BALL)
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion's `spherical.ROWS`."""

@@ -98,15 +98,17 @@ def journal_wrench(pose, integrals, couette, extra_theta, extra_z, ends, force, 
     return s_theta
 
 
-@njit(cache=True, fastmath=_FAST)
+# A flat loop as in `couette_integral`.
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def couette_gradient(H, weight, active, fixed, cavity_share, out):
     """dC/dH -> out (n, m)."""
-    n, m = H.shape
-    for i in range(n):
-        for j in range(m):
-            share = 1.0 if (active[i, j] or fixed[i, j]) else cavity_share
-            out[i, j] = -share * weight[i, j] / (H[i, j] * H[i, j])
-        for end in (0, m - 1):
+    h, w, free, known, by = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1), out.reshape(-1)
+    for c in range(h.size):
+        by[c] = -w[c] / (h[c] * h[c]) * (1.0 if free[c] | known[c] else cavity_share)
+    if cavity_share == 1.0:
+        return
+    for i in range(H.shape[0]):
+        for end in (0, H.shape[1] - 1):
             out[i, end] *= cavity_share if ends_cavity(active, fixed, i, end) else 1.0
 
 
