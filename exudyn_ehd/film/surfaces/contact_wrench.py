@@ -5,80 +5,102 @@ pressures do no work on the journal's spin, so that their torque about O is e x 
 against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
 """
 
-from __future__ import annotations
-
-import functools
 import math
 
 import numpy as np
+from numba import njit
 
-# Weights (6, 5) of the integrals in force and moment about O, lengths over R: of pressures on a centred journal, and of
-# tractions of -1 per pressure along theta and along z.
-_PRESSED, _ALONG, _ACROSS = np.zeros((3, 6, 5))
-_PRESSED[0, 0], _PRESSED[1, 1], _PRESSED[3, 3], _PRESSED[4, 2] = -1.0, -1.0, 1.0, -1.0
-_ALONG[0, 1], _ALONG[1, 0], _ALONG[3, 2], _ALONG[4, 3], _ALONG[5, 4] = 1.0, -1.0, 1.0, 1.0, -1.0
-_ACROSS[2, 4], _ACROSS[3, 1], _ACROSS[4, 0] = -1.0, -1.0, 1.0
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-def slip(motion: np.ndarray, R: float, transition: float) -> tuple[float, float, np.ndarray]:
+@njit(cache=True)
+def slip(motion, R, transition):
     """Regularised slip direction (theta, z) of a motion (10,), and its derivatives (2, 2) to (omega, w).
 
     ``transition``: v0, m/s.
     """
-    v, w = R * float(motion[8]), float(motion[9])
-    size = math.sqrt(v * v + w * w + transition**2)
-    a, b = v / size, w / size
-    return a, b, np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
+    v, w = R * motion[8], motion[9]
+    size = math.sqrt(v * v + w * w + transition * transition)
+    a, b, by = v / size, w / size, np.empty((2, 2))
+    by[0, 0], by[0, 1] = (1.0 - a * a) * R / size, -a * b / size
+    by[1, 0], by[1, 1] = -a * b * R / size, (1.0 - b * b) / size
+    return a, b, by
 
 
-def contact_integrals(P: np.ndarray, weight: np.ndarray, moments: np.ndarray) -> np.ndarray:
-    """Integrals (5,) of contact pressures (n, m) with the moments (5, n, m)."""
-    return moments.reshape(5, -1) @ (P * weight).ravel()
+@njit(cache=True)
+def _add_traction(a, b, R, weights):
+    """Add the weights (6, 5) of the integrals in the wrench of tractions of -a along theta and -b along z per
+    pressure."""
+    force, moment = R * R, R * R * R
+    weights[0, 1] += force * a
+    weights[1, 0] -= force * a
+    weights[2, 4] -= force * b
+    weights[3, 1] -= moment * b
+    weights[3, 2] += moment * a
+    weights[4, 0] += moment * b
+    weights[4, 3] += moment * a
+    weights[5, 4] -= moment * a
 
 
-def contact_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
+@njit(cache=True)
+def contact_weights(motion, friction, transition, R):
     """Weights (6, 5) of the integrals in the wrench about O of pressures and their Coulomb friction, N and Nm."""
-    return pressure_weights(motion, R) + friction_weights(motion, friction, transition, R)
-
-
-def pressure_weights(motion: np.ndarray, R: float) -> np.ndarray:
-    """`contact_weights` of the pressures alone."""
-    out, (x, y, bx, by) = _PRESSED.copy(), motion[:4].tolist()
-    out[5, :4] = y / R, -x / R, by, -bx
-    return _units(R) * out
-
-
-def friction_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
-    """`contact_weights` of the friction alone."""
+    out, force, moment = np.zeros((6, 5)), R * R, R * R * R
+    out[0, 0] = out[1, 1] = -force
+    out[3, 3], out[4, 2] = moment, -moment
+    out[5, 0], out[5, 1] = force * motion[1], -force * motion[0]
+    out[5, 2], out[5, 3] = moment * motion[3], -moment * motion[2]
     a, b, _ = slip(motion, R, transition)
-    return friction * _units(R) * (a * _ALONG + b * _ACROSS)
-
-
-def contact_tangent(
-    slope: np.ndarray,
-    moments: np.ndarray,
-    motion: np.ndarray,
-    pose_scale: np.ndarray,
-    friction: float,
-    transition: float,
-    R: float,
-    integrals: np.ndarray,
-) -> np.ndarray:
-    """Gradient (6, 10) of a contact's wrench to the motion.
-
-    ``slope`` (n, m): derivative of the pressure to the scaled gap times the integration weights.
-    """
-    out, flat = np.zeros((6, 10)), moments.reshape(5, -1)
-    by_pose = (flat * slope.ravel()) @ flat[:4].T * -pose_scale
-    out[:, :4] = contact_weights(motion, friction, transition, R) @ by_pose
-    sc, ss, szc, szs, _ = integrals.tolist()
-    out[5, :4] += R**2 * np.array([-ss, sc, -R * szs, R * szc])
-    by_slip = np.array((_ALONG @ integrals, _ACROSS @ integrals)).T
-    out[:, 8:] = friction * _units(R) * (by_slip @ slip(motion, R, transition)[2])
+    _add_traction(friction * a, friction * b, R, out)
     return out
 
 
-@functools.lru_cache(maxsize=16)
-def _units(R: float) -> np.ndarray:
-    """Force and moment (6, 1) of a unit pressure over scaled area and arm, m^2 and m^3."""
-    return np.array([R**2, R**2, R**2, R**3, R**3, R**3])[:, None]
+@njit(cache=True, fastmath=_FAST)
+def _integral(density, weight, moment):
+    total = 0.0
+    for c in range(density.size):
+        total += density[c] * weight[c] * moment[c]
+    return total
+
+
+@njit(cache=True)
+def add_contact(P, weight, moments, motion, friction, transition, R, integrals_out, friction_out, wrench):
+    """Set the integrals (5,) of a contact's pressures P (n, m), and add its wrench and that of its friction alone, both
+    (6,)."""
+    for k in range(5):
+        integrals_out[k] = _integral(P.reshape(-1), weight.reshape(-1), moments[k].reshape(-1))
+    whole, drag = contact_weights(motion, friction, transition, R), np.zeros((6, 5))
+    a, b, _ = slip(motion, R, transition)
+    _add_traction(friction * a, friction * b, R, drag)
+    for r in range(6):
+        for k in range(5):
+            wrench[r] += whole[r, k] * integrals_out[k]
+            friction_out[r] += drag[r, k] * integrals_out[k]
+
+
+@njit(cache=True)
+def add_contact_tangent(
+    slope, weight, moments, motion, pose_scale, friction, transition, R, integrals, tangent
+):  # fmt: skip
+    """Add the gradient of a contact's wrench to the motion to ``tangent`` (6, 10).
+
+    ``slope`` (n, m): derivative of the pressure to the scaled gap; ``integrals`` (5,): of `add_contact`.
+    """
+    weights, density = contact_weights(motion, friction, transition, R), slope * weight
+    for q in range(4):
+        for k in range(5):
+            change = -pose_scale[q] * _integral(density.reshape(-1), moments[q].reshape(-1), moments[k].reshape(-1))
+            for r in range(6):
+                tangent[r, q] += weights[r, k] * change
+    force, moment = R * R, R * R * R
+    tangent[5, 0] -= force * integrals[1]
+    tangent[5, 1] += force * integrals[0]
+    tangent[5, 2] -= moment * integrals[3]
+    tangent[5, 3] += moment * integrals[2]
+    by = slip(motion, R, transition)[2]
+    for q in range(2):
+        weights[:] = 0.0
+        _add_traction(friction * by[0, q], friction * by[1, q], R, weights)
+        for r in range(6):
+            for k in range(5):
+                tangent[r, 8 + q] += weights[r, k] * integrals[k]

@@ -9,7 +9,7 @@ import numpy as np
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
-from exudyn_ehd.film.surfaces.contact_wrench import contact_integrals, friction_weights, pressure_weights
+from exudyn_ehd.film.surfaces.contact_wrench import add_contact
 from exudyn_ehd.joint.seams import Effects, ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
@@ -150,7 +150,4 @@ def _add_contacts(
     """Add the contacts' pressures and friction to ``wrench`` (6,), their friction alone to ``friction_out`` (6,)."""
     g, motion, R = parts.grid, journal.motion, parts.grid.reference_length
     for k, (friction, transition) in enumerate(f.friction):
-        f.integrals[k] = contact_integrals(f.P[k], g.weight, g.moments)
-        friction_out += friction_weights(motion, friction, transition, R) @ f.integrals[k]
-        wrench += pressure_weights(motion, R) @ f.integrals[k]
-    wrench += friction_out
+        add_contact(f.P[k], g.weight, g.moments, motion, friction, transition, R, f.integrals[k], friction_out, wrench)

@@ -16,7 +16,7 @@ from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
-from exudyn_ehd.film.surfaces.contact_wrench import contact_tangent, contact_weights
+from exudyn_ehd.film.surfaces.contact_wrench import add_contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
 from exudyn_ehd.joint.tangent.line import (
@@ -290,8 +290,9 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
     p, g, motion = film.parts, film.grid, film.journal.motion
     for k, (friction, transition) in enumerate(f.friction):
         if f.integrals[k, 4] != 0.0:
-            out += contact_tangent(
-                f.slope[k] * g.weight,
+            add_contact_tangent(
+                f.slope[k],
+                g.weight,
                 g.moments,
                 motion,
                 p.pose_scale,
@@ -299,6 +300,7 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
                 transition,
                 g.reference_length,
                 f.integrals[k],
+                out,
             )
 
 

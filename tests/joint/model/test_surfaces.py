@@ -7,8 +7,8 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.surfaces.contact_wrench import (
-    contact_integrals,
-    contact_tangent,
+    add_contact,
+    add_contact_tangent,
     contact_weights,
 )
 from exudyn_ehd.joint.model.build import build_model
@@ -77,16 +77,24 @@ def test_contact_tangent_is_the_derivative_of_the_wrench(speed, friction):
     P, slope = rng.uniform(1e5, 1e6, grid.shape), -rng.uniform(1e5, 1e6, grid.shape)
     motion = at(0.98, 0.4, speed, axial=0.01, tilt=(1e-4, -5e-5))
 
-    def integrals(m):
-        gap = -np.tensordot((m - motion)[:4] * scale, grid.moments[:4], 1)
-        return contact_integrals(P + slope * gap, grid.weight, grid.moments)
+    def contact(m):
+        gap, found = -np.tensordot((m - motion)[:4] * scale, grid.moments[:4], 1), (np.empty(5), *np.zeros((2, 6)))
+        add_contact(P + slope * gap, grid.weight, grid.moments, m, friction, transition, R, *found)
+        return found
 
     def wrench(m):
-        return contact_weights(m, friction, transition, R) @ integrals(m)
+        return contact(m)[2]
 
-    found = contact_tangent(
-        slope * grid.weight, grid.moments, motion, scale, friction, transition, R, integrals(motion)
+    integrals, drag, whole = contact(motion)
+    np.testing.assert_allclose(contact_weights(motion, friction, transition, R) @ integrals, whole, rtol=1e-12)
+    np.testing.assert_allclose(
+        (contact_weights(motion, friction, transition, R) - contact_weights(motion, 0.0, transition, R)) @ integrals,
+        drag,
+        atol=1e-12 * np.abs(whole).max(),
     )
+    found = np.zeros((6, 10))
+    fields = slope, grid.weight, grid.moments
+    add_contact_tangent(*fields, motion, scale, friction, transition, R, integrals, found)
     steps = np.array([C, C, C / L, C / L, C, C, C / L, C / L, 1e-3 * transition / R, 1e-3 * transition])
     for k, d in enumerate(np.diag(1e-3 * steps)):
         difference = (wrench(motion + d) - wrench(motion - d)) / (2.0 * d[k])
