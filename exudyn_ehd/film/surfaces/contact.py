@@ -15,8 +15,9 @@ from numba import njit
 
 # Share of land below which a vertex lies inside an area: far above round-off, far below what an edge leaves.
 INSIDE = 1e-9
-# Of the gap on an elastic element: Newton steps at most, and the last one over the gap at which the contact begins.
-MOST_STEPS, LAST_STEP = 60, 1e-9
+# Of the gap on an elastic element: Newton steps at most, and the last one over the gap at which the contact begins. The
+# slope of the pressure is that before the last step.
+MOST_STEPS, LAST_STEP = 60, 1e-13
 
 
 class GapLimiter(Protocol):
@@ -52,8 +53,10 @@ class GapLimiter(Protocol):
         """
         slope_out[:], bend_out[:], face_slope_out[:] = 1.0, 0.0, 1.0
         self.film_gap(H, slope_out, bend_out)
-        bend_out *= H_t
-        H_t *= slope_out
+        # rates of a step that closes the gap may be infinite: its residual refuses it
+        with np.errstate(invalid="ignore"):
+            bend_out *= H_t
+            H_t *= slope_out
         self.film_gap(HF, face_slope_out, np.empty_like(HF))
 
 
@@ -182,6 +185,5 @@ def solve_contact_gap(X, compliance, scale, reach, first, step, knots, G, P_out,
                 g += change
                 if abs(change) <= LAST_STEP * reach:
                     break
-            # the error after the last step is of the order of its square
             p += p_h * change
         gap[k], P[k], slope[k] = g, p, p_h / scale
