@@ -6,6 +6,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.liner.continuation import failure
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
@@ -283,4 +284,4 @@ def test_status_of_films_that_are_not_found():
         solver = FilmSolver(GRID, closure, liner=Liner())
         e = solver.elements
         e.beta, e.rigid[0], e.cavity_load = 0.01, 0.1, cavity_load
-        assert solver._failure() is status
+        assert failure(e) is status

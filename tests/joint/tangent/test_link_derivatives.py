@@ -1,4 +1,4 @@
-"""The gradients of the balances against the way through fields, for every kind of film."""
+"""The gradients of the balances against the way through fields, for films that have both (not on liners)."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,6 @@ EFFECTS = {
         "lubricant": ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=2e-6, exponent=0.8))
     },
     "turbulent": {"turbulence": ehd.Hirs(onset=8.0, full=24.0, coefficient=2.0)},
-    "liner": {"bush": ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e10)},
     "density": {"lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())},
 }
 
