@@ -14,7 +14,7 @@ from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.reynolds.links import set_links
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, OilFields, Scales, SolvedFilm
 

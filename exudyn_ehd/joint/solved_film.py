@@ -28,8 +28,8 @@ from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.edge_flows import shear_share
-from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.supply.recess import RecessShear
 from exudyn_ehd.film.surfaces.contact import Contact
@@ -49,7 +49,7 @@ class History:
         Scaled gap less content (fill times gap / c) at the vertices (mass-conserving closures).
     mass : (n, m) array or None
         Scaled oil that the flows have brought there. Flows and mass balance to rounding; mass and content differ by
-        what `exudyn_ehd.film.solvers.linear.FilmSolver.keep` says. No film depends on it.
+        what `exudyn_ehd.film.solvers.solver.FilmSolver.keep` says. No film depends on it.
     outflow : (3, n, m) array or None
         Fields of `exudyn_ehd.film.reynolds.lagging_void.outflow_of` for the step (mass-conserving closures).
     wear : (n, m) array or None

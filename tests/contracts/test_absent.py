@@ -160,7 +160,7 @@ SHARED = {
     "solvers.answers",
     "solvers.film",
     "solvers.edge_flows",
-    "solvers.linear",
+    "solvers.solver",
     "reynolds.stepped_gap",
     "sensitivity.bore_stencil",
     "sensitivity.rigid",

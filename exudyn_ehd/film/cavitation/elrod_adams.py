@@ -7,7 +7,7 @@ Its balance is
 
 with the Poiseuille conductance k, the Couette flux f of a full film (gap on the link), the fill carried from upstream,
 which in a step is averaged over it (`exudyn_ehd.film.reynolds.lagging_void`), and ``kept`` by the film's history,
-`exudyn_ehd.film.solvers.linear.FilmSolver.keep`. Without a history the film is steady and the last term is
+`exudyn_ehd.film.solvers.solver.FilmSolver.keep`. Without a history the film is steady and the last term is
 ``area fill dH/dt``. For given sets the system is linear; `exudyn_ehd.film.cavitation.solve` finds them with it. Should
 it not, the film is approached through growing pseudo time steps, whose storage makes the matrices dominant enough.
 

@@ -4,7 +4,7 @@ Module map
 ----------
 film            arrays, links, oil and rupture line of one film
 answers         its matrix, derivatives and flows
-linear          its solver
+solver          its solution from the gaps
 liner           its part on an elastic liner, or with conductances that follow the pressure
 edge_flows      flows at prescribed vertices, where films end within a link
 impedance_map   fitted map for plain bearings

@@ -34,7 +34,7 @@ from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.status import FilmError, Status, require_count, require_number
 from exudyn_ehd.storage import Shapes, cached_arrays
 

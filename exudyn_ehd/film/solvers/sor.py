@@ -35,7 +35,7 @@ from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.status import Status, require_count, require_number
 
 LARGEST_SWEEPS = 20_000

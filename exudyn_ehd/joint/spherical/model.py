@@ -48,7 +48,7 @@ import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.edge_flows import shear_share
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing

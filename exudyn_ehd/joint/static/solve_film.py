@@ -13,7 +13,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.model.effects import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
 from exudyn_ehd.pictures.records import shown

@@ -11,7 +11,7 @@ from exudyn_ehd.film.cavitation.line_steps import prolong_set
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 
 
 def _random_gaps(solver, rng):

@@ -5,7 +5,7 @@ import numpy as np
 import exudyn_ehd as ehd
 from exudyn_ehd.film.cavitation.closures import SOLVERS
 from exudyn_ehd.film.cavitation.states import RUPTURE
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.status import Status
 
 

@@ -9,7 +9,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.reynolds.gap import rigid_gap
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, powers
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import Status

@@ -13,7 +13,7 @@ from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
-from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.model.build import build_model
 
 MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6

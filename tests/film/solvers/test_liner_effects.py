@@ -17,10 +17,10 @@ from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import film_slopes
-from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import Rates
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
 from exudyn_ehd.film.solvers.liner.winkler import Liner
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor, shear_flow_factor
