@@ -79,9 +79,7 @@ def add_contact(P, weight, moments, motion, friction, transition, R, integrals_o
 
 
 @njit(cache=True)
-def add_contact_tangent(
-    slope, weight, moments, motion, pose_scale, friction, transition, R, integrals, tangent
-):  # fmt: skip
+def add_contact_tangent(slope, weight, moments, motion, pose_scale, friction, transition, R, integrals, tangent):
     """Add the gradient of a contact's wrench to the motion to ``tangent`` (6, 10).
 
     ``slope`` (n, m): derivative of the pressure to the scaled gap; ``integrals`` (5,): of `add_contact`.
