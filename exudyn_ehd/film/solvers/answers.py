@@ -96,7 +96,11 @@ class FilmAnswers(Film):
         return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """Gradients of the adjoint functionals lam (k, n, m), to the gaps that the film sees."""
+        """Gradients of the adjoint functionals lam (k, n, m) to gaps, rates and speeds, between rigid surfaces.
+
+        Films on liners have `LinerFilm.motion_columns`.
+        """
+        assert self.elements is None or self.elements.beta == 0.0, "gradients of a liner: motion_columns"
         by_rate, by_gap = self.storage_weights()
         cell, face, speed = contract_links(lam, self.link_derivatives())
         cell -= lam * by_gap
