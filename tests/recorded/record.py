@@ -226,11 +226,11 @@ def records(kind):
 
 
 COLUMNS_OF = {"films": COLUMNS, "equilibria": EQUILIBRIUM, "runs": RUN}
-# Columns that count beside each other, as components of one vector or matrix.
+# Columns that count beside each other, as components of one vector or matrix, or as the two sums of one field, of which
+# one may vanish.
 KINDS_OF = {
-    "films": [
-        [p + n for n in group] for p in ("", "d1 ", "d2 ", "d3 ") for group in (LOADS[:3], LOADS[3:6], LOADS[6:])
-    ],
+    "films": [[p + n for n in group] for p in ("", "d1 ", "d2 ", "d3 ") for group in (LOADS[:3], LOADS[3:6], LOADS[6:])]
+    + [[f"{name} 1", f"{name} 2"] for name in FIELDS],
     "equilibria": [EQUILIBRIUM[:2], EQUILIBRIUM[2:6], EQUILIBRIUM[6:10], ["critical mass"], ["leakage"]],
     "runs": [RUN[1:3], RUN[3:5], RUN[6:9]],
 }
