@@ -143,20 +143,6 @@ class FilmGrid:
             kx *= self.cuts[0]
             kz *= self.cuts[1]
 
-    def coarser(self) -> FilmGrid | None:
-        """Grid with every second vertex, or None if it can't be halved; only used to guess active sets."""
-        n, m = self.shape
-        if n % 2 or m % 2 == 0 or n < 32 or m < 7:
-            return None
-        return _tensor_grid(
-            self.x[::2],
-            self.z[::2],
-            2.0 * self.width_x[::2],
-            self.link_x[::2] / 2.0,
-            self.reference_length,
-            self.fixed[::2, ::2],
-        )
-
 
 def _axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Control-volume widths (m,) and inverse distances (m-1,) of axial vertices z (m,)."""

@@ -52,7 +52,7 @@ def solve_plain(
         parts.motion_scale,
         known,
         (scales.force, scales.shear, g.reference_length, parts.half_length, s.flow_x, s.closure.cavity_shear),
-        (s.squeeze, work.known, line is not None),
+        (s.squeeze, line is not None),
         g.directions,
         g.mesh,
         g.weight,
@@ -65,7 +65,7 @@ def solve_plain(
     )
     if not found and steps == 0:
         return None, 0
-    work.warm = work.known = found
+    work.warm = found
     work.count, work.width, y.rupture.exact = count, width, False
     if not found:
         return None, steps
@@ -98,12 +98,11 @@ def solve_plain(
 def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, columns, work, out):
     """Returns (found, steps, count, width, smallest gap, integral of the Couette shear, s_theta).
 
-    ``kinds``: whether there is a squeeze, whether pressures are those of the film before, and whether the line lies
-    inside the cells; ``columns``: `ColumnLine` or None; ``out`` (18,): wrench, integrals of the pressure, scaled pose
-    and rates.
+    ``kinds``: whether there is a squeeze, and whether the line lies inside the cells; ``columns``: `ColumnLine` or
+    None; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
     force, shear, radius, half_length, flow_x, cavity_shear = sizes
-    squeeze, is_known, in_cells = kinds
+    squeeze, in_cells = kinds
     pc = known[2]
     vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
     kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[4]
@@ -120,7 +119,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
         P[i, 0], P[i, -1] = known[0], known[1]
     set_links(H, HF, H_t, squeeze, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
     forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
-    ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, is_known, line, active, factor, x, P)
+    ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, True, line, active, factor, x, P)
     if columns is not None:
         count = extend_film(columns, b, sets, pc, factor, count, P)
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)

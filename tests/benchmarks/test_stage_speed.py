@@ -6,7 +6,7 @@ import time
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.cavitation.closures import SOLVERS
+from exudyn_ehd.film.cavitation.closures import solve_sets
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.joint.model.build import build_model
@@ -49,7 +49,7 @@ def _stage_runs(grid):
     return {
         "gap": gap,
         "coefficients": coefficients,
-        "solve": lambda: SOLVERS[y.kind](y, s.work),
+        "solve": lambda: solve_sets(y, s.work),
         "evaluation": lambda: whole.evaluate(states[0]),
         "tangent": evaluation.tangent,
         "loads": lambda: film_loads(p, film.scales, w, film.oil, None, None, None),

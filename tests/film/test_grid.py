@@ -62,20 +62,6 @@ def test_bearing_grid_metric():
     assert bearing_grid(0.03, 0.06, 24, 6, open_ring=True).fixed[0].all()
 
 
-def test_halving_keeps_every_second_vertex():
-    g = bearing_grid(0.03, 0.06, 64, 8, open_ring=True)
-    half = g.coarser()
-    assert half.shape == (32, 5)
-    np.testing.assert_array_equal(half.x, g.x[::2])
-    np.testing.assert_array_equal(half.z, g.z[::2])
-    np.testing.assert_array_equal(half.fixed, g.fixed[::2, ::2])
-    assert half.width_z.sum() == pytest.approx(g.width_z.sum())
-    np.testing.assert_allclose(half.link_x * half.width_x, 1.0)
-    assert bearing_grid(0.03, 0.06, 31, 8).coarser() is None
-    assert bearing_grid(0.03, 0.06, 64, 7).coarser() is None
-    assert bearing_grid(0.03, 0.06, 16, 8).coarser() is None
-
-
 def test_slider_grid():
     g = slider_grid(0.1, 0.05, 10, 6)
     assert g.shape == (12, 7)

@@ -36,10 +36,9 @@ class Workspace:
     Attributes
     ----------
     active : (n, m) bool array
-        The active set of the last solution: the warm start of the next one.
-    known : bool
-        Whether unknowns and factor are the last solution's, too; of a film with its line in its cells, and of one that
-        conserves mass.
+        The active set of the last solution.
+    warm : bool
+        Whether the next solution starts from the last one.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -52,7 +51,7 @@ class Workspace:
         self.inv_diag = np.zeros(size)
         self.unknowns = np.zeros(size)
         self.active = np.zeros((n, m), dtype=np.bool_)
-        self.warm = self.known = False
+        self.warm = False
         self.count = 0
         self.width = 1
 

@@ -22,7 +22,7 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
 from exudyn_ehd.film.cavitation.pseudo_time import recover
 from exudyn_ehd.film.cavitation.solve import solve_system
-from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
+from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
 from exudyn_ehd.film.cavitation.system import FilmSystem
@@ -34,7 +34,7 @@ Placed = TypeVar("Placed", bound="Closure")
 
 
 class Closure(Protocol):
-    """Properties of a cavitation model that a film solver needs; its solution method is in `SOLVERS`."""
+    """Properties of a cavitation model that a film solver needs; its films are found by `solve_sets`."""
 
     @property
     def cavity_pressure(self) -> float: ...
@@ -160,74 +160,55 @@ class SwiftStieber:
         _check_closure(self)
 
 
-def _solve_free(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """The linear film of all vertices that are not prescribed, into ``system.linear_pressure``."""
-    np.logical_not(system.fixed, out=work.active)
-    if system.density is not None:
-        return _solve_dense(system, work)
-    links = system.kx, system.kz, system.b
-    ok, work.count, work.width = solve_linear(links, work.active, work.factor, work.unknowns, system.linear_pressure)
-    return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
-
-
-def _solve_clipped(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """`_solve_free`, then clipped into ``system.pressure``; ``work.active`` marks the unbroken film."""
-    outcome = _solve_free(system, work)
-    linear, known, pc = system.linear_pressure, system.fixed, system.cavity_pressure
-    clip_pressure(linear, known, pc, system.pressure, work.active)
-    if system.continued is not None:
-        mean_in_cells(linear, known, system.linked, pc, work.active, system.pressure)
+def solve_sets(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """Find a film whose coefficients do not follow its pressure, from the last one if ``work.warm``, else from a full
+    one; returns (status, linear solves)."""
+    s = system
+    if s.kind == OIL or s.density is not None:
+        outcome = _solve_by_newton(s, work)
+    elif s.kind == RUPTURE:
+        outcome = _solve_rupturing(s, work)
+    else:
+        outcome = _solve_linear(s, work)
+    if s.kind == CLIPPED:
+        linear, pc = s.linear_pressure, s.cavity_pressure
+        clip_pressure(linear, s.fixed, pc, s.pressure, work.active)
+        if s.continued is not None:
+            mean_in_cells(linear, s.fixed, s.linked, pc, work.active, s.pressure)
     return outcome
 
 
-def _solve_complementary(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Newton's method from ``work.active``, or from all free vertices if ``work.warm`` is False."""
-    if not work.warm:
-        np.logical_not(system.fixed, out=work.active)
-    if system.density is not None:
-        return _solve_dense(system, work)
-    work.warm, steps = solve_rupturing(system, system.rupture, work, system.line is not None)
-    if system.column_line is not None:
-        y, sets = system, (system.fixed, work.active)
-        size, pc = work.count, y.cavity_pressure
-        work.count = extend_film(y.column_line, y.b, sets, pc, work.factor, size, y.pressure)
-    return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
+def _solve_linear(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """Solve the linear film of all vertices that are not prescribed."""
+    np.logical_not(s.fixed, out=work.active)
+    links, P = (s.kx, s.kz, s.b), s.linear_pressure
+    ok, work.count, work.width = solve_linear(links, work.active, work.factor, work.unknowns, P)
+    return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
 
 
-def _solve_conserving(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Newton from the last film, or from ``work.active`` alone; cold starts are full."""
-    s, was_warm = system, work.warm
-    if not was_warm:
-        np.logical_not(s.fixed, out=work.active)
+def _solve_rupturing(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """Solve a film of Swift and Stieber, and continue it behind a line between its columns."""
+    ok, steps = solve_rupturing(s, s.rupture, work, s.line is not None)
+    if s.column_line is not None:
+        size, pc = work.count, s.cavity_pressure
+        work.count = extend_film(s.column_line, s.b, (s.fixed, work.active), pc, work.factor, size, s.pressure)
+    return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
+
+
+def _solve_by_newton(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """Solve a film that conserves mass or whose density follows the pressure; one that is not found from a full film
+    otherwise."""
+    was_warm, status = work.warm, Status.CONVERGED
     ok, steps = solve_system(s, work)
-    if not ok and was_warm:
-        # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
-        work.known = False
-        np.logical_not(s.fixed, out=work.active)
-        ok, count = solve_system(s, work)
-        steps += count
-    status = Status.CONVERGED
-    if not ok or (s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)):
+    if not ok:
+        status = Status.NOT_CONVERGED
+    elif s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure):
+        ok = False
+    if not (ok or was_warm):
         status, count = recover(s, work)
         steps += count
     work.warm = status is Status.CONVERGED
     return status, steps
-
-
-def _solve_dense(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """The film of an oil whose density follows the pressure, from the last one or from ``work.active``."""
-    was_known = work.known
-    work.warm, steps = solve_system(system, work)
-    status = Status.CONVERGED if work.warm else Status.NOT_CONVERGED
-    if not (work.warm or was_known):
-        status, count = recover(system, work)
-        steps += count
-        work.warm = status is Status.CONVERGED
-    return status, steps
-
-
-# By the kind of film, which the closure's properties say.
-SOLVERS = {FULL: _solve_free, CLIPPED: _solve_clipped, RUPTURE: _solve_complementary, OIL: _solve_conserving}
 
 
 def check_cavity_pressure(name: str, pressure: float) -> None:

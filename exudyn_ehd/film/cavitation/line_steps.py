@@ -163,17 +163,3 @@ def place_line(line, fixed, active, p):
                 own = np.sqrt(max(pressures[c], 0.0) / whole[c])
             s[c] = max(own, START)
             pressures[c] = whole[c] * s[c] * s[c]
-
-
-@njit(cache=True)
-def prolong_set(coarse, fixed, fine_out):
-    """Active set of a grid from that of every second vertex: active if a coarse vertex next to it is."""
-    n, m = fine_out.shape
-    nc = coarse.shape[0]
-    for i in range(n):
-        a = i // 2
-        b = (a + i % 2) % nc
-        for j in range(m):
-            c = j // 2
-            d = c + j % 2
-            fine_out[i, j] = (coarse[a, c] or coarse[a, d] or coarse[b, c] or coarse[b, d]) and not fixed[i, j]

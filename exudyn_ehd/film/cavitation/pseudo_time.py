@@ -11,7 +11,6 @@ import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.solve import base_of, solve_system
-from exudyn_ehd.film.cavitation.states import RUPTURE
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.status import Status
@@ -75,16 +74,14 @@ def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """
     density, steps = s.density, 0
     if density is not None:
-        work.known = False
-        if s.kind != RUPTURE or not work.warm:
-            np.logical_not(s.fixed, out=work.active)
+        work.warm = False
         scale, density.scale = density.scale, SOFTEST * density.scale
         ok, steps = solve_system(s, work)
         density.scale = scale
         beyond = ok and density.is_exhausted(s.linear_pressure)
         for crosses in (True, False) if ok else ():
             # the iteration oscillates about the end of the law, unless its steps stop there
-            work.known, density.crosses = True, crosses
+            work.warm, density.crosses = True, crosses
             ok, count = solve_system(s, work)
             steps += count
             if ok:
@@ -103,8 +100,7 @@ def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - base_of(s)), initial=0.0))
     rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
     mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
-    work.known = runs_dry = False
-    np.logical_not(s.fixed, out=work.active)
+    work.warm = runs_dry = False
 
     def attempt(extra: float) -> tuple[bool, int]:
         nonlocal runs_dry

@@ -279,11 +279,13 @@ def solve_film(links, since, pc, kind, oil, curve, in_cells, start, factor, x, f
 def solve_system(
     s: FilmSystem, work: Workspace, film: Coefficients | None = None, since: tuple[float, np.ndarray] | None = None
 ) -> tuple[bool, int]:
-    """Solve a system by `solve_film`, from its last film if ``work.known``, else from ``work.active``: (found, steps).
+    """Solve a system by `solve_film`, from its last film if ``work.warm``, else from a full one: (found, steps).
 
     ``film``, ``since``: coefficients and history that replace the system's.
     """
     oil = work.oil
+    if s.kind < RUPTURE or not work.warm:
+        np.logical_not(s.fixed, out=work.active)
     ok, steps, oil.exact, work.count, work.width = solve_film(
         (s.coefficients if film is None else film, s.late, s.b),
         (*((s.inverse_step, s.mass_old) if since is None else since), s.instant),
@@ -292,13 +294,13 @@ def solve_system(
         None if s.density is None else s.density.fields(s.floor),
         s.curve,
         s.in_cells,
-        (work.known, work.known and oil.factored, work.count, work.width),
+        (work.warm, work.warm and oil.factored, work.count, work.width),
         _buffers(work),
         work.unknowns,
         work.active,
         (oil.u, s.linear_pressure, s.fill),
     )
-    work.known = oil.factored = ok
+    work.warm = oil.factored = ok
     return ok, steps
 
 

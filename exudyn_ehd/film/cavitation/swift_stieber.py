@@ -29,7 +29,7 @@ from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 from exudyn_ehd.film.cavitation.solve import FAR, LEFT, REUSABLE
 from exudyn_ehd.film.cavitation.system import FilmSystem
 
-# Steps of a film, or one for each column if these are more: without a coarser grid a line may have as far to go.
+# Steps of a film, or one for each column if these are more: a line may have as far to go.
 MOST_STEPS = 100
 _NONE = np.int64(0)
 
@@ -113,16 +113,18 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
 
 
 def solve_rupturing(system: FilmSystem, line: RuptureLine, work: Workspace, in_cells: bool) -> tuple[bool, int]:
-    """`find_film` of a system, from ``work.active``, and from the last pressures if ``work.known``: (ok, steps)."""
+    """`find_film` of a system, from its last film if ``work.warm``, else from a full one: (ok, steps)."""
     y = system
     # the line lies where the flow leads
     forth = 1 if y.fx[-1, y.fx.shape[1] // 2] >= 0.0 else -1
-    work.known, steps, work.count, work.width = find_film(
-        (y.kx, y.kz, y.b), y.fixed, y.cavity_pressure, in_cells, forth, work.warm and work.known, line.block,
+    if not work.warm:
+        np.logical_not(y.fixed, out=work.active)
+    work.warm, steps, work.count, work.width = find_film(
+        (y.kx, y.kz, y.b), y.fixed, y.cavity_pressure, in_cells, forth, work.warm, line.block,
         work.active, work.factor, work.unknowns, y.pressure,
     )  # fmt: skip
     line.exact = False
-    return work.known, steps
+    return work.warm, steps
 
 
 def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace) -> None:

@@ -136,8 +136,8 @@ class Film:
         return content if self.law is None else self.rho * content
 
     def forget(self) -> None:
-        """Drop the warm start; the next solution starts from a coarser grid where there is one."""
-        self.work.warm = self.work.known = False
+        """Let the next solution start from a full film."""
+        self.work.warm = False
 
     def set_links(self) -> None:
         """Conductances and Couette fluxes of the links, and the right-hand side."""

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import SOLVERS, Closure
-from exudyn_ehd.film.cavitation.line_steps import prolong_set
+from exudyn_ehd.film.cavitation.closures import Closure, solve_sets
 from exudyn_ehd.film.cavitation.steady_oil import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
@@ -78,24 +77,13 @@ class FilmSolver(FilmAnswers):
         super().__init__(grid, closure, float(circumferential_pressure_flow), squeeze, flux_effects, density, yields)
         self.is_rigid = liner is None
         self.elements = LinerFilm(self, liner or Liner(oil=density)) if yields else None
-        self.coarse: FilmSolver | None = None
-        starts_coarse = self.is_rigid and self.complementary and not closure.conserves_mass
-        coarse = grid.coarser() if starts_coarse else None
-        if coarse is not None:
-            # of which the sets alone are asked for
-            self.coarse = FilmSolver(
-                coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
-            )
 
     def refresh_fixed(self) -> None:
-        """Hand a change of ``grid.fixed`` and of its cuts on to the film's parts and to the coarser grids."""
+        """Hand a change of ``grid.fixed`` and of its cuts on to the film's parts."""
         if self.elements is not None:
             self.elements.cut_links()
         if not self.symmetric:
             self.work.oil.factored = False
-        if self.coarse is not None:
-            self.coarse.grid.fixed[:] = self.grid.fixed[::2, ::2]
-            self.coarse.refresh_fixed()
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
@@ -146,40 +134,16 @@ class FilmSolver(FilmAnswers):
         if s.instant:
             s.mass_old *= 1.0 - self.H_t / (s.inverse_step * self.H)
         # where gaps close, cavities of another film may stay dry that fill up from a full one
-        warm = self.work.warm and not s.closes
-        status, steps = self._attempt(warm)
+        warm = self.work.warm = self.work.warm and not s.closes
+        status, steps = solve_sets(s, self.work)
         # beyond the law's range the density stays what it is at its end, which makes other films
         beyond = self.density is not None and self.density.is_exhausted(s.linear_pressure)
         if warm and (beyond or status is Status.NOT_CONVERGED):
             # a start from another state can mislead where the film itself is benign
-            status, more = self._attempt(False)
+            self.forget()
+            status, more = solve_sets(s, self.work)
             steps += more
         return status_of(s, status), steps
-
-    def _attempt(self, warm: bool) -> tuple[Status, int]:
-        """Find the sets, and the film in them, from the last ones if ``warm``."""
-        steps = 0
-        if not warm:
-            self.forget()
-            steps = self._guess_from_coarse()
-        status, more = SOLVERS[self.system.kind](self.system, self.work)
-        return status, steps + more
-
-    def _guess_from_coarse(self) -> int:
-        """Sets of a coarser grid's film, on which the way from the full film is short; returns its steps."""
-        coarse = self.coarse
-        if coarse is None or (self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any()):
-            return 0  # the coarser grid has lost the supply and would starve
-        coarse.H[:] = self.H[::2, ::2]
-        coarse.HF[:] = self.H[1::2, ::2]
-        coarse.H_t[:] = self.H_t[::2, ::2]
-        coarse.pressure[:] = self.pressure[::2, ::2]
-        coarse.forget()
-        status, steps = coarse.solve(self.vx, self.vz, self.system.cavity_pressure)
-        if status is Status.CONVERGED:
-            prolong_set(coarse.work.active, self.grid.fixed, self.work.active)
-            self.work.warm = True
-        return steps
 
     def _solve_yielding(self, e: LinerFilm, mass_old: np.ndarray | None, step: float) -> tuple[Status, int]:
         """Solve a film whose gaps or conductances follow its pressure."""

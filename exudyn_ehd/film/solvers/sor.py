@@ -115,7 +115,7 @@ class ClassicSolver(FilmSolver):
 
     def __init__(self, film: ClassicSOR, grid, closure, *, squeeze: bool) -> None:
         super().__init__(grid, closure, squeeze=squeeze)
-        self.coarse, self.symmetric = None, False
+        self.symmetric = False
         self.film = film
         self.step_x = float(grid.width_x[0])
         self.step_z = float(grid.z[1] - grid.z[0])

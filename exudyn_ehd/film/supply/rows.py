@@ -50,7 +50,7 @@ def supply_rows(
     if np.allclose(edges, -np.array(edges[::-1]), rtol=0.0, atol=MIRRORED * length):
         # parts of one size may have been given different numbers: halves that are alike get rows that are
         counts, middle = [max(pair) for pair in zip(counts, counts[::-1], strict=True)], len(counts) // 2
-    # an even number can be halved for a coarser grid
+    # an even number: films that are their own mirror image have a row in the middle
     counts[middle] += sum(counts) % 2
     return rows_between([z / radius for z in edges], counts, stretch)
 

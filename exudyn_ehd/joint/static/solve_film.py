@@ -162,7 +162,6 @@ def solve_film(
     known = [boundary, np.asarray(closure.cavity_pressure)]
     boundary, cavity = known if law is None else (law.transform(p) for p in known)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
-    solver.coarse = None
     status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), float(cavity) / scale, mass, step)
     pressure = solver.pressure * scale
     if law is not None and status is Status.CONVERGED:

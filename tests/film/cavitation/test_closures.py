@@ -7,7 +7,6 @@ import pytest
 
 from exudyn_ehd import FullSommerfeld, Gumbel, InputError, Status, SwiftStieber, bearing_grid
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.line_steps import prolong_set
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
@@ -76,17 +75,17 @@ def test_swift_stieber_solves_the_complementarity_problem(seed, open_ring, pc):
 
 @pytest.mark.parametrize("short", (False, True))
 def test_result_does_not_depend_on_the_start(short):
-    """Over random states: warm from the last state, cold from a coarse grid, from all and from no vertex."""
+    """Over random states: from the last state, from a full film, and from pressures at all, no and random vertices."""
     rng = np.random.default_rng(3)
     grid = bearing_grid(1.0, 2.0, 32, 8)
     warm, cold = (FilmSolver(grid, SwiftStieber(), circumferential_pressure_flow=not short) for _ in range(2))
     for _ in range(60):
         state = rng.bit_generator.state
         fields = []
-        for solver, start in ((warm, None), (cold, "coarse"), (cold, "all"), (cold, "none"), (cold, "random")):
+        for solver, start in ((warm, None), (cold, "cold"), (cold, "all"), (cold, "none"), (cold, "random")):
             rng.bit_generator.state = state
             _random_gaps(solver, rng)
-            if start == "coarse":
+            if start == "cold":
                 solver.forget()
             elif start is not None:
                 solver.work.warm = True
@@ -134,18 +133,6 @@ def test_a_singular_start_is_reported():
     ok, steps, _, _ = find_film((zero, zero, zero), fixed, 0.0, False, 1, False, line, active, w.factor, w.unknowns, P)
     assert not ok
     assert steps == 1
-
-
-def test_prolonged_set_covers_the_coarse_one():
-    rng = np.random.default_rng(4)
-    coarse = rng.random((8, 5)) < 0.3
-    fixed = np.zeros((16, 9), dtype=bool)
-    fixed[:, [0, -1]] = True
-    fine = np.empty((16, 9), dtype=bool)
-    prolong_set(coarse, fixed, fine)
-    for i, j in np.ndindex(16, 9):
-        near = [((i // 2 + a) % 8, j // 2 + b) for a in range(1 + i % 2) for b in range(1 + j % 2)]
-        assert fine[i, j] == (any(coarse[k] for k in near) and not fixed[i, j])
 
 
 @pytest.mark.parametrize("spec", (Gumbel, SwiftStieber))
