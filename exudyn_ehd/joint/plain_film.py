@@ -105,8 +105,8 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     squeeze, in_cells = kinds
     pc = known[2]
     vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
-    kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[4]
-    H, HF, H_t, P = fields[5], fields[6], fields[7], fields[8]
+    kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[10]
+    H, HF, H_t, P = fields[11], fields[12], fields[13], fields[14]
     (fixed, active), (factor, x) = sets, work
     for q in range(8):
         out[10 + q] = motion[q] * scale[q]

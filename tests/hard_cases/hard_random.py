@@ -221,7 +221,7 @@ def balance_error(model):
     y = s.system
     out = np.empty(g.shape)
     if closure.conserves_mass:
-        film_balance(y.pressure, y.fill, None, model.solver.terms, out)
+        film_balance(y.pressure, y.fill, None, y.terms, out)
     else:
         vertex_balance(y.linear_pressure, y.kx, y.kz, y.b, out)
     P, joins = y.linear_pressure, 0.0

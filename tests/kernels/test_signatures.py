@@ -6,12 +6,12 @@ import inspect
 import pytest
 from numba.core import types
 
-from exudyn_ehd.film.reynolds.links import Coefficients
+from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.kernels import ahead
 from exudyn_ehd.kernels.signatures import TABLE, find, read_types, table
 from tests.benchmarks.first_films import write_type
 
-f2 = types.Array(types.float64, 2, "C")
+f2, b2 = types.Array(types.float64, 2, "C"), types.Array(types.boolean, 2, "C")
 
 
 @pytest.mark.parametrize(
@@ -21,8 +21,8 @@ f2 = types.Array(types.float64, 2, "C")
         ("f2 i1A", (f2, types.Array(types.int64, 1, "A"))),
         ("(f2 f2) (f i)", (types.UniTuple(f2, 2), types.Tuple((types.float64, types.int64)))),
         (
-            f"film.reynolds.links:Coefficients({' '.join(['f2'] * 10)})",
-            (types.NamedUniTuple(f2, 10, Coefficients),),
+            f"film.reynolds.balance:FilmTerms({' '.join(['f2'] * 10)} b2)",
+            (types.NamedTuple((*[f2] * 10, b2), FilmTerms),),
         ),
     ],
 )

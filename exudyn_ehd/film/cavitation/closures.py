@@ -26,6 +26,7 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
 from exudyn_ehd.film.cavitation.system import FilmSystem
+from exudyn_ehd.film.reynolds.balance import store_content
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
 
 # Gauge pressure of the absolute vacuum, Pa, where the air presses most.
@@ -199,6 +200,7 @@ def _solve_by_newton(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve a film that conserves mass or whose density follows the pressure; one that is not found from a full film
     otherwise."""
     was_warm, status = work.warm, Status.CONVERGED
+    store_content(s.term_fields, s.H, s.H_t, s.inverse_step, s.mass_old, s.instant)
     ok, steps = solve_system(s, work)
     if not ok:
         status = Status.NOT_CONVERGED

@@ -39,7 +39,8 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line, line_gradients
 from exudyn_ehd.film.grid import Mesh
-from exudyn_ehd.film.reynolds.links import Coefficients, LinkFlux
+from exudyn_ehd.film.reynolds.balance import FilmTerms
+from exudyn_ehd.film.reynolds.links import LinkFlux
 
 # s from which on a vertex is full.
 FILLED = 0.25
@@ -100,21 +101,22 @@ class OilLine:
         Views of ``block``.
     s, rise : (n, m) arrays
         Views of ``fields``.
-    late : (n, m) array
-        ``late`` of `exudyn_ehd.film.reynolds.links.Coefficients`, reduced by the difference between the vertices' fill
-        and the one that flows carry.
     density : float
         Density in the cavity over that at ambient pressure.
     lift_by_speed : (m,) array
         Derivative to vx of the conductance that a liner adds to k.
     """
 
-    def __init__(self, shape: tuple[int, int]) -> None:
-        self.block = straight(shape)
+    def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
+        self.block = block
         self.fields = Curve(*self.block)
         self.s, self.rise = self.fields.s.reshape(shape), self.fields.rise.reshape(shape)
-        self.late = np.zeros(shape)
         self.density, self.lift_by_speed = 1.0, np.zeros(shape[1])
+
+    def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
+        """Set the curves from a film's terms and right-hand side b (n, m) at the cavity pressure."""
+        self.density = density
+        curve_terms(film, b, density, self.lift_by_speed * vx, self.fields)
 
     def gradients(
         self,
@@ -145,7 +147,7 @@ class OilLine:
         return out[0], out[1]
 
     def balance_gradients(
-        self, fills: tuple[LineGradients, LineGradients], film: Coefficients, store: np.ndarray, unknowns: np.ndarray
+        self, fills: tuple[LineGradients, LineGradients], film: FilmTerms, store: np.ndarray, unknowns: np.ndarray
     ) -> LineGradients:
         """Derivatives of the balances of the ``unknowns`` (count,), flat vertices, through the fills of `gradients`:
         one entry for every balance and vertex at the line. ``film`` and ``store``: of `FilmSolver.fill_weights`."""
@@ -157,8 +159,9 @@ class OilLine:
 
 
 @njit(cache=True)
-def curve_terms(film, b, curve):
-    """Set f, k, o and the fields that follow from them, for `Coefficients` and the right-hand side b (n, m)."""
+def curve_terms(film, b, density, lift, curve):
+    """Set f, k, o and the fields that follow from them, for `FilmTerms` and the right-hand side b (n, m) of oil of this
+    density over that at ambient pressure; ``lift`` (m,): what a liner adds to k."""
     n, m = b.shape
     along, f_x, f_z = film.kx.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
     rest, known = b.reshape(-1), film.fixed.reshape(-1)
@@ -169,8 +172,8 @@ def curve_terms(film, b, curve):
         out = max(f_x[c], 0.0) - min(f_x[prv], 0.0) + max(f_z[c], 0.0)  # nothing flows over the last row's links
         if c % m > 0:
             out -= min(f_z[c - 1], 0.0)
-        curve.out[c] = out
-        curve.k[c] = 0.5 * (along[prv] + along[c])
+        curve.out[c] = density * out
+        curve.k[c] = 0.5 * (along[prv] + along[c]) + lift[c % m]
         curve.f[c] = curve.whole[c] = curve.drop[c] = curve.bend[c] = 0.0
         if (
             -rest[c] > ROUNDING * out
@@ -180,10 +183,10 @@ def curve_terms(film, b, curve):
         ):
             share = rest[c] / out
             root = 1.0 / np.sqrt(1.0 + share * share)
-            curve.f[c] = -rest[c] * root
+            curve.f[c] = -density * rest[c] * root
             curve.bend[c] = root * root * root
             curve.whole[c] = 0.5 * curve.f[c] / curve.k[c]
-            curve.drop[c] = 0.5 * curve.f[c] / out
+            curve.drop[c] = 0.5 * curve.f[c] / curve.out[c]
 
 
 @njit(cache=True, inline="always")
@@ -269,7 +272,7 @@ def add_curve(curve, terms, density, slopes):
 @njit(cache=True)
 def _spread_fills(fills, by_carried, by_fill, film, store, unknowns, rows, places, by):
     """Set the entries of `OilLine.balance_gradients` for the vertices ``fills``; returns their number."""
-    n, m = film.H.shape
+    n, m = store.shape
     number = np.full(n * m, -1)
     for r in range(unknowns.size):
         number[unknowns[r]] = r
@@ -299,7 +302,7 @@ def _spread_fills(fills, by_carried, by_fill, film, store, unknowns, rows, place
 def contract_fills(
     lam: np.ndarray,
     fills: tuple[LineGradients, LineGradients],
-    film: Coefficients,
+    film: FilmTerms,
     store: np.ndarray,
     fields: tuple[np.ndarray, ...],
 ) -> None:
@@ -309,7 +312,7 @@ def contract_fills(
         contract_line(weighed, line, *fields)
 
 
-def weigh_flows(lam: np.ndarray, film: Coefficients) -> np.ndarray:
+def weigh_flows(lam: np.ndarray, film: FilmTerms) -> np.ndarray:
     """Derivatives (k, n, m) of adjoint functionals lam (k, n, m) to the fills that flows carry from vertices."""
     out = np.zeros_like(lam)
     for axis, f in ((1, film.fx), (2, film.fz)):

@@ -13,6 +13,7 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.solve import base_of, solve_system
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
 from exudyn_ehd.film.cavitation.system import FilmSystem
+from exudyn_ehd.film.reynolds.balance import store_content
 from exudyn_ehd.status import Status
 
 MOST_STEPS = 200
@@ -106,11 +107,10 @@ def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
         nonlocal runs_dry
         inverse = s.inverse_step + extra
         blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
-        film = s.coefficients
-        if s.inverse_step == 0.0 < extra:
-            # the gap's rate is kept: extra (fill H - mass) + fill dH/dt
-            film = film._replace(H=s.H + s.H_t / extra)
-        ok, steps = solve_system(s, work, film, (inverse, blend))
+        # in a steady film the gap's rate is kept: extra (fill H - mass) + fill dH/dt
+        H = s.H + s.H_t / extra if s.inverse_step == 0.0 < extra else s.H
+        store_content(s.term_fields, H, s.H_t, inverse, blend, s.instant)
+        ok, steps = solve_system(s, work)
         if ok:
             np.multiply(s.fill, s.H, out=mass)
             if s.density is not None:

@@ -24,7 +24,7 @@ from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_one
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_terms
+from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
 from exudyn_ehd.film.cavitation.states import (
     FULL,
     OIL,
@@ -41,9 +41,8 @@ from exudyn_ehd.film.cavitation.states import (
 from exudyn_ehd.film.cavitation.steady_oil import imbalance
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, know_at
-from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
+from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, oil_links, terms_of
 from exudyn_ehd.film.reynolds.lagging_void import hold_back
-from exudyn_ehd.film.reynolds.links import Coefficients
 
 MOST_STEPS = 60
 # Largest estimated error after a chord step, over the peak pressure; and largest change of u on a curve, and weighted
@@ -71,29 +70,29 @@ GOES_ON, FOUND, LOST = 0, 1, 2
 
 
 @njit(cache=True)
-def _factor(film, terms, kind, oil, curve, in_cells, full, fill, factor):
+def _factor(terms, kind, oil, curve, full, fill, factor):
     """Number the unknowns and factor Newton's matrix; returns (ok, count, width)."""
     order, number, lower, upper, inv_diag, slopes = factor
-    links, free, sets = oil_links(film, full)
+    links, free, sets = oil_links(terms, full)
     rho, rho_P = (None, None) if oil is None else (oil[4], oil[5])
     film_slopes(fill, sets, rho, rho_P, terms, slopes)
-    if in_cells and kind == OIL:
+    if kind == OIL:
         add_curve(curve, terms, rho, slopes)
-    elif in_cells:
+    else:
         add_sink(curve, slopes)
     count, width = number_cells(free if kind == OIL else full, links, order, number)
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
-    assemble(links, film.kz, slopes, number, order, count, L, U)
+    assemble(links, terms.kz, slopes, number, order, count, L, U)
     return factor_lu(L, U, count, width, inv_diag), count, width
 
 
 @njit(cache=True, nogil=True)
-def factor_film(film, since, kind, oil, curve, in_cells, full, P, fill, factor):
+def factor_film(film, kind, oil, full, P, fill, factor):
     """Factor the matrix of a solved film; returns (ok, count, width). Parameters as for `solve_film`."""
     if oil is not None:
         scale, floor, law, known, _, rho_P, _ = oil
         density_slope_at(P, scale, floor, law, known, rho_P)
-    return _factor(film, film_terms(film, since), kind, oil, curve, in_cells, full, fill, factor)
+    return _factor(terms_of(film[0], film[1]), kind, oil, curve_of(film[3]), full, fill, factor)
 
 
 @njit(cache=True)
@@ -168,31 +167,21 @@ def take_step(kind, bends, curve, factor, size, is_first, fresh, x, full, state,
 
 
 @njit(cache=True)
-def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state):
+def _newton(film, pc, kind, oil, start, factor, x, full, state):
     """Solve as `solve_film`, with pressures P above the cavity's."""
-    (film, late, b), (u, P, fill), (order, _, lower, upper, inv_diag, _) = links, state, factor
-    (known, ready, count, width), (inverse_step, mass_old, _) = start, since
-    flat, given = film.late.reshape(-1), late.reshape(-1)
+    (u, P, fill), (order, _, lower, upper, inv_diag, _), (known, ready, count, width) = state, factor, start
+    terms, curve = terms_of(film[0], film[1]), curve_of(film[3])
+    flat, given = terms.late.reshape(-1), film[2].reshape(-1)
     for c in range(flat.size):
         flat[c] = given[c]
-    if inverse_step > 0.0:
-        hold_back(film, inverse_step, mass_old)
-    carried, rest, terms = film.late.copy(), film.kx.copy(), film_terms(film, since)
-    curve.s[:] = 1.0
-    curve.slope[:] = 0.0
-    curve.rise[:] = 0.0
+    hold_back(terms)
+    carried, rest = terms.late.copy(), terms.kx.copy()
     absolute, bends = rest, (0.0, rest, np.inf, rest, 1.0)
     if oil is not None:
         scale, floor, law, at, rho, rho_P, crosses = oil
         absolute, bends = rest.copy(), (BENDS, rho_P, np.inf if crosses else law.highest / scale - pc, at, scale)
-    if in_cells and kind == OIL:
-        curve_terms(film, b, curve)
-        if oil is not None:
-            density_at(floor + 0.0 * rest, scale, floor, law, at, rho)
-            for c in range(flat.size):
-                curve.whole[c] *= rho[0, 0]
     if not known:
-        start_states(film, pc, curve, full, u)
+        start_states(terms, pc, curve, full, u)
     else:
         place_states(curve, full, P, fill, u)
     progress, band = (ready, False, False, 0.0, LEFT), (order, lower, upper, inv_diag)
@@ -206,7 +195,7 @@ def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full
                 shifted[c] = above[c] + pc
             density_at(absolute, scale, floor, law, at, rho)
             film_balance(P, fill, rho, terms, rest)
-        if kind == RUPTURE and in_cells:
+        if kind == RUPTURE:
             take_sink(curve, rest)
         even, is_last = EVEN if oil is None else EVEN_DENSE, step + 1 == MOST_STEPS
         outcome, progress = look(terms, carried, kind, curve, even, is_last, full, state, rest, progress)
@@ -216,7 +205,7 @@ def _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full
         if fresh:
             if oil is not None:
                 density_slope_at(absolute, scale, floor, law, at, rho_P)
-            ok, count, width = _factor(film, terms, kind, oil, curve, in_cells, full, fill, factor)
+            ok, count, width = _factor(terms, kind, oil, curve, full, fill, factor)
             if not ok:
                 return False, step + 1, False, count, width
         ok, _, progress = take_step(
@@ -236,23 +225,19 @@ def is_exact(progress):
 
 
 @njit(cache=True, nogil=True)
-def solve_film(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state):
+def solve_film(film, pc, kind, oil, start, factor, x, full, state):
     """Solve for u, pressures and fills, in place; returns (found, steps, whether the factor is exact, count, width).
 
     Parameters
     ----------
-    links : (Coefficients, (n, m) array, (n, m) array)
-        Coefficients, their ``late`` without curves, right-hand side of `exudyn_ehd.film.reynolds.links`.
-    since : (float, (n, m) array, bool)
-        1 / time step, 1/s, 0 of a steady film; content at its start; whether the step stands for an instant.
+    film : tuple
+        `FilmSystem.film`.
     pc : float
         Scaled cavity pressure, 0 without one.
     kind : int
         FULL, CLIPPED, RUPTURE or OIL of `states`.
     oil : (scale, floor, law, known, rho, rho_P, crosses) or None
         Density of `exudyn_ehd.film.lubricant.density_field`; None: it does not follow the pressure.
-    in_cells : bool
-        Whether vertices have curves.
     start : (whether P and fill are a warm start, else ``full`` alone is used; whether ``factor`` serves; count; width)
     factor : (order, number, lower, upper, inv_diag, slopes)
     x : (n m,) array
@@ -263,12 +248,12 @@ def solve_film(links, since, pc, kind, oil, curve, in_cells, start, factor, x, f
         Unknowns, pressures and fills (n, m).
     """
     P = state[1]
-    given, known = P.copy(), links[0].fixed.reshape(-1)
+    given, known = P.copy(), film[1].reshape(-1)
     pressures, kept = P.reshape(-1), given.reshape(-1)
     # flows follow differences alone: above the cavity's, small pressures keep their digits
     for c in range(known.size):
         pressures[c] = kept[c] - pc
-    found = _newton(links, since, pc, kind, oil, curve, in_cells, start, factor, x, full, state)
+    found = _newton(film, pc, kind, oil, start, factor, x, full, state)
     for c in range(known.size):
         pressures[c] = kept[c] if known[c] else pressures[c] + pc
     if oil is not None and found[0]:
@@ -276,24 +261,16 @@ def solve_film(links, since, pc, kind, oil, curve, in_cells, start, factor, x, f
     return found
 
 
-def solve_system(
-    s: FilmSystem, work: Workspace, film: Coefficients | None = None, since: tuple[float, np.ndarray] | None = None
-) -> tuple[bool, int]:
-    """Solve a system by `solve_film`, from its last film if ``work.warm``, else from a full one: (found, steps).
-
-    ``film``, ``since``: coefficients and history that replace the system's.
-    """
+def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
+    """Solve a system by `solve_film`, from its last film if ``work.warm``, else from a full one: (found, steps)."""
     oil = work.oil
     if s.kind < RUPTURE or not work.warm:
         np.logical_not(s.fixed, out=work.active)
     ok, steps, oil.exact, work.count, work.width = solve_film(
-        (s.coefficients if film is None else film, s.late, s.b),
-        (*((s.inverse_step, s.mass_old) if since is None else since), s.instant),
+        s.film,
         base_of(s),
         s.kind,
         None if s.density is None else s.density.fields(s.floor),
-        s.curve,
-        s.in_cells,
         (work.warm, work.warm and oil.factored, work.count, work.width),
         _buffers(work),
         work.unknowns,
@@ -309,12 +286,9 @@ def factor_solution(s: FilmSystem, work: Workspace) -> None:
     oil = work.oil
     if not oil.exact:
         oil.exact, work.count, work.width = factor_film(
-            s.coefficients,
-            (s.inverse_step, s.mass_old, s.instant),
+            s.film,
             s.kind,
             None if s.density is None else s.density.fields(s.floor),
-            s.curve,
-            s.in_cells,
             work.active if s.kind >= RUPTURE else ~s.fixed,
             s.linear_pressure,
             s.fill,

@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import ColumnLine, column_line
-from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, straight
-from exudyn_ehd.film.cavitation.rupture_line import Line, RuptureLine
+from exudyn_ehd.film.cavitation.oil_line import OilLine, straight
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.cavitation.states import CLIPPED, OIL
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import DensityField
-from exudyn_ehd.film.reynolds.links import Coefficients
+from exudyn_ehd.film.reynolds.balance import FilmTerms
 
 
 class FilmSystem:
@@ -45,7 +45,7 @@ class FilmSystem:
     fill, mass_old : (n, m) arrays
         Film fraction, and the old value of fill H; only used by closures that conserve mass.
     prompt, late : (n, m) arrays
-        Couette flows take ``prompt fill + late`` along, of `exudyn_ehd.film.reynolds.lagging_void`; 1 and 0 without.
+        Of `exudyn_ehd.film.reynolds.lagging_void`; 1 and 0 without.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     closes : bool
@@ -60,33 +60,41 @@ class FilmSystem:
         The same if it may end inside its cells; None: on vertices.
     oil_line : OilLine or None
         The same of a film that conserves mass.
-    straight : Curve or None
-        That of a film that conserves mass without one.
+    curve : (9, n m) array
+        Fields of the vertices' `Curve`; of straight ones without a line in the cells of a film that Newton's method
+        solves.
     density : DensityField or None
         None: the density does not follow the pressure.
     instant : bool
         Whether the time step stands for none.
     linked : (n,) bool array
         Columns with a link to the next one.
-    fields : (9, n, m) array
-        Holds kx, kz, fx, fz, b, H, HF (gap on the links i -> i+1), H_t and pressure.
+    terms : FilmTerms
+        Holds kx, kz, fx, fz, area and prompt. Couette flows take ``prompt fill + terms.late`` along: on curves it is
+        smaller than ``late``.
+    fields : (15, n, m) array
+        Those of ``terms``, then b, H, HF (gap on the links i -> i+1), H_t and pressure.
     """
 
     def __init__(self, grid: FilmGrid, kind: int) -> None:
         shape, self.kind = grid.shape, kind
-        self.fields = np.zeros((9, *shape))
-        self.kx, self.kz, self.fx, self.fz, self.b, self.H, self.HF, self.H_t, self.pressure = self.fields
+        self.fields = np.zeros((15, *shape))
+        self.term_fields = self.fields[:10]
+        self.terms = FilmTerms(*self.term_fields, grid.fixed)
+        self.kx, self.kz, self.fx, self.fz = self.term_fields[:4]
+        self.b, self.H, self.HF, self.H_t, self.pressure = self.fields[10:]
         self.H[:] = self.HF[:] = 1.0
         self.fixed = grid.fixed
         self.cavity_pressure = 0.0
         self.linear_pressure = np.zeros(shape) if kind == CLIPPED else self.pressure
         self.flow_pressure = self.pressure
-        self.area = grid.area
+        self.area, self.terms.area[:] = grid.area, grid.area
         self.inverse_step = 0.0
         self.closes, self.turns = False, 0.0
         empty = np.ones(shape) if kind == OIL else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
-        self.prompt, self.late = np.ones(shape), np.zeros(shape)
+        self.prompt, self.late, self.curve = self.terms.prompt, np.zeros(shape), straight(shape)
+        self.prompt[:] = 1.0
         self.line: RuptureLine | None = None
         self.column_line: ColumnLine | None = None
         self.continued: np.ndarray | None = None
@@ -94,7 +102,6 @@ class FilmSystem:
         self.oil_line: OilLine | None = None
         self.density: DensityField | None = None
         self.instant = False
-        self.straight = Curve(*straight(shape)) if kind == OIL else None
         self.linked = grid.link_x != 0.0
 
     def count_in_cells(self, grid: FilmGrid, clips: bool) -> None:
@@ -111,36 +118,18 @@ class FilmSystem:
         self.closes = steady and bool(rate.min() < 0.0)
         self.turns = abs(vx) if steady and vz == 0.0 else 0.0
 
-    @property
-    def curve(self) -> Curve | None:
-        """Curves of the vertices for `exudyn_ehd.film.cavitation.solve`; None of a film that it does not solve."""
-        return self.straight if self.oil_line is None else self.oil_line.fields
-
     def take_density(self, density: DensityField) -> None:
         """Let the density follow the pressure in all later solutions."""
-        self.density, shape = density, self.H.shape
-        if self.kind == OIL:
-            return
-        self.fill, self.mass_old, curve = np.ones(shape), np.ones(shape), Curve(*straight(shape))
-        if self.line is not None:
-            line = Line(*self.line.block)
-            curve = curve._replace(f=line.f, k=line.k, whole=line.whole, s=line.s)
-        self.straight = curve
+        self.density = density
+        if self.kind != OIL:
+            self.fill, self.mass_old = np.ones((2, *self.H.shape))
 
     @property
-    def in_cells(self) -> bool:
-        """Return whether the film may end inside its cells."""
-        return self.oil_line is not None or self.line is not None
+    def film(self) -> tuple[np.ndarray, ...]:
+        """Fields of the terms, prescribed vertices, ``late``, and fields of the curves, as kernels take them."""
+        return self.term_fields, self.fixed, self.late, self.curve
 
     @property
     def floor(self) -> float:
         """Scaled pressure below which the density stays."""
         return self.cavity_pressure if self.kind >= CLIPPED else -np.inf
-
-    @property
-    def coefficients(self) -> Coefficients:
-        """These arrays as kernels take them."""
-        late = self.late if self.oil_line is None else self.oil_line.late
-        return Coefficients(
-            self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed, self.prompt, late
-        )

@@ -46,21 +46,22 @@ def terms_of(f, fixed):
 
 
 @njit(cache=True)
-def film_terms(film, since):
-    """`FilmTerms` of a film of `Coefficients`; ``since``: (1 / time step since the content, 0 of a steady film; that
-    content (n, m); whether the step stands for an instant, whose storage keeps the volume)."""
-    grow, kept, known, nothing = film.H.copy(), film.H.copy(), np.zeros(film.H.shape), np.zeros(film.H.shape)
-    inverse_step, mass_old, instant = since
-    n, m = film.H.shape
+def store_content(f, H, H_t, inverse_step, mass_old, instant):
+    """Set the storage of a film's terms (10, n, m) from its gaps and their rates (n, m).
+
+    Parameters
+    ----------
+    inverse_step : float
+        1 / time step since the content ``mass_old`` (n, m), 1/s; 0 of a steady film.
+    instant : bool
+        Whether the step stands for an instant, whose storage keeps the volume.
+    """
+    n, m = H.shape
     for i in range(n):
         for j in range(m):
-            grow[i, j] = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
-            kept[i, j] = -inverse_step * mass_old[i, j] if inverse_step > 0.0 else 0.0
-    if instant:
-        known, kept = kept, nothing
-    return FilmTerms(
-        film.kx, film.kz, film.fx, film.fz, grow, known, kept, film.area, film.prompt, film.late, film.fixed
-    )
+            old = -inverse_step * mass_old[i, j] if inverse_step > 0.0 else 0.0
+            f[4, i, j] = inverse_step * H[i, j] if inverse_step > 0.0 else H_t[i, j]
+            f[5, i, j], f[6, i, j] = (old, 0.0) if instant else (0.0, old)
 
 
 @njit(cache=True)

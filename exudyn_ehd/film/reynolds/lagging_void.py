@@ -56,13 +56,14 @@ def outflow_of(fx, fz, H, H_t, area, fill):
 
 
 @njit(cache=True)
-def hold_back(film, inverse_step, mass_old):
-    """No lag where flows that have grown manifold since the last step would take more than there was."""
-    n, m = film.H.shape
+def hold_back(film):
+    """No lag where the flows of `FilmTerms` that have grown manifold since the last step would take more than there
+    was."""
+    n, m = film.late.shape
     for i in range(n):
         for j in range(m):
             late = film.late[i, j]
-            if late > 0.0 and late * _leaves(film.fx, film.fz, i, j) > film.area[i, j] * mass_old[i, j] * inverse_step:
+            if late > 0.0 and late * _leaves(film.fx, film.fz, i, j) > -film.area[i, j] * film.kept[i, j]:
                 film.prompt[i, j], film.late[i, j] = 1.0, 0.0
 
 

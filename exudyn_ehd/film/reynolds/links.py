@@ -26,22 +26,6 @@ from exudyn_ehd.film.grid import Mesh
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-class Coefficients(NamedTuple):
-    """Coefficients of the vertices' balances, (n, m) each: symbols of this module, areas, prescribed vertices, and
-    ``prompt`` and ``late`` of `exudyn_ehd.film.reynolds.lagging_void`."""
-
-    kx: np.ndarray
-    kz: np.ndarray
-    fx: np.ndarray
-    fz: np.ndarray
-    H: np.ndarray
-    H_t: np.ndarray
-    area: np.ndarray
-    fixed: np.ndarray
-    prompt: np.ndarray
-    late: np.ndarray
-
-
 class LinkFlux(NamedTuple):
     """Coefficients of all links of a film with flux effects, (n, m) arrays that the effects write.
 

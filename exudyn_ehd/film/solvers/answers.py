@@ -13,9 +13,9 @@ from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line
 from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_terms
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links
-from exudyn_ehd.film.reynolds.links import Coefficients, vertex_balance
+from exudyn_ehd.film.reynolds.links import vertex_balance
 from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas
 from exudyn_ehd.film.solvers.film import Film
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
@@ -170,21 +170,13 @@ class FilmAnswers(Film):
             self._fills = self._to_motion(carried), self._to_motion(held)
         return self._fills
 
-    def fill_weights(self) -> tuple[Coefficients, np.ndarray]:
-        """Coefficients with the Couette flows of a full film, and its storage (n, m), of masses if compressible."""
-        film, terms, rho = self.system.coefficients, self.terms, self.rho
+    def fill_weights(self) -> tuple[FilmTerms, np.ndarray]:
+        """Terms with the Couette flows of a full film, and its storage (n, m), of masses if compressible."""
+        terms, rho = self.system.terms, self.rho
         if self.law is None:
-            return film, terms.area * terms.grow
-        fx, fz = (0.5 * f * (rho + np.roll(rho, -1, axis)) for axis, f in enumerate((film.fx, film.fz)))
-        return film._replace(fx=fx, fz=fz), terms.area * terms.grow * rho
-
-    @property
-    def terms(self) -> FilmTerms:
-        """Coefficients of the balances."""
-        s = self.system
-        if self.elements is not None:
-            return self.elements.terms
-        return film_terms(s.coefficients, (s.inverse_step, s.mass_old, s.instant))
+            return terms, terms.area * terms.grow
+        fx, fz = (0.5 * f * (rho + np.roll(rho, -1, axis)) for axis, f in enumerate((terms.fx, terms.fz)))
+        return terms._replace(fx=fx, fz=fz), terms.area * terms.grow * rho
 
     def inflow(self, ended: bool = False) -> np.ndarray:
         """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
@@ -195,7 +187,7 @@ class FilmAnswers(Film):
         balance = np.empty(self.grid.shape)
         if conserves_mass or self.law is not None:
             fill, rho = s.fill if conserves_mass else None, None if self.law is None else self.rho
-            film_balance(P, fill, rho, self.terms, balance)
+            film_balance(P, fill, rho, s.terms, balance)
         else:
             vertex_balance(P, s.kx, s.kz, s.b, balance)
             if ended and self.complementary:

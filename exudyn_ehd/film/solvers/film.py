@@ -86,11 +86,11 @@ class Film:
         self.line: RuptureLine | None = None
         self.oil_line: OilLine | None = None
         if closure.line_in_cells and closure.conserves_mass:
-            self.oil_line = s.oil_line = OilLine(shape)
+            self.oil_line = s.oil_line = OilLine(s.curve, shape)
         elif closure.line_in_cells and (closure.clips or flow_x == 0.0):
             s.count_in_cells(grid, closure.clips)
         elif closure.line_in_cells:
-            self.line = s.rupture if self.symmetric else FilmLine(shape)
+            self.line = s.rupture if self.symmetric else FilmLine(s.curve, shape)
             s.line = None if yields else self.line
         # density over that at ambient pressure (n, m), of the last solution, and at the last factor its derivative to
         # the unknown pressures; without a law it does not follow the pressure
@@ -127,7 +127,7 @@ class Film:
         s = self.system
         if not self.closure.conserves_mass:
             return self.ones
-        return s.prompt * s.fill + s.coefficients.late if self.lagging or self.oil_line is not None else s.fill
+        return s.prompt * s.fill + s.terms.late if self.lagging or self.oil_line is not None else s.fill
 
     @property
     def content(self) -> np.ndarray:

@@ -126,8 +126,11 @@ class FilmSolver(FilmAnswers):
                 # with the density that its pressure gives it.
                 mass_old = np.minimum(mass_old / self.density.at(s.cavity_pressure), self.H)
         self.set_links()
-        if self.density is not None and isinstance(s.line, FilmLine):
-            s.line.take(s.kx, s.b, self.grid.fixed, self.density.at(s.cavity_pressure))
+        cavity_density = 1.0 if self.density is None else self.density.at(s.cavity_pressure)
+        if isinstance(s.line, FilmLine):
+            s.line.take(s.kx, s.b, self.grid.fixed, cavity_density)
+        elif s.oil_line is not None:
+            s.oil_line.take(s.terms, s.b, cavity_density, self.vx)
         if self.closure.clips:
             np.copyto(s.linear_pressure, s.pressure)
         self.set_times(mass_old, step)
@@ -143,6 +146,8 @@ class FilmSolver(FilmAnswers):
             self.forget()
             status, more = solve_sets(s, self.work)
             steps += more
+        if isinstance(s.line, FilmLine):
+            s.line.settle(self.work.active)
         return status_of(s, status), steps
 
     def _solve_yielding(self, e: LinerFilm, mass_old: np.ndarray | None, step: float) -> tuple[Status, int]:

@@ -74,7 +74,7 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, at, m
     """
     order, _, number, band, inv_diag = factor
     count, width = size
-    kx, kz, b, H, HF, P = film[0], film[1], film[4], film[5], film[6], film[8]
+    kx, kz, b, H, HF, P = film[0], film[1], film[10], film[11], film[12], film[14]
     ones, by_rate, by_gap, weight, link_fields = fields
     fixed, active = sets
     cos_x, sin_x, _, _, z = at

@@ -99,7 +99,7 @@ def test_mass_flow_is_uniform_along_a_cavitated_slider():
 def test_balance_vanishes_where_pressure_is_unknown_and_oil_leaves_nowhere_else(closure):
     s = bare_solver(closure, 3.0)
     r = np.empty(s.grid.shape)
-    film_balance(s.system.linear_pressure, s.fill if closure.conserves_mass else s.ones, s.rho, s.terms, r)
+    film_balance(s.system.linear_pressure, s.fill if closure.conserves_mass else s.ones, s.rho, s.system.terms, r)
     free = ~s.grid.fixed if closure.clips or closure.conserves_mass else s.work.active
     size = np.abs(s.system.fx).max()
     assert np.abs(r[free]).max() < 1e-12 * size  # rounding of the fluxes

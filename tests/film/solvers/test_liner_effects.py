@@ -268,13 +268,13 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     numbering = number_cells if thin is None else number_with_corners
     count, width = numbering(~SMALL.fixed, e.metric[0], w.order, w.number)
     sides = (P, fill, full) if e.kind == OIL else (P, None, None)
-    film_slopes(*sides[1:], None, None, e.terms, slopes)
+    film_slopes(*sides[1:], None, None, e.film.system.terms, slopes)
     if thin is not None:
-        add_tangents(thin[0], e.terms.kx, e.terms.kz, sides[2], slopes)
-    add_gap_slopes(*sides, None, e.terms, e.gap_slopes, e.load, e.rates, e.beta, e.by, slopes)
+        add_tangents(thin[0], e.film.system.terms.kx, e.film.system.terms.kz, sides[2], slopes)
+    add_gap_slopes(*sides, None, e.film.system.terms, e.gap_slopes, e.load, e.rates, e.beta, e.by, slopes)
     assemble(e.metric[0], e.metric[1], slopes, w.number, w.order, count, lower, upper)
     if thin is not None:
-        add_corners(thin[1], thin[2:], e.terms.kx, e.terms.kz, sides[2], w.number, lower, upper)
+        add_corners(thin[1], thin[2:], e.film.system.terms.kx, e.film.system.terms.kz, sides[2], w.number, lower, upper)
     A, B = np.zeros((count, count)), np.zeros((count, count))
     for k in range(count):
         for d in range(min(width, count - 1 - k) + 1):

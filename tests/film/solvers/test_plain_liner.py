@@ -267,7 +267,7 @@ def test_suction_that_runs_away_is_balanced_or_refused():
     if evaluation.status is ehd.Status.CONVERGED:
         e = model.solver.elements
         e.balance()
-        assert np.abs(e.residual[~model.grid.fixed]).max() < 1e-6 * np.abs(e.terms.fz).max()
+        assert np.abs(e.residual[~model.grid.fixed]).max() < 1e-6 * np.abs(e.film.system.terms.fz).max()
     else:
         assert evaluation.status is ehd.Status.NOT_CONVERGED
         assert np.isnan(evaluation.wrench).all()

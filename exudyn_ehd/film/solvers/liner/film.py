@@ -54,17 +54,16 @@ import copy
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
-from exudyn_ehd.film.cavitation.oil_line import Curve, straight
+from exudyn_ehd.film.cavitation.oil_line import Curve
 from exudyn_ehd.film.cavitation.solve import FOUND, GOES_ON, LEFT, base_of, is_exact
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.film import Film
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns, speed_gradients
 from exudyn_ehd.film.solvers.liner.kernels import liner_residual
-from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, see_curves, straighten
+from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, see_curves
 from exudyn_ehd.film.solvers.liner.line_kernels import open_gaps
 from exudyn_ehd.film.solvers.liner.steps import begin, factor_film, find_slopes, proceed, solve_plain
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements
@@ -102,11 +101,7 @@ class LinerFilm(WinklerElements):
             self.thin.place(film.grid, film.flow_x)
         # whether the pressure changes the deflection of the liner alone
         self.plain = self.contact is None and self.limiter is None and self.oil is None and not film.flux_effects
-        self.term_fields = np.zeros((10, *shape))
-        self.terms = FilmTerms(*(*self.term_fields, g.fixed))
-        self.terms.area[:], self.terms.prompt[:] = film.area, 1.0
-        s.kx, s.kz, s.fx, s.fz = self.terms[:4]
-        s.prompt, s.late = self.terms.prompt, self.terms.late
+        self.term_fields, self.film_fields = s.term_fields, s.film
         # Couette flows pass through the widths where links conduct
         across = np.append(g.link_z, 0.0)
         x, z = (g.link_x, g.width_x, g.link_x != 0.0, g.width_x), (g.width_z, across, g.width_z, across != 0.0)
@@ -114,18 +109,11 @@ class LinerFilm(WinklerElements):
         self.uncut = self.metric[:2].copy()
         self.by = np.zeros((4, w.order.size))
         self.fill = s.fill if s.kind == OIL else np.ones(shape)
-        # rupture line inside the cells: curves of the vertices, ``late`` of flows without them, film at that pressure
-        self.curve, self.late = straight(shape), s.late
-        if isinstance(film.line, FilmLine):
-            self.curve = film.line.curve
-        elif film.oil_line is not None:
-            film.oil_line.late, s.late, self.late = s.late, np.zeros(shape), np.zeros(shape)
-            self.curve = film.oil_line.block
+        # the film at the pressure of the rupture line inside the cells
         self.at_line, self.shut = AtLine((film.H, film.HF), None, None), np.zeros(shape, dtype=np.bool_)
         self.residual, self.above, steep, u, above = np.zeros((5, *shape))
         # what the kernels of `exudyn_ehd.film.solvers.liner.steps` take
         self.state = w.oil.u, self.above, self.fill
-        self.film_fields = self.term_fields, g.fixed, self.late, self.curve
         self.matrix = w.order, w.number, w.lower, w.upper, w.inv_diag, w.oil.slopes, steep
         self.places = self.P, self.residual, w.unknowns, u, np.zeros(shape, dtype=np.bool_), above
         self.exact = False
@@ -170,7 +158,7 @@ class LinerFilm(WinklerElements):
         fields = self.load_fields, self.gap_fields, self.term_fields, f.grid.fixed, self.known
         rates, pc = tuple(self.rates), f.system.cavity_pressure
         chooses = self.kind == RUPTURE
-        norm = liner_residual(self.P, fill, rho, *fields, rates, self.beta, pc, chooses, self.curve, self.residual)
+        norm = liner_residual(self.P, fill, rho, *fields, rates, self.beta, pc, chooses, f.system.curve, self.residual)
         return norm, self.smallest
 
     def see_cavity(self) -> None:
@@ -194,7 +182,7 @@ class LinerFilm(WinklerElements):
         if isinstance(f.line, FilmLine):
             f.line.see(self.gap_fields, self.term_fields, shut, *rest, gaps)
         elif f.oil_line is not None:
-            see_curves(f.oil_line, self.gap_fields, self.terms, shut, *rest)
+            see_curves(f.oil_line, self.gap_fields, s.terms, shut, *rest)
         if self.limiter is not None or self.contact is not None:
             a, follow = self.gap_slopes, 1.0 / (1.0 - self.beta * self.contact_G) - 1.0
             chain = GapChain(a.rate_t.copy(), self.bend.copy(), a.link.copy(), follow)
@@ -202,7 +190,7 @@ class LinerFilm(WinklerElements):
 
     def fill_up(self) -> None:
         """Remove the cavity: every vertex is full and has at least the pressure of a fully developed curve."""
-        w, curve = self.film.work, Curve(*self.curve).whole.reshape(self.P.shape)
+        w, curve = self.film.work, Curve(*self.film.system.curve).whole.reshape(self.P.shape)
         np.logical_not(self.film.grid.fixed, out=w.active)
         self.fill[:] = 1.0
         np.maximum(self.P, base_of(self.film.system) + curve, out=self.P, where=curve > 0.0)
@@ -210,9 +198,9 @@ class LinerFilm(WinklerElements):
     def solve(self) -> tuple[bool, int]:
         """Solve by Newton's method from the present pressures and sets, in place; returns (found, steps)."""
         f, w, s = self.film, self.film.work, self.film.system
-        if f.oil_line is not None:
-            np.multiply(s.late, s.prompt < 1.0, out=self.late)
-            straighten(f.oil_line, self.late)
+        # the film from sliding alone may have held back some of it
+        s.late *= s.prompt < 1.0
+        s.terms.late[:] = s.late
         ready = self.reusable and w.warm
         self.reusable = self.exact = False
         course, outcome = (0, False, -1, 1.0, 0.0, w.count, w.width, (ready, False, False, 0.0, LEFT)), GOES_ON

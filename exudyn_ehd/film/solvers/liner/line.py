@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine, curve_terms, straight
+from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine
 from exudyn_ehd.film.cavitation.rupture_line import Line, LineGradients, RuptureLine, line_terms, to_true_gap
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux, add_squeeze, right_hand_side
@@ -78,22 +78,13 @@ def see_curves(
 ) -> None:
     """Set the curves of a mass-conserving film from its fields at the cavity pressure; parameters as for
     `FilmLine.see`."""
-    (beta, vx), (touching, _), c = liner, shut, line.fields
-    line.density, line.lift_by_speed = density, 0.5 * beta * np.sign(vx) * widths[1]
+    (beta, vx), (touching, _) = liner, shut
+    line.lift_by_speed = 0.5 * beta * np.sign(vx) * widths[1]
     film.kx[touching] = 0.0
     right_hand_side(film.fx, film.fz, b)
     if squeeze:
         add_squeeze(gap_fields[4], *widths, b)
-    curve_terms(film, b, c)
-    c.k[:] += np.tile(line.lift_by_speed * vx, len(b))
-    c.f[:], c.out[:] = density * c.f, density * c.out
-    np.divide(0.5 * c.f, c.k, out=c.whole, where=c.f > 0.0)
-
-
-def straighten(line: OilLine, late: np.ndarray) -> None:
-    """Remove the curves of all vertices; ``late`` (n, m): that of the flows without curves."""
-    line.late[:], line.fields.s[:] = late, 1.0
-    line.fields.slope[:] = line.fields.rise[:] = 0.0
+    line.take(film, b, density, vx)
 
 
 class FilmLine(RuptureLine):
@@ -111,15 +102,21 @@ class FilmLine(RuptureLine):
         Compliance, vx and widths in z.
     """
 
-    def __init__(self, shape: tuple[int, int]) -> None:
+    def __init__(self, curve: np.ndarray, shape: tuple[int, int]) -> None:
         super().__init__(shape)
-        self.curve, self.density, self.lean = straight(shape), 1.0, np.zeros(shape)
+        self.curve, self.density, self.lean = curve, 1.0, np.zeros(shape)
         self.liner = 0.0, 0.0, np.zeros(shape[1])
 
     def take(self, kx: np.ndarray, b: np.ndarray, fixed: np.ndarray, density: float) -> None:
         """Set f and k from the film's conductances and right-hand side (n, m) at the cavity pressure."""
         self.density, self.s[:] = density, 1.0
         line_terms(kx, density * b, fixed, True, self.block)
+        self._bend()
+
+    def _bend(self) -> None:
+        """Give the vertices the curves of f and k."""
+        line, curve = Line(*self.block), Curve(*self.curve)
+        curve.f[:], curve.k[:], curve.whole[:] = line.f, line.k, line.whole
 
     def see(
         self,
@@ -143,8 +140,7 @@ class FilmLine(RuptureLine):
             gap_fields, term_fields, touching, b, squeeze, widths, fixed, density, liner, self.block, gaps_out,
             self.lean,
         )  # fmt: skip
-        line, curve = Line(*self.block), Curve(*self.curve)
-        curve.f[:], curve.k[:], curve.whole[:] = line.f, line.k, line.whole
+        self._bend()
 
     def settle(self, active: np.ndarray) -> None:
         """Set s of the ``active`` vertices (n, m) from the curves of the solved film, 1 elsewhere."""
