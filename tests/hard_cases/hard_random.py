@@ -34,7 +34,7 @@ import numpy as np
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
 from exudyn_ehd.film.reynolds.balance import film_balance
-from exudyn_ehd.film.reynolds.links import vertex_balance
+from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04
@@ -223,7 +223,8 @@ def balance_error(model):
     if closure.conserves_mass:
         film_balance(y.pressure, y.fill, None, y.terms, out)
     else:
-        vertex_balance(y.linear_pressure, y.kx, y.kz, y.b, out)
+        lacks((y.kx, y.kz, y.b), y.linear_pressure, out)
+        out *= -1.0
     P, joins = y.linear_pressure, 0.0
     if s.complementary:
         # pressures above the cavity's are the unknowns

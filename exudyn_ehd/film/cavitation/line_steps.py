@@ -1,4 +1,4 @@
-"""Parts of a step of `exudyn_ehd.film.cavitation.swift_stieber`: balances, joining vertices, factor, new state.
+"""Parts of a step of `exudyn_ehd.film.cavitation.swift_stieber`: joining vertices, factor, new state.
 
 Symbols as there and in `exudyn_ehd.film.cavitation.rupture_line`; pressures are those above the cavity's.
 """
@@ -10,32 +10,10 @@ from numba import njit
 
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.cavitation.states import ROUNDING
+from exudyn_ehd.film.reynolds.links import lacks
 
 # s that a vertex starts from whose pressure says nothing of it.
 START = 1e-3
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-_unsigned = np.uint64
-_0, _1 = _unsigned(0), _unsigned(1)
-
-
-@njit(cache=True, fastmath=_FAST)
-def lacks(links, p, out):
-    """Write the balances' lack without the line (n, m): b less what the pressure flows take away."""
-    kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
-    x, lack, m, size = p.reshape(-1), out.reshape(-1), _unsigned(p.shape[1]), _unsigned(p.size)
-    last = size - m
-    for c in range(m):
-        # nothing flows over the last row's links
-        before, far = (c if c > _0 else size) - _1, last + c
-        lack[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
-        lack[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + _1])
-    for c in range(m, last):
-        taken = kx[c] * (x[c] - x[c + m]) - kx[c - m] * (x[c - m] - x[c])
-        lack[c] = b[c] - taken - kz[c] * (x[c] - x[c + _1]) + kz[c - _1] * (x[c - _1] - x[c])
-    for c in range(last, size):
-        on, far = c + _1 if c + _1 < size else _0, c - last
-        lack[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
-        lack[c] += kz[c - _1] * (x[c - _1] - x[c]) - kz[c] * (x[c] - x[on])
 
 
 @njit(cache=True)

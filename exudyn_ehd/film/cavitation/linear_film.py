@@ -31,10 +31,9 @@ from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
-from exudyn_ehd.film.cavitation.line_steps import lacks
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.reynolds.links import LinkFlux
+from exudyn_ehd.film.reynolds.links import LinkFlux, lacks
 
 
 @njit(cache=True, nogil=True)

@@ -20,7 +20,6 @@ from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
 from exudyn_ehd.film.cavitation.line_steps import (
     factor_line,
     join_film,
-    lacks,
     line_rows,
     move_film,
     place_line,
@@ -28,6 +27,7 @@ from exudyn_ehd.film.cavitation.line_steps import (
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 from exudyn_ehd.film.cavitation.solve import FAR, LEFT, REUSABLE
 from exudyn_ehd.film.cavitation.system import FilmSystem
+from exudyn_ehd.film.reynolds.links import lacks
 
 # Steps of a film, or one for each column if these are more: a line may have as far to go.
 MOST_STEPS = 100

@@ -24,6 +24,8 @@ from numba import njit
 from exudyn_ehd.film.grid import Mesh
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+_unsigned = np.uint64
+_0, _1 = _unsigned(0), _unsigned(1)
 
 
 class LinkFlux(NamedTuple):
@@ -222,9 +224,24 @@ def set_links(H, HF, H_t, squeeze, flow, vx, vz, flow_x, mesh, kx_out, kz_out, f
         add_squeeze(H_t, mesh[0], mesh[1], b_out)
 
 
-def vertex_balance(P: np.ndarray, kx: np.ndarray, kz: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
-    """Residual ``A P - b`` of every vertex (n, m); at fixed vertices this is the inflow that they supply."""
-    along, across = kx * (P - np.roll(P, -1, axis=0)), kz[:, :-1] * (P[:, :-1] - P[:, 1:])
-    np.subtract(along - np.roll(along, 1, axis=0), b, out=out)
-    out[:, :-1] += across
-    out[:, 1:] -= across
+@njit(cache=True, fastmath=_FAST)
+def lacks(links, p, out):
+    """Write what the balances lack (n, m), ``b - A P`` for links (kx, kz, b): b less what pressure flows take away.
+
+    At fixed vertices it is minus the inflow that they supply.
+    """
+    kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
+    x, lack, m, size = p.reshape(-1), out.reshape(-1), _unsigned(p.shape[1]), _unsigned(p.size)
+    last = size - m
+    for c in range(m):
+        # nothing flows over the last row's links
+        before, far = (c if c > _0 else size) - _1, last + c
+        lack[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
+        lack[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + _1])
+    for c in range(m, last):
+        taken = kx[c] * (x[c] - x[c + m]) - kx[c - m] * (x[c - m] - x[c])
+        lack[c] = b[c] - taken - kz[c] * (x[c] - x[c + _1]) + kz[c - _1] * (x[c - _1] - x[c])
+    for c in range(last, size):
+        on, far = c + _1 if c + _1 < size else _0, c - last
+        lack[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
+        lack[c] += kz[c - _1] * (x[c - _1] - x[c]) - kz[c] * (x[c] - x[on])

@@ -15,7 +15,7 @@ from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links
-from exudyn_ehd.film.reynolds.links import vertex_balance
+from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas
 from exudyn_ehd.film.solvers.film import Film
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
@@ -189,7 +189,8 @@ class FilmAnswers(Film):
             fill, rho = s.fill if conserves_mass else None, None if self.law is None else self.rho
             film_balance(P, fill, rho, s.terms, balance)
         else:
-            vertex_balance(P, s.kx, s.kz, s.b, balance)
+            lacks((s.kx, s.kz, s.b), P, balance)
+            np.negative(balance, out=balance)
             if ended and self.complementary:
                 end_films_of_areas(s, self.work.active, self.grid, balance)
         return np.where(self.grid.fixed, balance, 0.0)
