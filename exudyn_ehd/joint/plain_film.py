@@ -66,7 +66,7 @@ def solve_plain(
     if not found and steps == 0:
         return None, 0
     work.warm = found
-    work.count, work.width, y.rupture.exact = count, width, False
+    work.count, work.width, work.exact = count, width, False
     if not found:
         return None, steps
     _, _, _, _, _, _, _, _, omega, axial_speed = motion.tolist()

@@ -12,24 +12,6 @@ PAD = 6
 FIRST_ROW = np.int64(0)
 
 
-class OilUnknowns:
-    """Unknowns of the films that `exudyn_ehd.film.cavitation.solve` solves; see `exudyn_ehd.film.cavitation.states`.
-
-    Attributes
-    ----------
-    u : (n, m) array
-        The unknowns of the last solution.
-    slopes : (5, n m) array
-        Derivatives of the flows over the links (4) and of the storage to the unknowns.
-    factored, exact : bool
-        Whether the stored factor belongs to a film on these vertices, and whether to the last solution.
-    """
-
-    def __init__(self, n: int, m: int) -> None:
-        self.u, self.slopes = np.zeros((n, m)), np.zeros((5, n * m))
-        self.factored = self.exact = False
-
-
 class Workspace:
     """Buffers of one film on n columns and m rows; a workspace serves one film at a time.
 
@@ -39,6 +21,12 @@ class Workspace:
         The active set of the last solution.
     warm : bool
         Whether the next solution starts from the last one.
+    ready, exact : bool
+        Whether the factor serves for the next solution's first step, and whether it is that of the last solution.
+    u : (n, m) array
+        Unknowns of the last solution, see `exudyn_ehd.film.cavitation.states`.
+    slopes : (5, n m) array
+        Derivatives of the flows over the links (4) and of the storage to the unknowns.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -51,7 +39,7 @@ class Workspace:
         self.inv_diag = np.zeros(size)
         self.unknowns = np.zeros(size)
         self.active = np.zeros((n, m), dtype=np.bool_)
-        self.warm = False
+        self.warm = self.ready = self.exact = False
         self.count = 0
         self.width = 1
 
@@ -75,6 +63,11 @@ class Workspace:
         return self._new_band()
 
     @cached_property
-    def oil(self) -> OilUnknowns:
-        """Unknowns of a film that Newton's method solves, and their derivatives."""
-        return OilUnknowns(*self.shape)
+    def u(self) -> np.ndarray:
+        """Unknowns of a film that Newton's method solves."""
+        return np.zeros(self.shape)
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """Derivatives of its flows and its storage."""
+        return np.zeros((5, self.order.size))

@@ -88,15 +88,12 @@ class RuptureLine:
         The arrays of a `Line`, as kernels are handed it.
     f, k, s : (n, m) arrays
         Of ``block``.
-    exact : bool
-        Whether the factor holds the last solution's line.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
         self.block = np.zeros((7, shape[0] * shape[1]))
         self.f, self.k, self.s = (field.reshape(shape) for field in self.block[:3])
         self.s[:] = 1.0
-        self.exact = False
 
     def gradients(
         self,

@@ -263,37 +263,34 @@ def solve_film(film, pc, kind, oil, start, factor, x, full, state):
 
 def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
     """Solve a system by `solve_film`, from its last film if ``work.warm``, else from a full one: (found, steps)."""
-    oil = work.oil
     if s.kind < RUPTURE or not work.warm:
         np.logical_not(s.fixed, out=work.active)
-    ok, steps, oil.exact, work.count, work.width = solve_film(
+    ok, steps, work.exact, work.count, work.width = solve_film(
         s.film,
         base_of(s),
         s.kind,
         None if s.density is None else s.density.fields(s.floor),
-        (work.warm, work.warm and oil.factored, work.count, work.width),
+        (work.warm, work.warm and work.ready, work.count, work.width),
         _buffers(work),
         work.unknowns,
         work.active,
-        (oil.u, s.linear_pressure, s.fill),
+        (work.u, s.linear_pressure, s.fill),
     )
-    work.warm = oil.factored = ok
+    work.warm = work.ready = ok
     return ok, steps
 
 
 def factor_solution(s: FilmSystem, work: Workspace) -> None:
     """Make the factor in the workspace that of the last solution."""
-    oil = work.oil
-    if not oil.exact:
-        oil.exact, work.count, work.width = factor_film(
-            s.film,
-            s.kind,
-            None if s.density is None else s.density.fields(s.floor),
-            work.active if s.kind >= RUPTURE else ~s.fixed,
-            s.linear_pressure,
-            s.fill,
-            _buffers(work),
-        )
+    _, work.count, work.width = factor_film(
+        s.film,
+        s.kind,
+        None if s.density is None else s.density.fields(s.floor),
+        work.active if s.kind >= RUPTURE else ~s.fixed,
+        s.linear_pressure,
+        s.fill,
+        _buffers(work),
+    )
 
 
 def base_of(s: FilmSystem) -> float:
@@ -302,4 +299,4 @@ def base_of(s: FilmSystem) -> float:
 
 
 def _buffers(work: Workspace) -> tuple[np.ndarray, ...]:
-    return work.order, work.number, work.lower, work.upper, work.inv_diag, work.oil.slopes
+    return work.order, work.number, work.lower, work.upper, work.inv_diag, work.slopes

@@ -123,15 +123,13 @@ def solve_rupturing(system: FilmSystem, line: RuptureLine, work: Workspace, in_c
         (y.kx, y.kz, y.b), y.fixed, y.cavity_pressure, in_cells, forth, work.warm, line.block,
         work.active, work.factor, work.unknowns, y.pressure,
     )  # fmt: skip
-    line.exact = False
+    work.exact = False
     return work.warm, steps
 
 
 def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace) -> None:
     """Make the factor that of the last solution, where it is that of a film close by."""
-    if not line.exact:
-        refine_line((system.kx, system.kz, system.b), line.block, work.factor, work.count, work.width)
-        line.exact = True
+    refine_line((system.kx, system.kz, system.b), line.block, work.factor, work.count, work.width)
 
 
 @njit(cache=True, nogil=True)

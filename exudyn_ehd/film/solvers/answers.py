@@ -31,12 +31,15 @@ class FilmAnswers(Film):
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
+        if self.work.exact:
+            return
         if self.elements is not None:
             self.elements.factor_solution()
         elif not self.symmetric:
             factor_solution(self.system, self.work)
         elif self.line is not None:
             refine_factor(self.system, self.line, self.work)
+        self.work.exact = True
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""

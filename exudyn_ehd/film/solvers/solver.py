@@ -82,8 +82,7 @@ class FilmSolver(FilmAnswers):
         """Hand a change of ``grid.fixed`` and of its cuts on to the film's parts."""
         if self.elements is not None:
             self.elements.cut_links()
-        if not self.symmetric:
-            self.work.oil.factored = False
+        self.work.ready = False
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
@@ -183,12 +182,12 @@ class FilmSolver(FilmAnswers):
     def _solve_from_sliding(self, e: LinerFilm, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
         """Solve by Newton's method from the film between rigid surfaces in which the sliding alone thins the oil."""
         e.forget_gradients()
-        self.work.warm = e.reusable = False
+        self.work.warm = False
         status, steps = self._solve_sets(mass_old, step)
         self.set_times(mass_old, step)
         if status is not Status.CONVERGED:
             return False, steps
-        self.work.warm = True
+        self.work.warm, self.work.ready = True, False
         e.see_cavity()
         ok, more = e.solve()
         return ok, steps + more

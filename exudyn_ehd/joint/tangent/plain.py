@@ -50,7 +50,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         y.column_line,
         work.factor,
         (work.count, work.width),
-        line is None or line.exact,
+        work.exact,
         (s.ones, s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.link_fields),
         (g.fixed, work.active),
         g.directions,
@@ -60,8 +60,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         (g.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, film.loads.couette),
         out,
     )
-    if line is not None:
-        line.exact = True
+    work.exact = True
     return out
 
 

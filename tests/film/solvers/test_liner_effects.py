@@ -263,7 +263,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     e.balance()
     e.gradients()
     lower, upper = (np.zeros((P.size, 2 * SMALL.z.size + 6)) for _ in range(2))
-    slopes = w.oil.slopes
+    slopes = w.slopes
     thin = None if e.thin is None else e.thin.response()
     numbering = number_cells if thin is None else number_with_corners
     count, width = numbering(~SMALL.fixed, e.metric[0], w.order, w.number)

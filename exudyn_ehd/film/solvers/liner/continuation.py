@@ -86,7 +86,7 @@ def pseudo_transient(film: LinerFilm) -> tuple[bool, int]:
         film.rates = rates._replace(pseudo=extra)
         film.pseudo_old[:] = _stored(film)
         ok, steps = film.solve()
-        film.rates, film.reusable = rates, film.reusable and extra == 0.0
+        film.rates, work.ready = rates, work.ready and extra == 0.0
         work.warm = work.warm or ok
         for field, other in zip((film.P, film.fill, work.active), start, strict=True):
             (other if ok else field)[:] = field if ok else other

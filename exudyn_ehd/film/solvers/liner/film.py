@@ -113,21 +113,19 @@ class LinerFilm(WinklerElements):
         self.at_line, self.shut = AtLine((film.H, film.HF), None, None), np.zeros(shape, dtype=np.bool_)
         self.residual, self.above, steep, u, above = np.zeros((5, *shape))
         # what the kernels of `exudyn_ehd.film.solvers.liner.steps` take
-        self.state = w.oil.u, self.above, self.fill
-        self.matrix = w.order, w.number, w.lower, w.upper, w.inv_diag, w.oil.slopes, steep
+        self.state = w.u, self.above, self.fill
+        self.matrix = w.order, w.number, w.lower, w.upper, w.inv_diag, w.slopes, steep
         self.places = self.P, self.residual, w.unknowns, u, np.zeros(shape, dtype=np.bool_), above
-        self.exact = False
         self.take_kind(s.kind)
         self.cut_links()
 
     def take_kind(self, kind: int) -> None:
         """Solve films of this kind from now on, see `exudyn_ehd.film.cavitation.states`."""
-        self.kind, self.reusable = kind, False
+        self.kind, self.film.work.ready = kind, False
         self.oil_fields = (self.fill if kind == OIL else None), *self.densities
 
     def cut_links(self) -> None:
-        """Apply the grid's cuts to the links, which invalidates the last factor."""
-        self.reusable = False
+        """Apply the grid's cuts to the links."""
         self.metric[:2] = self.uncut
         self.film.grid.cut(*self.metric[:2])
 
@@ -201,8 +199,8 @@ class LinerFilm(WinklerElements):
         # the film from sliding alone may have held back some of it
         s.late *= s.prompt < 1.0
         s.terms.late[:] = s.late
-        ready = self.reusable and w.warm
-        self.reusable = self.exact = False
+        ready = w.ready and w.warm
+        w.ready = w.exact = False
         course, outcome = (0, False, -1, 1.0, 0.0, w.count, w.width, (ready, False, False, 0.0, LEFT)), GOES_ON
         rest = self.kind, base_of(s), w.active, self.state, self.oil_fields, self.film_fields, *self._seen
         if self.plain and self.kind != OIL:
@@ -215,8 +213,8 @@ class LinerFilm(WinklerElements):
             norm, gap = self.balance()
             outcome, course = proceed(norm, gap, course, *rest, self._response, self.matrix, self.places)
         steps, *_, w.count, w.width, progress = course
-        self.reusable, self.exact = outcome == FOUND, is_exact(progress)
-        return self.reusable, steps
+        w.ready, w.exact = outcome == FOUND, is_exact(progress)
+        return w.ready, steps
 
     @property
     def _seen(self) -> tuple[tuple[object, ...], tuple[object, ...]]:
@@ -251,11 +249,8 @@ class LinerFilm(WinklerElements):
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
-        w = self.film.work
-        if not self.exact:
-            fields = self.kind, self.P, self.oil_fields, self.film_fields, *self._seen
-            _, w.count, w.width = factor_film(*fields, self._response, self.matrix, w.active)
-            self.exact = True
+        w, fields = self.film.work, (self.kind, self.P, self.oil_fields, self.film_fields, *self._seen)
+        _, w.count, w.width = factor_film(*fields, self._response, self.matrix, w.active)
 
     def finish(self) -> None:
         """Set the fields of a solution: rupture line, clipped pressure, gap derivatives, rates, right-hand side."""
