@@ -48,7 +48,7 @@ FILLED = 0.25
 ROUNDING = 1e-13
 
 
-class Curve(NamedTuple):
+class CurveFields(NamedTuple):
     """Curves of a film's vertices as kernels take them, flat (n m,).
 
     Attributes
@@ -79,12 +79,12 @@ class Curve(NamedTuple):
 
 @njit(cache=True)
 def curve_of(f):
-    """Return `Curve` of its fields (9, n m)."""
-    return Curve(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8])
+    """Return `CurveFields` of its fields (9, n m)."""
+    return CurveFields(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8])
 
 
 def straight(shape: tuple[int, int]) -> np.ndarray:
-    """Return the fields of a `Curve` without a line at any vertex."""
+    """Return the fields of a `CurveFields` without a line at any vertex."""
     fields = np.zeros((9, shape[0] * shape[1]))
     fields[6] = 1.0
     return fields
@@ -96,8 +96,8 @@ class OilLine:
     Attributes
     ----------
     block : (9, n m) array
-        Fields of the `Curve`, as kernels take them.
-    fields : Curve
+        Fields of the `CurveFields`, as kernels take them.
+    fields : CurveFields
         Views of ``block``.
     s, rise : (n, m) arrays
         Views of ``fields``.
@@ -109,7 +109,7 @@ class OilLine:
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
         self.block = block
-        self.fields = Curve(*self.block)
+        self.fields = CurveFields(*self.block)
         self.s, self.rise = self.fields.s.reshape(shape), self.fields.rise.reshape(shape)
         self.density, self.lift_by_speed = 1.0, np.zeros(shape[1])
 

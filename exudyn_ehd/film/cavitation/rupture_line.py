@@ -57,7 +57,7 @@ class LineGradients(NamedTuple):
     by: np.ndarray
 
 
-class Line(NamedTuple):
+class LineFields(NamedTuple):
     """The arrays of a rupture line as kernels take them.
 
     Attributes
@@ -85,7 +85,7 @@ class RuptureLine:
     Attributes
     ----------
     block : (7, n m) array
-        The arrays of a `Line`, as kernels are handed it.
+        The arrays of a `LineFields`, as kernels are handed it.
     f, k, s : (n, m) arrays
         Of ``block``.
     """

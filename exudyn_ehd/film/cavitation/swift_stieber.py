@@ -81,7 +81,7 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
     is_known : bool
         Whether P are pressures of a film close by.
     line : (7, n m) array
-        `Line`.
+        `LineFields`.
     active : (n, m) bool array
         In and out.
     factor : `Workspace.factor`

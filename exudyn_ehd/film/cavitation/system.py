@@ -61,8 +61,7 @@ class FilmSystem:
     oil_line : OilLine or None
         The same of a film that conserves mass.
     curve : (9, n m) array
-        Fields of the vertices' `Curve`; of straight ones without a line in the cells of a film that Newton's method
-        solves.
+        `CurveFields` of the vertices; straight ones of a film without a line in its cells.
     density : DensityField or None
         None: the density does not follow the pressure.
     instant : bool

@@ -17,12 +17,12 @@ from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links
 from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas
-from exudyn_ehd.film.solvers.film import Film
+from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
 
 
-class FilmAnswers(Film):
+class FilmAnswers(FilmArrays):
     """Answers of a solved film with its matrix A; attributes as for `FilmSolver`."""
 
     elements: LinerFilm | None

@@ -44,7 +44,7 @@ from exudyn_ehd.film.solvers.liner.line import FilmLine
 INSTANT = 1e-7
 
 
-class Film:
+class FilmArrays:
     """Arrays, links, oil and rupture line of one film; attributes as for `FilmSolver`.
 
     Parameters

@@ -54,12 +54,12 @@ import copy
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
-from exudyn_ehd.film.cavitation.oil_line import Curve
+from exudyn_ehd.film.cavitation.oil_line import CurveFields
 from exudyn_ehd.film.cavitation.solve import FOUND, GOES_ON, LEFT, base_of, is_exact
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import add_squeeze, right_hand_side
-from exudyn_ehd.film.solvers.film import Film
+from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns, speed_gradients
 from exudyn_ehd.film.solvers.liner.kernels import liner_residual
@@ -74,7 +74,7 @@ class LinerFilm(WinklerElements):
 
     Parameters
     ----------
-    film : Film
+    film : FilmArrays
         Takes over this object's gaps and links; its factor is that of Newton's matrix.
     liner : Liner
 
@@ -92,7 +92,7 @@ class LinerFilm(WinklerElements):
         The film at the cavity's pressure.
     """
 
-    def __init__(self, film: Film, liner: Liner) -> None:
+    def __init__(self, film: FilmArrays, liner: Liner) -> None:
         super().__init__(film, liner)
         s, g, w, shape = film.system, film.grid, film.work, film.grid.shape
         # the flux effect that follows the pressure
@@ -188,7 +188,7 @@ class LinerFilm(WinklerElements):
 
     def fill_up(self) -> None:
         """Remove the cavity: every vertex is full and has at least the pressure of a fully developed curve."""
-        w, curve = self.film.work, Curve(*self.film.system.curve).whole.reshape(self.P.shape)
+        w, curve = self.film.work, CurveFields(*self.film.system.curve).whole.reshape(self.P.shape)
         np.logical_not(self.film.grid.fixed, out=w.active)
         self.fill[:] = 1.0
         np.maximum(self.P, base_of(self.film.system) + curve, out=self.P, where=curve > 0.0)

@@ -29,8 +29,8 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.oil_line import Curve, OilLine
-from exudyn_ehd.film.cavitation.rupture_line import Line, LineGradients, RuptureLine, line_terms, to_true_gap
+from exudyn_ehd.film.cavitation.oil_line import CurveFields, OilLine
+from exudyn_ehd.film.cavitation.rupture_line import LineFields, LineGradients, RuptureLine, line_terms, to_true_gap
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux, add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.liner.line_kernels import add_yielding, see_line, weigh_yielding
@@ -93,7 +93,7 @@ class FilmLine(RuptureLine):
     Attributes
     ----------
     curve : (9, n m) array
-        Fields of the `Curve` of its vertices, as kernels take them.
+        Fields of the `CurveFields` of its vertices, as kernels take them.
     density : float
         Density in the cavity over that at ambient pressure.
     lean : (n, m) array
@@ -115,7 +115,7 @@ class FilmLine(RuptureLine):
 
     def _bend(self) -> None:
         """Give the vertices the curves of f and k."""
-        line, curve = Line(*self.block), Curve(*self.curve)
+        line, curve = LineFields(*self.block), CurveFields(*self.curve)
         curve.f[:], curve.k[:], curve.whole[:] = line.f, line.k, line.whole
 
     def see(
@@ -144,7 +144,7 @@ class FilmLine(RuptureLine):
 
     def settle(self, active: np.ndarray) -> None:
         """Set s of the ``active`` vertices (n, m) from the curves of the solved film, 1 elsewhere."""
-        np.copyto(self.s, np.where(active, Curve(*self.curve).s.reshape(active.shape), 1.0))
+        np.copyto(self.s, np.where(active, CurveFields(*self.curve).s.reshape(active.shape), 1.0))
 
     def weights(self, places: np.ndarray) -> np.ndarray:
         """Derivatives as of `RuptureLine.weights`, for a film of this density on its liner."""

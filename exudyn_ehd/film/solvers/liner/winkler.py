@@ -12,7 +12,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.states import OIL
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
-from exudyn_ehd.film.solvers.film import Film
+from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.elements import (
     Gaps,
     GapSlopes,
@@ -51,7 +51,7 @@ class WinklerElements:
     """Elements under a film, and the gaps that it sees, for given unknowns; parameters and attributes as for
     `LinerFilm`."""
 
-    def __init__(self, film: Film, liner: Liner) -> None:
+    def __init__(self, film: FilmArrays, liner: Liner) -> None:
         self.film, s, shape = film, film.system, film.grid.shape
         # the unknown pressure
         self.P = s.linear_pressure
