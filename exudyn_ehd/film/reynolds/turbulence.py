@@ -28,12 +28,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.reynolds.links import Fluidity, FluxEffect, LinkFlux
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
 # Taylor number Re sqrt(c / R) at which vortices set in between concentric cylinders; G. I. Taylor, Phil. Trans. R. Soc.
 # A 223 (1923) 289.
@@ -42,17 +44,21 @@ TAYLOR = 41.2
 ROUNDING = 0.04
 
 
-class _Transition:
+class _Transition(Checked):
     """Base of the turbulence laws: Reynolds numbers between which a film changes from laminar to turbulent."""
 
     onset: float | None
     full: float | None
 
-    def _check_transition(self) -> None:
+    checks: ClassVar = {
+        **dict.fromkeys(("onset", "full"), partial(POSITIVE, hint="it is a Reynolds number.")),
+        "coefficient": POSITIVE,
+        "exponent": partial(require_number, at_least=-1.0, at_most=0.0),
+    }
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         name = type(self).__name__
-        for key in ("onset", "full"):
-            if getattr(self, key) is not None:
-                require_number(f"{name}.{key}", getattr(self, key), above=0.0, hint="it is a Reynolds number.")
         if self.onset is not None and self.full is not None and not self.full > self.onset:
             raise InputError(
                 f"{name}.full must be above {name}.onset, got {self.full!r} and {self.onset!r}; the film is laminar up "
@@ -122,9 +128,6 @@ class NgPan(_Transition):
     onset: float | None = None
     full: float | None = None
 
-    def __post_init__(self) -> None:
-        self._check_transition()
-
     def _powers(self) -> np.ndarray:
         x, z = (0.0136 / 12.0, 0.90, 0.0, 0.0), (0.0043 / 12.0, 0.96, 0.0, 0.0)
         return np.array([x, z, (0.0012, 0.94, 0.0, 0.0)])
@@ -160,11 +163,6 @@ class Hirs(_Transition):
     full: float | None = None
     coefficient: float = 0.066
     exponent: float = -0.25
-
-    def __post_init__(self) -> None:
-        self._check_transition()
-        require_number("Hirs.coefficient", self.coefficient, above=0.0)
-        require_number("Hirs.exponent", self.exponent, at_least=-1.0, at_most=0.0)
 
     def _powers(self) -> np.ndarray:
         power = 1.0 + self.exponent

@@ -25,17 +25,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 from scipy.interpolate import CubicSpline
 
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.grid import STRETCH, bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.status import FilmError, Status, require_count, require_number
+from exudyn_ehd.status import Checked, FilmError, Status, require_count, require_number
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 FORMAT = 2
@@ -45,7 +47,7 @@ SMALLEST_ECCENTRICITY = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class ImpedanceMap:
+class ImpedanceMap(Checked):
     """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
 
     Built once per L/D and closure (a few seconds) and kept on disk; its error is sampled when it is built. A joint with
@@ -85,20 +87,19 @@ class ImpedanceMap:
 
     circumferential_pressure_flow = True
 
-    def __post_init__(self) -> None:
-        require_count("ImpedanceMap.n_theta", self.n_theta, at_least=64, hint="320 is a good start.")
-        require_count("ImpedanceMap.n_z", self.n_z, at_least=4, hint="10 is a good start.")
-        require_count("ImpedanceMap.n_eccentricity", self.n_eccentricity, at_least=8, hint="41 is a good start.")
-        require_count("ImpedanceMap.n_direction", self.n_direction, at_least=8, hint="81 is a good start.")
-        hint = "0.75 suits most bearings."
-        require_number("ImpedanceMap.stretch", self.stretch, at_least=0.0, at_most=0.95, hint=hint)
-        require_number(
-            "ImpedanceMap.largest_eccentricity_ratio",
-            self.largest_eccentricity_ratio,
+    checks: ClassVar = {
+        "n_theta": partial(require_count, at_least=64, hint="320 is a good start."),
+        "n_z": partial(require_count, at_least=4, hint="10 is a good start."),
+        "n_eccentricity": partial(require_count, at_least=8, hint="41 is a good start."),
+        "n_direction": partial(require_count, at_least=8, hint="81 is a good start."),
+        "stretch": STRETCH,
+        "largest_eccentricity_ratio": partial(
+            require_number,
             at_least=0.5,
             at_most=0.995,
             hint="closer to the wall use film=FiniteLength(...) with a contact.",
-        )
+        ),
+    }
 
 
 @dataclass(frozen=True, eq=False)

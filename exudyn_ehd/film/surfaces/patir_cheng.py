@@ -43,12 +43,14 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.film.surfaces.average_gap import ROUGHNESS, average_gap_ratio
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
 # gamma: C, r, smallest H, A1, a1, a2, a3, A2
 PATTERNS = {
@@ -80,7 +82,7 @@ TABLE_MIDDLE = 8.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class PatirCheng:
+class PatirCheng(Checked):
     """Flow and friction factors of rough surfaces; for films below about five times the roughness.
 
     Without an asperity contact the film ends where the nominal gap does; with one, both must name the same roughness.
@@ -114,23 +116,19 @@ class PatirCheng:
     pattern: float = 1.0
     journal_share: float = 0.5
 
+    checks: ClassVar = {
+        "composite_roughness": partial(POSITIVE, hint=f"{ROUGHNESS} roughness=None."),
+        "pattern": POSITIVE,
+        "journal_share": partial(NOT_NEGATIVE, at_most=1.0, hint="it is a share."),
+    }
+
     def __post_init__(self) -> None:
-        require_number(
-            "PatirCheng.composite_roughness",
-            self.composite_roughness,
-            "m",
-            above=0.0,
-            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with "
-            "roughness=None.",
-        )
-        pattern = require_number("PatirCheng.pattern", self.pattern, above=0.0)
-        if not any(math.isclose(pattern, known, rel_tol=1e-3) for known in PATTERNS):
+        super().__post_init__()
+        if not any(math.isclose(self.pattern, known, rel_tol=1e-3) for known in PATTERNS):
             raise InputError(
                 f"PatirCheng.pattern must be one of 1/9, 1/6, 1/3, 1, 3, 6, 9 (the computed patterns), got "
                 f"{self.pattern!r}; take the nearest one."
             )
-        hint = "it is a share."
-        require_number("PatirCheng.journal_share", self.journal_share, at_least=0.0, at_most=1.0, hint=hint)
 
 
 def pressure_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
