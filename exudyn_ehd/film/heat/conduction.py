@@ -173,47 +173,50 @@ class Rings:
         return np.column_stack((surface, inside))
 
 
-class Passage:
-    """Linear in the mean temperature and in what both sides have: ``q_a = to[a] T - sum over b of by[a][b] T_b``.
+def passed(
+    kappa: np.ndarray,
+    area: np.ndarray,
+    outward: tuple[float | None, float | None],
+    inside: np.ndarray,
+    own: float,
+    other: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Temperatures of both surfaces, and heat into them, W, (2, n, m, f) each.
 
-    A side of a given coefficient has ``q = U (s - T_wall)``, one that conducts by itself ``s = T_wall``.
+    They are linear in f temperatures, of which the last two lie outside both surfaces. Into surface a the film passes
+    ``q_a = kappa (inside[a] . temperatures - own s_a - other s_b)``; a surface with a coefficient has
+    ``q_a = U (s_a - T_a)``, one of a wall that conducts by itself ``s_a = T_a``.
 
     Parameters
     ----------
     kappa, area : (n, m) arrays
         k / h, W/(m2 K), and m2 of the vertices.
-    coefficients : (float or None, float or None)
+    outward : (float or None, float or None)
         U of both sides, W/(m2 K); None: the surface has the wall's temperature.
-
-    Attributes
-    ----------
-    to, by : lists of (n, m) arrays, lists of such lists
-        W/K.
-    transfer : (n, m) array
-        Of both sides together, W/K.
+    inside : (2, f) array
+        Zero for the temperatures outside.
+    own, other : float
     """
+    k = kappa[..., None]
+    meets = [0.0 if U is None else 1.0 for U in outward]
+    given = [1.0 if U is None else U for U in outward]
+    diagonal = [own * k * meet + U for meet, U in zip(meets, given, strict=True)]
+    known = k * np.array(meets)[:, None, None, None] * inside[:, None, None]
+    known[0, ..., -2], known[1, ..., -1] = given
+    determinant = diagonal[0] * diagonal[1] - (other * k) ** 2 * meets[0] * meets[1]
+    s = np.stack([(diagonal[1 - a] * known[a] - other * k * meets[a] * known[1 - a]) / determinant for a in (0, 1)])
+    return s, k * area[..., None] * (inside[:, None, None] - own * s - other * s[::-1])
 
-    def __init__(self, kappa: np.ndarray, area: np.ndarray, coefficients: tuple[float | None, float | None]) -> None:
-        # rows of both surfaces: own s_a + 2 kappa meets s_b = 6 kappa meets T + given T_a
-        own = [np.ones_like(kappa) if U is None else 4.0 * kappa + U for U in coefficients]
-        meets = [0.0 if U is None else 1.0 for U in coefficients]
-        given = [1.0 if U is None else U for U in coefficients]
-        determinant = own[0] * own[1] - 4.0 * kappa**2 * meets[0] * meets[1]
-        self.to, self.by = [], []
-        surface, mean = [], []
-        for a, b in ((0, 1), (1, 0)):
-            mean.append(6.0 * kappa * (own[b] * meets[a] - 2.0 * kappa * meets[a] * meets[b]) / determinant)
-            parts = [own[b] * given[a] / determinant, -2.0 * kappa * meets[a] * given[b] / determinant]
-            surface.append(parts if a == 0 else parts[::-1])
-        for a, b in ((0, 1), (1, 0)):
-            self.to.append(area * kappa * (6.0 - 4.0 * mean[a] - 2.0 * mean[b]))
-            self.by.append([area * kappa * (4.0 * surface[a][k] + 2.0 * surface[b][k]) for k in (0, 1)])
-        self.transfer = self.to[0] + self.to[1]
 
-    def gain(self, at: list[np.ndarray]) -> np.ndarray:
-        """Heat (n, m) from both sides at the temperatures ``at`` into a film of temperature 0, W."""
-        return sum((self.by[0][k] + self.by[1][k]) * at[k] for k in (0, 1))
+def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
+    """Heat into both surfaces, W per kelvin of a film's mean temperature and of those outside, (2, n, m, 3).
 
-    def heat(self, T: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
-        """Heat into both sides (n, m), W."""
-        return [self.to[a] * T - self.by[a][0] * at[0] - self.by[a][1] * at[1] for a in (0, 1)]
+    Parameters as for `passed`; ``kappa`` None: the coefficients act on the mean temperature.
+    """
+    if kappa is not None and outward != (0.0, 0.0):
+        return passed(kappa, area, outward, np.array([[6.0, 0.0, 0.0]] * 2), 4.0, 2.0)[1]
+    out = np.zeros((2, *area.shape, 3))
+    for a, U in enumerate(outward):
+        out[a, ..., 0] = (U or 0.0) * area
+        out[a, ..., 1 + a] = -out[a, ..., 0]
+    return out

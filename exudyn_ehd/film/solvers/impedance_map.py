@@ -38,9 +38,9 @@ from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.status import Checked, FilmError, Status, require_count, require_number
-from exudyn_ehd.storage import Shapes, cached_arrays
+from exudyn_ehd.storage import cached_arrays
 
-FORMAT = 2
+FORMAT = 3
 SAMPLES = 1000
 # Below this eccentricity ratio the direction of e is that of V; forces change by as much.
 SMALLEST_ECCENTRICITY = 1e-9
@@ -108,25 +108,39 @@ class ImpedanceTable:
 
     Attributes
     ----------
+    film : ImpedanceMap
     nodes : (n_eccentricity, n_direction, 8) array
         m, dm/ds, dm/dalpha, d2m/ds dalpha, then g alike.
-    step_s, step_alpha : float
-        Node distances.
-    largest_eccentricity_ratio : float
-    worst_error, median_error : float
+    errors : (SAMPLES,) array
         Of the force relative to the force of the film at the same state, over random states (eccentricity uniform in s,
         every direction, every orientation of the film's grid).
-    samples : int
-        Number of those states.
     """
 
+    film: ImpedanceMap
     nodes: np.ndarray
-    step_s: float
-    step_alpha: float
-    largest_eccentricity_ratio: float
-    worst_error: float
-    median_error: float
-    samples: int
+    errors: np.ndarray
+
+    @property
+    def steps(self) -> tuple[float, float]:
+        """Distances of the nodes in s and in alpha."""
+        s, alpha = _places(self.film)
+        return float(s[1]), float(alpha[1])
+
+    @property
+    def worst_error(self) -> float:
+        """Largest of the errors."""
+        return float(self.errors.max())
+
+    @property
+    def median_error(self) -> float:
+        """Median of the errors."""
+        return float(np.median(self.errors))
+
+
+def _places(film: ImpedanceMap) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes in s and in alpha."""
+    s = np.linspace(0.0, -math.log(1.0 - film.largest_eccentricity_ratio), film.n_eccentricity)
+    return s, np.linspace(0.0, math.pi, film.n_direction)
 
 
 class _SqueezeFilm:
@@ -153,11 +167,10 @@ class _SqueezeFilm:
         return self.scale * np.array([out[0] * c + out[1] * d, out[1] * c - out[0] * d])
 
 
-def build_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
-    """Solve the film on the nodes, fit, and measure the error at random states."""
+def build_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> dict[str, np.ndarray]:
+    """Solve the film on the nodes, fit, and measure the errors at random states; nodes and errors by name."""
     squeeze = _SqueezeFilm(film, closure, length_to_radius)
-    s = np.linspace(0.0, -math.log(1.0 - film.largest_eccentricity_ratio), film.n_eccentricity)
-    alpha = np.linspace(0.0, math.pi, film.n_direction)
+    s, alpha = _places(film)
     f = np.empty((s.size, alpha.size, 2))
     for i, si in enumerate(s):
         squeeze.solver.forget()
@@ -168,16 +181,7 @@ def build_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -
     g = np.remainder(g + math.pi, 2.0 * math.pi) - math.pi
     g[:, 0] = g[:, -1] = 0.0
     nodes = _fit(s, alpha, m, g)
-    errors = _sample_errors(squeeze, nodes, s[1], alpha[1], float(s[-1]))
-    return ImpedanceTable(
-        nodes=nodes,
-        step_s=float(s[1]),
-        step_alpha=float(alpha[1]),
-        largest_eccentricity_ratio=film.largest_eccentricity_ratio,
-        worst_error=float(errors.max()),
-        median_error=float(np.median(errors)),
-        samples=errors.size,
-    )
+    return {"nodes": nodes, "errors": _sample_errors(squeeze, nodes, s[1], alpha[1], float(s[-1]))}
 
 
 def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.ndarray:
@@ -332,23 +336,7 @@ def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
 
 def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
     """The map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
-
-    def compute() -> dict[str, np.ndarray]:
-        t = build_table(film, closure, length_to_radius)
-        scalars = t.step_s, t.step_alpha, t.largest_eccentricity_ratio, t.worst_error, t.median_error, t.samples
-        return {"nodes": t.nodes, "scalars": np.array(scalars, dtype=float)}
-
     condition = type(closure).__name__ + " in cells" * bool(closure.line_in_cells)
     key = repr((FORMAT, film, condition, float(length_to_radius), SAMPLES))
-    shapes: Shapes = {"nodes": (film.n_eccentricity, film.n_direction, 8), "scalars": (6,)}
-    data = cached_arrays("impedance_maps", key.encode(), shapes, compute)
-    v = data["scalars"]
-    return ImpedanceTable(
-        nodes=data["nodes"],
-        step_s=float(v[0]),
-        step_alpha=float(v[1]),
-        largest_eccentricity_ratio=float(v[2]),
-        worst_error=float(v[3]),
-        median_error=float(v[4]),
-        samples=int(v[5]),
-    )
+    data = cached_arrays("impedance_maps", key.encode(), lambda: build_table(film, closure, length_to_radius))
+    return ImpedanceTable(film=film, **data)

@@ -15,7 +15,7 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
-from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
+from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature, ViscosityField
@@ -58,11 +58,12 @@ def _rough_effects(bearing: JournalBearing) -> Effects:
     if bearing.roughness is None:
         return Effects(limiter=contact, contacts=() if contact is None else (contact,))
     residual = 0.0 if contact is None else contact.residual
+    rough = RoughFlow(bearing.roughness, c, residual)
     return Effects(
         limiter=AverageGap(bearing.roughness.composite_roughness / c, residual) if contact is None else contact,
         contacts=() if contact is None else (contact,),
-        flux=(RoughFlow(bearing.roughness, c, residual),),
-        shear_factor=RoughShear(bearing.roughness, c, residual),
+        flux=(rough,),
+        shear_factor=rough,
         uneven_drag=bearing.roughness.journal_share != 0.5,
     )
 

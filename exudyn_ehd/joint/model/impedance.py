@@ -88,12 +88,10 @@ class ImpedanceModel:
         ratio = bearing.length / bearing.journal_radius
         self.table: ImpedanceTable = impedance_table(bearing.film, bearing.closure, ratio)
         R, c, mu = bearing.journal_radius, bearing.radial_clearance, bearing.lubricant.viscosity
-        t = self.table
         self.parameters = np.array(
             [
-                t.step_s,
-                t.step_alpha,
-                t.largest_eccentricity_ratio,
+                *self.table.steps,
+                bearing.film.largest_eccentricity_ratio,
                 c,
                 R,
                 0.5 * bearing.length,

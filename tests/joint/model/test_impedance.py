@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
-import io
 import math
-import zipfile
 
 import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.solvers.impedance_map import (
-    FORMAT,
-    SAMPLES,
     ImpedanceTable,
     impedance_force,
     impedance_table,
@@ -49,7 +44,7 @@ def _motion(rng, largest=0.98, speed=150.0):
 def test_default_map_within_one_percent_of_the_film(make_bearing, measured, closure):
     """Relative to the force at the very state: rotation, squeeze and both, any orientation of the grid."""
     model = build_model(make_bearing(film=ehd.ImpedanceMap(), cavitation=closure))
-    assert model.table.samples >= 1000
+    assert model.table.errors.size >= 1000
     measured("reported worst error", model.table.worst_error, 0.01)
     measured("reported median error", model.table.median_error, 1e-4)
     film = build_model(make_bearing(film=ehd.FiniteLength(n_theta=320, n_z=10), cavitation=closure))
@@ -230,17 +225,6 @@ def test_studies_solve_the_film_behind_the_map(make_bearing):
     )
 
 
-def _bytes(write):
-    buffer = io.BytesIO()
-    write(buffer)
-    return buffer.getvalue()
-
-
-def _cut_member(file):
-    with zipfile.ZipFile(file, "w") as archive:
-        archive.writestr("nodes.npy", b"\x93NUMPY\x01\x00")
-
-
 @pytest.mark.slow
 def test_cache_is_used_detects_damage_and_is_optional(cache, monkeypatch, tmp_path):
     film, closure = dataclasses.replace(SMALL, n_direction=18), ehd.SwiftStieber()
@@ -271,31 +255,6 @@ def test_cache_is_used_detects_damage_and_is_optional(cache, monkeypatch, tmp_pa
     foreign.write_bytes(raw)
     with pytest.warns(UserWarning, match="damaged"):
         np.testing.assert_array_equal(impedance_table(film, ehd.Gumbel(), 2.0).nodes, other.nodes)
-    # the right digest does not make it the right content
-    key = hashlib.sha256(repr((FORMAT, film, type(closure).__name__, 2.0, SAMPLES)).encode()).digest()
-    assert hashlib.sha256(key + raw[32:]).digest() == raw[:32]
-    nodes = first.nodes
-    contents = (
-        {"a": nodes},
-        {"nodes": nodes},
-        {"nodes": nodes[:-1], "scalars": np.zeros(6)},
-        {"nodes": nodes.astype(complex), "scalars": np.zeros(6)},
-        {"nodes": np.where(nodes == nodes[3, 3, 0], np.nan, nodes), "scalars": np.zeros(6)},
-        {"nodes": nodes, "scalars": np.array(1.0)},
-        {"nodes": nodes, "scalars": np.zeros(6), "more": nodes},
-        {"nodes": np.array([None]), "scalars": np.zeros(6)},
-    )
-    payloads = [b"", b"no archive", b"PK\x03\x04 hardly one", _bytes(lambda f: np.save(f, nodes))]
-    payloads += [_bytes(lambda f, c=content: np.savez(f, **c)) for content in contents]
-    # an archive with a member that is cut short
-    payloads.append(_bytes(_cut_member))
-    # built already: what matters is that it is built, and replaces the file
-    monkeypatch.setattr("exudyn_ehd.film.solvers.impedance_map.build_table", lambda *args: first)
-    for payload in payloads:
-        path.write_bytes(hashlib.sha256(key + payload).digest() + payload)
-        with pytest.warns(UserWarning, match="no file of this package"):
-            np.testing.assert_array_equal(impedance_table(film, closure, 2.0).nodes, nodes)
-        assert path.read_bytes() == raw
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     monkeypatch.setenv("EXUDYN_EHD_CACHE", str(blocked))
