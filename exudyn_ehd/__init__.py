@@ -41,8 +41,9 @@ __version__ = "0.2.0"
 # Modules by public name, as type checkers read them. A module is imported when a name of it is asked for: film studies
 # need neither Exudyn nor the solid, a rigid bearing no solid.
 _STUB = ast.parse(pathlib.Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-_MODULES = {alias.name: node.module for node in _STUB.body if isinstance(node, ast.ImportFrom) for alias in node.names}
-__all__ = [*sorted(_MODULES)]
+_IMPORTS = [node for node in _STUB.body if isinstance(node, ast.ImportFrom)]
+_MODULES = dict(sorted((alias.name, node.module) for node in _IMPORTS for alias in node.names))
+__all__ = list(_MODULES)
 
 
 def __getattr__(name):

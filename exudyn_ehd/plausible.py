@@ -236,10 +236,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "GreenwoodTripp.composite_modulus",
         "composite_modulus.youngs_moduli",
     ),
-    "pressure coefficient": (
-        "BarusPressure.coefficient",
-        "RoelandsPressure.coefficient",
-    ),
+    "pressure coefficient": ("BarusPressure.coefficient", "RoelandsPressure.coefficient"),
     "compressibility": ("DowsonHigginson.coefficient", "DowsonHigginson.saturation"),
     "law's pressure": ("RoelandsPressure.reference_pressure",),
     "temperature coefficient": ("ReynoldsTemperature.coefficient", "WaltherTemperature.expansion"),
@@ -312,10 +309,8 @@ def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
 
     Parameters
     ----------
-    where : str
-        As of `kind_of`.
-    value : object
-        Value as given, for the message.
+    where, value
+        Argument, as of `kind_of`, and its value as given, for the message.
     size : float
         Its size in the unit of the table.
     """

@@ -32,8 +32,7 @@ from numba import njit
 from numpy.polynomial import Polynomial
 
 from exudyn_ehd.film.differences import drops, to_ends
-from exudyn_ehd.film.heat.conduction import passed
-from exudyn_ehd.film.heat.energy import downstream_weight
+from exudyn_ehd.film.heat.energy import downstream_weight, passed
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
@@ -121,7 +120,7 @@ def surfaces(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Temperatures of both surfaces, heat into them, W, and what conduction takes off heat and tilt, W.
 
-    Arguments as for `exudyn_ehd.film.heat.conduction.passed`; (2, n, m, 4) each.
+    Arguments as for `exudyn_ehd.film.heat.energy.passed`; (2, n, m, 4) each.
     """
     inside = np.array([[6.0, -10.0, 0.0, 0.0], [6.0, 10.0, 0.0, 0.0]])
     T, through = passed(kappa, area, outward, inside, 9.0, -3.0)

@@ -27,7 +27,6 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix, diags, kron
 
-from exudyn_ehd.film.differences import drop_weights
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.shear_profile import (
     FLOW_POINTS,
@@ -207,10 +206,8 @@ class ShearThinning(FluxEffect):
 
     def gather(self, weights: np.ndarray) -> np.ndarray:
         """Sums (n, m) by the film's unknown of weights (2, n, m) of the gradients at the vertices."""
-        back_x, on_x, back_z, on_z = self.weights
-        x = on_x[:, None] * weights[0] + np.roll(back_x[:, None] * weights[0], -1, axis=0)
-        z = on_z * weights[1] + np.roll(back_z * weights[1], -1, axis=1)
-        return -drop_weights(np.array((x, z))).sum(axis=0)
+        x, z = (w.ravel() @ gradient for w, gradient in zip(weights, self.operators, strict=True))
+        return np.reshape(x + z, weights.shape[1:])
 
     @cached_property
     def operators(self) -> tuple[csr_matrix, csr_matrix]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.heat.conduction import passage
-from exudyn_ehd.film.heat.energy import transport_slopes
+from exudyn_ehd.film.heat.energy import passage, transport_slopes
 from exudyn_ehd.joint.heat.power import OilFlows
 from exudyn_ehd.joint.heat.temperature import HeatedFilm, temperature_of
 from exudyn_ehd.joint.solved_film import SolvedFilm
