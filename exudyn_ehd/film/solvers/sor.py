@@ -118,9 +118,11 @@ class ClassicSolver(FilmSolver):
         super().__init__(grid, closure, squeeze=squeeze)
         self.coarse, self.symmetric = None, False
         self.film = film
-        steps, chosen = (float(grid.width_x[0]), float(grid.z[1] - grid.z[0])), film.relaxation
-        self.relaxation = best_relaxation(film.n_z, *steps) if chosen is None else chosen
-        self.slope_x, self.slope_z, self.curvature = difference_operators(grid.shape, *steps)
+        self.step_x = float(grid.width_x[0])
+        self.step_z = float(grid.z[1] - grid.z[0])
+        chosen = film.relaxation
+        self.relaxation = best_relaxation(film.n_z, self.step_x, self.step_z) if chosen is None else chosen
+        self.slope_x, self.slope_z, self.curvature = difference_operators(grid.shape, self.step_x, self.step_z)
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
@@ -131,26 +133,32 @@ class ClassicSolver(FilmSolver):
         s.cavity_pressure = cavity_pressure
         self.set_links()
         s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
+        sweeps = sor_solve(
+            self.H,
+            self.H_t,
+            self.squeeze,
+            vx,
+            vz,
+            self.step_x,
+            self.step_z,
+            g.fixed,
+            self.relaxation,
+            self.film.tolerance,
+            LARGEST_SWEEPS,
+            s.linear_pressure,
+        )
         np.logical_not(g.fixed, out=w.active)
         w.count, w.width = number_cells(w.active, s.kx, w.order, w.number)
-        h = self.H.ravel()
-        by_slope = (diags_array(3.0 * h * h * (d @ h)) @ d for d in (self.slope_x, self.slope_z))
-        self.differences = csr_matrix(sum(by_slope, diags_array(h**3) @ self.curvature))
-        source = vx * (self.slope_x @ h) + vz * (self.slope_z @ h)
-        if self.squeeze:
-            source += self.H_t.ravel()
-        rows = self.differences.indptr, self.differences.indices, self.differences.data, self.differences.diagonal()
-        unknowns, end = np.flatnonzero(w.active), (self.relaxation, self.film.tolerance)
-        sweeps = sor_solve(rows, source, unknowns, *end, s.linear_pressure.reshape(-1))
         clip_pressure(s.linear_pressure, g.fixed, cavity_pressure, s.pressure, w.active)
         ok = sweeps > 0 and bool(np.all(np.isfinite(s.linear_pressure)))
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), abs(sweeps)
 
     def factor_solution(self) -> None:
         """Factor the difference operator at the unknowns."""
-        w = self.work
+        w, h = self.work, self.H.ravel()
+        by_slope = (diags_array(3.0 * h * h * (d @ h)) @ d for d in (self.slope_x, self.slope_z))
         unknowns = w.order[: w.count]
-        a = coo_matrix(self.differences[unknowns][:, unknowns])
+        a = coo_matrix(csr_matrix(sum(by_slope, diags_array(h**3) @ self.curvature))[unknowns][:, unknowns])
         (lower, upper), above = self._bands(), a.col >= a.row
         lower[:] = upper[:] = 0.0
         upper[a.row[above], (a.col - a.row)[above]] = a.data[above]
@@ -191,25 +199,51 @@ def difference_operators(
 
 
 @njit(cache=True)
-def sor_solve(matrix, source, unknowns, relaxation, tolerance, P):
-    """SOR in place for the pressures P (k,) at the ``unknowns``; returns the sweeps, negative if not converged.
+def _differences(H, prv, i, nxt, j, dx, dz):
+    """Differences of the gap in theta and in z, and the coefficients of P at a vertex and at its neighbours."""
+    h, ix, iz = H[i, j], 1.0 / (dx * dx), 1.0 / (dz * dz)
+    x, z = H[nxt, j] - H[prv, j], H[i, j + 1] - H[i, j - 1]
+    cube, lean_x, lean_z = h * h * h, 0.75 * h * h * x, 0.75 * h * h * z
+    around = (cube - lean_x) * ix, (cube + lean_x) * ix, (cube - lean_z) * iz, (cube + lean_z) * iz
+    return x, z, -2.0 * cube * (ix + iz), around
 
-    ``matrix``: starts of the rows, columns, values and diagonal of a compressed matrix of rows.
+
+@njit(cache=True)
+def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, largest_sweeps, P):
+    """SOR in place; P (n, m) holds the prescribed values at fixed vertices.
+
+    Returns the sweeps, negative if not converged.
     """
-    starts, columns, values, diagonal = matrix
-    for sweep in range(1, LARGEST_SWEEPS + 1):
+    n, m = H.shape
+    a = np.zeros((n, m, 5))
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(1, m - 1):
+            jump_x, jump_z, diagonal, around = _differences(H, prv, i, nxt, j, dx, dz)
+            for k in range(4):
+                a[i, j, k] = around[k] / diagonal
+            source = 0.5 * (vx * jump_x / dx + vz * jump_z / dz)
+            if squeeze:
+                source += H_t[i, j]
+            a[i, j, 4] = source / diagonal
+    for sweep in range(1, largest_sweeps + 1):
         change = 0.0
         total = 0.0
-        for r in unknowns:
-            left = source[r]
-            for k in range(starts[r], starts[r + 1]):
-                left -= values[k] * P[columns[k]]
-            step = relaxation * left / diagonal[r]
-            P[r] += step
-            change += abs(step)
-            total += abs(P[r])
+        for i in range(n):
+            prv = i - 1 if i > 0 else n - 1
+            nxt = i + 1 if i + 1 < n else 0
+            for j in range(1, m - 1):
+                if fixed[i, j]:
+                    continue
+                c = a[i, j]
+                target = c[4] - c[0] * P[prv, j] - c[1] * P[nxt, j] - c[2] * P[i, j - 1] - c[3] * P[i, j + 1]
+                step = relaxation * (target - P[i, j])
+                P[i, j] += step
+                change += abs(step)
+                total += abs(P[i, j])
         if not total < LARGEST_SUM:
             return -sweep
         if change <= tolerance * total:
             return sweep
-    return -LARGEST_SWEEPS
+    return -largest_sweeps
