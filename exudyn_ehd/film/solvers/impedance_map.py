@@ -41,7 +41,6 @@ from exudyn_ehd.status import Checked, FilmError, Status, require_count, require
 from exudyn_ehd.storage import cached_arrays
 
 FORMAT = 3
-SAMPLES = 1000
 # Below this eccentricity ratio the direction of e is that of V; forces change by as much.
 SMALLEST_ECCENTRICITY = 1e-9
 
@@ -50,10 +49,10 @@ SMALLEST_ECCENTRICITY = 1e-9
 class ImpedanceMap(Checked):
     """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
 
-    Built once per L/D and closure (a few seconds) and kept on disk; its error is sampled when it is built. A joint with
-    it refuses tilted journals and states beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and
-    minimum film thickness, but no pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient
-    pressure at the ends and in the cavity, the squeeze term, a closed ring and no further effect.
+    Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states
+    beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum film thickness, but no
+    pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the
+    cavity, the squeeze term, a closed ring and no further effect.
 
     Parameters
     ----------
@@ -102,90 +101,47 @@ class ImpedanceMap(Checked):
     }
 
 
-@dataclass(frozen=True, eq=False)
-class ImpedanceTable:
-    """A built map.
-
-    Attributes
-    ----------
-    film : ImpedanceMap
-    nodes : (n_eccentricity, n_direction, 8) array
-        m, dm/ds, dm/dalpha, d2m/ds dalpha, then g alike.
-    errors : (SAMPLES,) array
-        Of the force relative to the force of the film at the same state, over random states (eccentricity uniform in s,
-        every direction, every orientation of the film's grid).
-    """
-
-    film: ImpedanceMap
-    nodes: np.ndarray
-    errors: np.ndarray
-
-    @property
-    def steps(self) -> tuple[float, float]:
-        """Distances of the nodes in s and in alpha."""
-        s, alpha = _places(self.film)
-        return float(s[1]), float(alpha[1])
-
-    @property
-    def worst_error(self) -> float:
-        """Largest of the errors."""
-        return float(self.errors.max())
-
-    @property
-    def median_error(self) -> float:
-        """Median of the errors."""
-        return float(np.median(self.errors))
-
-
-def _places(film: ImpedanceMap) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes in s and in alpha."""
+def places(film: ImpedanceMap) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of a map in s and in alpha."""
     s = np.linspace(0.0, -math.log(1.0 - film.largest_eccentricity_ratio), film.n_eccentricity)
     return s, np.linspace(0.0, math.pi, film.n_direction)
 
 
-class _SqueezeFilm:
-    """Dimensionless squeeze force of the film behind a map: f with F = -(L D mu / psi^2) |V| / c f."""
-
-    def __init__(self, film: ImpedanceMap, closure: Closure, length_to_radius: float) -> None:
-        self.grid = bearing_grid(1.0, length_to_radius, film.n_theta, film.n_z, stretch=film.stretch)
-        self.solver = FilmSolver(self.grid, closure)
-        self.scale = 6.0 / length_to_radius
-
-    def force(self, eps: float, alpha: float, turn: float = 0.0) -> np.ndarray:
-        """f (2,) along e and across, for e at the angle ``turn`` of the grid and V at ``turn + alpha``."""
-        s, at = self.solver, self.grid.directions
-        pose = np.array([eps * math.cos(turn), eps * math.sin(turn), 0.0, 0.0])
-        rate = np.array([math.cos(turn + alpha), math.sin(turn + alpha), 0.0, 0.0])
-        rigid_gaps(pose, rate, True, at, 0.0, s.H, s.HF, s.H_t)
-        s.pressure[:, 0] = s.pressure[:, -1] = 0.0
-        status, _ = s.solve(0.0, 0.0, 0.0)
-        if status is not Status.CONVERGED:
-            raise FilmError(f"ImpedanceMap: {status.name} at eccentricity ratio {eps:.4f}: {status.advice}")
-        out = np.empty(4)
-        pressure_integrals(s.pressure, self.grid.weight, at[0], at[1], at[4], out)
-        c, d = math.cos(turn), math.sin(turn)
-        return self.scale * np.array([out[0] * c + out[1] * d, out[1] * c - out[0] * d])
-
-
-def build_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> dict[str, np.ndarray]:
-    """Solve the film on the nodes, fit, and measure the errors at random states; nodes and errors by name."""
-    squeeze = _SqueezeFilm(film, closure, length_to_radius)
-    s, alpha = _places(film)
+def build_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
+    """Solve the film at the nodes, and fit."""
+    grid = bearing_grid(1.0, length_to_radius, film.n_theta, film.n_z, stretch=film.stretch)
+    solver, (s, alpha) = FilmSolver(grid, closure), places(film)
     f = np.empty((s.size, alpha.size, 2))
     for i, si in enumerate(s):
-        squeeze.solver.forget()
+        solver.forget()
         for j, a in enumerate(alpha):
-            f[i, j] = squeeze.force(1.0 - math.exp(-si), a)
+            f[i, j] = _squeeze_force(solver, 1.0 - math.exp(-si), a)
+    f *= 6.0 / length_to_radius
     m = np.log(np.hypot(f[..., 0], f[..., 1]))
     g = np.arctan2(f[..., 1], f[..., 0]) - alpha
     g = np.remainder(g + math.pi, 2.0 * math.pi) - math.pi
     g[:, 0] = g[:, -1] = 0.0
-    nodes = _fit(s, alpha, m, g)
-    return {"nodes": nodes, "errors": _sample_errors(squeeze, nodes, s[1], alpha[1], float(s[-1]))}
+    return _fit(s, alpha, m, g)
+
+
+def _squeeze_force(s: FilmSolver, eps: float, alpha: float) -> np.ndarray:
+    """Scaled force (2,) along e and across, for a velocity at the angle ``alpha`` from e."""
+    at, rate = s.grid.directions, np.array([math.cos(alpha), math.sin(alpha), 0.0, 0.0])
+    rigid_gaps(np.array([eps, 0.0, 0.0, 0.0]), rate, True, at, 0.0, s.H, s.HF, s.H_t)
+    s.pressure[:, 0] = s.pressure[:, -1] = 0.0
+    status, _ = s.solve(0.0, 0.0, 0.0)
+    if status is not Status.CONVERGED:
+        raise FilmError(f"ImpedanceMap: {status.name} at eccentricity ratio {eps:.4f}: {status.advice}")
+    out = np.empty(4)
+    pressure_integrals(s.pressure, s.grid.weight, at[0], at[1], at[4], out)
+    return out[:2]
 
 
 def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.ndarray:
-    """Node values and spline slopes; m even and g odd about alpha = 0 and pi, both smooth in the plane at eps = 0."""
+    """Nodes (n_eccentricity, n_direction, 8): m, dm/ds, dm/dalpha, d2m/ds dalpha, then g alike, with spline slopes.
+
+    m is even and g odd about alpha = 0 and pi, both are smooth in the plane at eps = 0.
+    """
     m[0], g[0] = m[0].mean(), 0.0
     nodes = np.empty((s.size, alpha.size, 8))
     first = (np.cos(alpha), np.sin(alpha))
@@ -199,21 +155,6 @@ def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.n
         nodes[..., 4 * k + 2] = CubicSpline(alpha, field, axis=1, bc_type=ends)(alpha, 1)
         nodes[..., 4 * k + 3] = CubicSpline(alpha, field_s, axis=1, bc_type=ends)(alpha, 1)
     return nodes
-
-
-def _sample_errors(
-    squeeze: _SqueezeFilm, nodes: np.ndarray, step_s: float, step_alpha: float, largest_s: float
-) -> np.ndarray:
-    rng = np.random.default_rng(1)
-    errors, out = np.empty(SAMPLES), np.empty(6)
-    for k in range(SAMPLES):
-        eps, alpha = 1.0 - math.exp(-rng.uniform(0.0, largest_s)), rng.uniform(0.0, math.pi)
-        squeeze.solver.forget()
-        exact = squeeze.force(eps, alpha, rng.uniform(0.0, 2.0 * math.pi))
-        interpolate(nodes, step_s, step_alpha, -math.log(1.0 - eps), alpha, out)
-        guess = math.exp(out[0]) * np.array([math.cos(alpha + out[3]), math.sin(alpha + out[3])])
-        errors[k] = np.linalg.norm(guess - exact) / np.linalg.norm(exact)
-    return errors
 
 
 @njit(cache=True)
@@ -334,9 +275,11 @@ def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
     return 0
 
 
-def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
-    """The map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
+def impedance_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
+    """Nodes of the map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
     condition = type(closure).__name__ + " in cells" * bool(closure.line_in_cells)
-    key = repr((FORMAT, film, condition, float(length_to_radius), SAMPLES))
-    data = cached_arrays("impedance_maps", key.encode(), lambda: build_table(film, closure, length_to_radius))
-    return ImpedanceTable(film=film, **data)
+    key = repr((FORMAT, film, condition, float(length_to_radius)))
+    data = cached_arrays(
+        "impedance_maps", key.encode(), lambda: {"nodes": build_nodes(film, closure, length_to_radius)}
+    )
+    return data["nodes"]
