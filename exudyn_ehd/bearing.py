@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, get_args
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar, get_args
 
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
@@ -33,9 +34,11 @@ from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.film.thrust.options import ThrustFaces, check_faces
 from exudyn_ehd.status import (
+    POSITIVE,
+    Checked,
     InputError,
     PlausibilityWarning,
-    require_number,
+    require_bool,
     require_type,
     require_vector,
     warn_user,
@@ -89,7 +92,7 @@ Inlet = Periodic | MaximumGap
 
 
 @dataclass(frozen=True, kw_only=True)
-class JournalBearing:
+class JournalBearing(Checked):
     """A journal bearing, described once for steady studies and joints alike.
 
     Parameters
@@ -173,8 +176,23 @@ class JournalBearing:
     turbulence: NgPan | Hirs | None = None
     thrust: ThrustFaces | None = None
 
+    checks: ClassVar = {
+        "journal_radius": partial(POSITIVE, hint="it is half the diameter."),
+        "length": POSITIVE,
+        "radial_clearance": partial(
+            POSITIVE, hint="it is bore radius minus journal radius; if yours is diametral, halve it."
+        ),
+        "squeeze": require_bool,
+    }
+
     def __post_init__(self) -> None:
-        self._check_sizes()
+        super().__post_init__()
+        if self.radial_clearance > THICKEST_FILM_RATIO * self.journal_radius:
+            raise InputError(
+                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a "
+                f"thin film, got {self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, "
+                "usual clearances a thousandth of the radius."
+            )
         for name, types in _OPTIONS.items():
             require_type(f"JournalBearing.{name}", getattr(self, name), *types)
         for profile in self.profiles:
@@ -183,8 +201,6 @@ class JournalBearing:
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
         require_areas(self.supply)
-        if not isinstance(self.squeeze, bool):
-            raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
         open_ring = isinstance(self.inlet, MaximumGap)
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         if isinstance(self.film, ImpedanceMap):
@@ -197,19 +213,6 @@ class JournalBearing:
         self._check_clearance()
         if self.journal is not None or not isinstance(self.bush, ElasticLiner | None):
             _check_elastic(self)
-
-    def _check_sizes(self) -> None:
-        radius, clearance = self.journal_radius, self.radial_clearance
-        require_number("JournalBearing.journal_radius", radius, "m", above=0.0, hint="it is half the diameter.")
-        require_number("JournalBearing.length", self.length, "m", above=0.0)
-        hint = "it is bore radius minus journal radius; if yours is diametral, halve it."
-        require_number("JournalBearing.radial_clearance", clearance, "m", above=0.0, hint=hint)
-        if clearance > THICKEST_FILM_RATIO * radius:
-            raise InputError(
-                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a "
-                f"thin film, got {clearance!r} m at {radius!r} m; lengths are in metres, usual clearances a thousandth "
-                "of the radius."
-            )
 
     def _check_plain(self) -> None:
         """Check for `ImpedanceMap`: nothing besides geometry, viscosity and a closure at ambient cavity pressure."""

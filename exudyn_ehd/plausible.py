@@ -236,10 +236,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "GreenwoodTripp.composite_modulus",
         "composite_modulus.youngs_moduli",
     ),
-    "pressure coefficient": (
-        "BarusPressure.coefficient",
-        "RoelandsPressure.coefficient",
-    ),
+    "pressure coefficient": ("BarusPressure.coefficient", "RoelandsPressure.coefficient"),
     "compressibility": ("DowsonHigginson.coefficient", "DowsonHigginson.saturation"),
     "law's pressure": ("RoelandsPressure.reference_pressure",),
     "temperature coefficient": ("ReynoldsTemperature.coefficient", "WaltherTemperature.expansion"),
@@ -302,23 +299,23 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
 ARGUMENTS: dict[str, str] = {argument: kind for kind, group in _ARGUMENTS.items() for argument in group}
 
 
+def kind_of(where: str) -> Kind | None:
+    """Quantity of ``Class.argument`` or ``function: argument``, as in messages; None without a dimension."""
+    return KINDS.get(ARGUMENTS.get(where.replace(": ", ".").replace(" ", "."), ""))
+
+
 def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
     """Return a message on an implausible size of an argument, and whether it is an error; None if it is plausible.
 
     Parameters
     ----------
-    where : str
-        ``Class.argument`` or ``function: argument``, as in messages.
-    value : object
-        Value as given, for the message.
+    where, value
+        Argument, as of `kind_of`, and its value as given, for the message.
     size : float
         Its size in the unit of the table.
     """
-    name = ARGUMENTS.get(where.replace(": ", ".").replace(" ", "."))
-    if name is None or size == 0.0:
-        return None
-    kind = KINDS[name]
-    if kind.low <= size <= kind.high:
+    kind = kind_of(where)
+    if kind is None or size == 0.0 or kind.low <= size <= kind.high:
         return None
     meant = ((unit, factor * size) for unit, factor in kind.others if kind.low <= factor * size <= kind.high)
     advice = next((f"if it is in {unit}, give {number:.3g}." for unit, number in meant), "check its unit.")

@@ -10,13 +10,13 @@ import math
 import re
 import sys
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import ge, gt, le, lt
-from typing import TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from exudyn_ehd.plausible import doubt
+from exudyn_ehd.plausible import doubt, kind_of
 
 Item = TypeVar("Item")
 # Largest number of vertices of a film grid in one direction. The error of the load falls with its square, 0.05 % at 192
@@ -267,7 +267,7 @@ def require_number(
     value : float
         Value given by the user.
     unit : str
-        SI unit for the message.
+        SI unit for the message; left out, that of the argument in `exudyn_ehd.plausible`.
     above, at_least, below, at_most : float, optional
         Exclusive and inclusive bounds.
     hint : str
@@ -279,6 +279,9 @@ def require_number(
     if len(bounds) == 2:
         bounds[1] = (f"within {bounds[0][1]:g} and {bounds[1][1]:g}", *bounds[1][1:])
     expected = bounds[0][0] if bounds else "finite"
+    kind = kind_of(where)
+    if not unit and kind is not None:
+        unit = kind.unit
     unit = f" {unit}" if unit else ""
     tail = f"; {hint}" if hint else "."
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
@@ -292,13 +295,6 @@ def require_number(
         raise InputError(f"{where} must be {broken[0] if broken else expected}{unit}, got {value!r}{tail}")
     require_plausible(where, value, number)
     return number
-
-
-def require_numbers(item: object, *, above: float | None = None, at_least: float | None = None, **units: str) -> None:
-    """Check attributes of an object by `require_number`; keywords are their names, with their units as values."""
-    for name, unit in units.items():
-        where = f"{type(item).__name__}.{name}"
-        require_number(where, getattr(item, name), unit, above=above, at_least=at_least)
 
 
 def require_integer(where: str, value: int, *, at_least: int, hint: str = "") -> int:
@@ -380,6 +376,32 @@ def require_bool(where: str, value: object) -> bool:
     if not isinstance(value, (bool, np.bool_, int, np.integer)) or value not in (0, 1):
         raise InputError(f"{where} must be True or False, got {value!r}.")
     return bool(value)
+
+
+# Checks of single arguments for the tables of `Checked`.
+POSITIVE = functools.partial(require_number, above=0.0)
+NOT_NEGATIVE = functools.partial(require_number, at_least=0.0)
+KELVIN = functools.partial(POSITIVE, hint="0 degrees Celsius are 273.15 K.")
+SHARE = functools.partial(POSITIVE, at_most=1.0)
+
+
+class Checked:
+    """Base of descriptions whose arguments are checked one by one.
+
+    Attributes
+    ----------
+    checks : mapping
+        Functions of ``Class.argument`` and value by argument, such as a partial `require_number`. An argument that is
+        None by default may stay so.
+    """
+
+    checks: ClassVar[Mapping[str, Callable[[str, Any], object]]] = {}
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+            value = getattr(self, field.name)
+            if field.name in self.checks and not (value is None and field.default is None):
+                self.checks[field.name](f"{type(self).__name__}.{field.name}", value)
 
 
 def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, unit: str = "") -> np.ndarray:

@@ -1,10 +1,10 @@
 """Storage on disk: files that are either whole or absent, and arrays kept between runs.
 
 Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. Their
-file carries a digest of key and content, and must hold the arrays asked for: a damaged or foreign one gives a warning
-and is replaced. Simultaneous runs don't disturb each other, since a file appears under its name only when complete. If
-a folder can't be written, every run computes the arrays again. When the folder is full, the file unused for longest is
-deleted. numba keeps compiled kernels in folders of its own; where it finds none, the process gets one.
+file begins with a digest of key and content: a damaged or foreign one gives a warning and is replaced. Simultaneous
+runs don't disturb each other, since a file appears under its name only when complete. If a folder can't be written,
+every run computes the arrays again. When the folder is full, the file unused for longest is deleted. numba keeps
+compiled kernels in folders of its own; where it finds none, the process gets one.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ import tempfile
 import time
 import types
 import warnings
-import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -37,7 +36,6 @@ CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
 LARGEST_CACHE, LONGEST_WRITE = 3e8, 3600.0
 
 Arrays = dict[str, np.ndarray]
-Shapes = Mapping[str, tuple[int | str, ...]]
 
 
 def require_path(where: str, path: object, suffix: str = "") -> pathlib.Path:
@@ -180,7 +178,7 @@ def _probe() -> None:
     """A function for numba to look for a folder for."""
 
 
-def cached_arrays(name: str, key: bytes, shapes: Shapes, compute: Callable[[], Arrays]) -> Arrays:
+def cached_arrays(name: str, key: bytes, compute: Callable[[], Arrays]) -> Arrays:
     """Arrays from the disk, or computed and stored there.
 
     Parameters
@@ -189,15 +187,12 @@ def cached_arrays(name: str, key: bytes, shapes: Shapes, compute: Callable[[], A
         Start of the file's name, of the warning about a damaged file, and what long work says that it makes.
     key : bytes
         Everything that determines the arrays, a number for the format and for the algorithm included.
-    shapes : mapping
-        Names and shapes of the arrays, all of finite floats; a letter for a
-        length that the key doesn't tell, the same for the same length.
     compute : function
         Makes the arrays.
     """
     digest = hashlib.sha256(key).digest()
     path = cache_folder() / f"{name}_{digest.hex()[:24]}.bin"
-    stored = _read(path, digest, shapes)
+    stored = _read(path, digest)
     if stored is not None:
         return stored
     with announced(f"exudyn_ehd: computing {name.replace('_', ' ')}; later runs read them from the disk ..."):
@@ -206,44 +201,20 @@ def cached_arrays(name: str, key: bytes, shapes: Shapes, compute: Callable[[], A
     return arrays
 
 
-def _read(path: pathlib.Path, digest: bytes, shapes: Shapes) -> Arrays | None:
+def _read(path: pathlib.Path, digest: bytes) -> Arrays | None:
     try:
         raw = path.read_bytes()
     except OSError:
         return None
     if hashlib.sha256(digest + raw[32:]).digest() != raw[:32]:
-        _warn(path, "damaged")
+        warnings.warn(f"exudyn_ehd: the cache file {path.name} is damaged; it is built again.", stacklevel=4)
         return None
-    try:
-        with np.load(io.BytesIO(raw[32:]), allow_pickle=False) as data:
-            arrays = {name: data[name] for name in data.files}
-    # whatever numpy finds in bytes that are no archive of arrays
-    except (ValueError, OSError, EOFError, KeyError, AttributeError, TypeError, zipfile.BadZipFile):
-        _warn(path, "no file of this package")
-        return None
-    if arrays.keys() != shapes.keys() or not _fit(arrays, shapes):
-        _warn(path, "no file of this package's version")
-        return None
+    with np.load(io.BytesIO(raw[32:]), allow_pickle=False) as data:
+        arrays = {name: data[name] for name in data.files}
     # files that nobody reads go first, see _make_room
     with suppress(OSError):
         os.utime(path)
     return arrays
-
-
-def _fit(arrays: Arrays, shapes: Shapes) -> bool:
-    lengths: dict[str, int] = {}
-    for name, shape in shapes.items():
-        array = arrays[name]
-        if array.dtype != np.float64 or array.ndim != len(shape) or not np.all(np.isfinite(array)):
-            return False
-        for have, want in zip(array.shape, shape, strict=True):
-            if have != (lengths.setdefault(want, have) if isinstance(want, str) else want):
-                return False
-    return True
-
-
-def _warn(path: pathlib.Path, why: str) -> None:
-    warnings.warn(f"exudyn_ehd: the cache file {path.name} is {why}; it is built again.", stacklevel=5)
 
 
 def _write(path: pathlib.Path, digest: bytes, arrays: Arrays) -> None:

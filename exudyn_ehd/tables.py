@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import csv
 import html
-import itertools
 import pathlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -94,17 +93,17 @@ def format_seconds(value: float) -> str:
     return f"{value * 1e9:.3g} ns"
 
 
-def text_table(
-    columns: Mapping[str, np.ndarray], *, more: Mapping[str, str] | None = None, remarks: Sequence[str] = ()
-) -> str:
-    """Aligned text of columns (n,) with a line of heads; ``remarks`` (n,) follow the rows."""
-    head = heads(list(columns), more)
-    rows = [[f"{value:.5g}" for value in row] for row in zip(*columns.values(), strict=True)]
-    widths = [max(len(row[i]) for row in [head, *rows]) for i in range(len(head))]
-    lines = ["  ".join(text.rjust(w) for text, w in zip(row, widths, strict=True)) for row in [head, *rows]]
-    for k, remark in enumerate(remarks):
-        lines[k + 1] = f"{lines[k + 1]}  {remark}".rstrip()
-    return "\n".join(lines)
+def rows_of(
+    columns: Mapping[str, np.ndarray],
+    write: Callable[[float], str],
+    more: Mapping[str, str] | None = None,
+    remarks: Mapping[str, Sequence[str]] | None = None,
+) -> Iterator[list[str]]:
+    """Yield heads with units, then a row of texts per line of columns (n,): numbers by ``write``, and the remarks."""
+    remarks = remarks or {}
+    yield [*heads(list(columns), more), *remarks]
+    for k, row in enumerate(zip(*columns.values(), strict=True)):
+        yield [*(write(value) for value in row), *(texts[k] for texts in remarks.values())]
 
 
 def html_table(rows: Sequence[Sequence[str]]) -> str:
@@ -157,15 +156,17 @@ class Table:
         return data_frame({**self._columns(), **self._remarks()})
 
     def __str__(self) -> str:
-        remarks = list(zip(*self._remarks().values(), strict=True))
-        return text_table(self._columns(), more=self._units(), remarks=["  ".join(texts) for texts in remarks])
+        count, (head, *rows) = len(self._columns()), self._rows()
+        widths = [max(len(row[i]) for row in [head, *rows]) for i in range(count)]
+        texts = [[text.rjust(w) for text, w in zip(row, widths, strict=False)] for row in [head, *rows]]
+        remarks = [[], *(row[count:] for row in rows)]
+        return "\n".join("  ".join(row + more).rstrip() for row, more in zip(texts, remarks, strict=True))
 
     def _repr_html_(self) -> str:
-        columns, remarks = self._columns(), self._remarks()
-        values = zip(*columns.values(), strict=True)
-        texts = [[f"{value:.5g}" for value in row] for row in values]
-        rows = [[*row, *(texts[k] for texts in remarks.values())] for k, row in enumerate(texts)]
-        return html_table([[*heads(list(columns), self._units()), *remarks], *rows])
+        return html_table(self._rows())
+
+    def _rows(self) -> list[list[str]]:
+        return list(rows_of(self._columns(), "{:.5g}".format, self._units(), self._remarks()))
 
     def _columns(self) -> dict[str, np.ndarray]:
         raise NotImplementedError
@@ -189,11 +190,5 @@ def write_csv(
     Numbers read back bit for bit; ``remarks`` are columns of text at the end.
     """
     require_path("to_csv", path)
-    remarks = remarks or {}
-    head = [*heads(list(columns), more), *remarks]
-    values = (
-        [*(repr(float(value)) for value in row), *(texts[k] for texts in remarks.values())]
-        for k, row in enumerate(zip(*columns.values(), strict=True))
-    )
     with replacing(path) as file:
-        csv.writer(file).writerows(itertools.chain([head], values))
+        csv.writer(file).writerows(rows_of(columns, lambda value: repr(float(value)), more, remarks))

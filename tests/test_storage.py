@@ -31,7 +31,7 @@ def test_package_runs_where_nothing_can_be_written(nowhere, tmp_path):
     code = (
         "import os, sys, exudyn_ehd.storage as s; from exudyn_ehd.film.loads import np; from numba import njit;"
         "assert os.path.isdir(os.environ['NUMBA_CACHE_DIR']);"
-        "x = s.cached_arrays('x', b'', {'a': (2,)}, lambda: {'a': s.np.ones(2)}); print(s.__file__, x['a'].sum())"
+        "x = s.cached_arrays('x', b'', lambda: {'a': s.np.ones(2)}); print(s.__file__, x['a'].sum())"
     )
     done = subprocess.run([sys.executable, "-c", code], env=nowhere, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -46,7 +46,7 @@ def test_who_has_no_home_keeps_nothing(monkeypatch):
     monkeypatch.setattr("os.path.expanduser", lambda path: path)
     calls = []
     for _ in range(2):
-        cached_arrays("x", b"", {"a": (1,)}, lambda: calls.append(1) or {"a": np.zeros(1)})
+        cached_arrays("x", b"", lambda: calls.append(1) or {"a": np.zeros(1)})
     assert len(calls) == 2
 
 
@@ -60,7 +60,7 @@ def test_a_full_cache_loses_what_was_not_used_for_longest(tmp_path, monkeypatch)
             computed.append(name)
             return {"a": np.full(10_000, 1.0)}
 
-        cached_arrays("x", name.encode(), {"a": (10_000,)}, compute)
+        cached_arrays("x", name.encode(), compute)
         # times of files may be as coarse as the system's clock
         time.sleep(0.02)
 

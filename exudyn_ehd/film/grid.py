@@ -19,12 +19,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.status import require_bool, require_count, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, require_bool, require_count, require_number
+
+# Check of the axial stretching of a film model's grid.
+STRETCH = partial(NOT_NEGATIVE, at_most=0.95, hint="0.75 suits most bearings.")
 
 
 class Mesh(NamedTuple):
@@ -292,9 +295,9 @@ def bearing_grid(
     >>> grid.shape
     (48, 7)
     """
-    for name, value in (("radius", radius), ("length", length)):
-        require_number(f"bearing_grid: {name}", value, "m", above=0.0)
-    require_number("bearing_grid: start_angle", start_angle, "rad")
+    POSITIVE("bearing_grid: radius", radius)
+    POSITIVE("bearing_grid: length", length)
+    require_number("bearing_grid: start_angle", start_angle)
     require_count("bearing_grid: n_theta", n_theta, at_least=3)
     _check_grid("bearing_grid", n_z, stretch, open_ring=open_ring)
     step = 2.0 * math.pi / n_theta
@@ -382,7 +385,7 @@ def slider_grid(
     """
     scale = length if reference_length is None else reference_length
     for name, value in (("length", length), ("width", width), ("reference_length", scale)):
-        require_number(f"slider_grid: {name}", value, "m", above=0.0)
+        POSITIVE(f"slider_grid: {name}", value)
     require_count("slider_grid: n_x", n_x, at_least=1)
     _check_grid("slider_grid", n_z, stretch, sealed_sides=sealed_sides)
     step = length / scale / n_x

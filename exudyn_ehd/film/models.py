@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import ClassVar
 
 from exudyn_ehd.film.cavitation.closures import Closure, Gumbel
-from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
+from exudyn_ehd.film.grid import STRETCH, FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect
@@ -22,7 +24,7 @@ from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.status import InputError, require_count, require_number
+from exudyn_ehd.status import Checked, InputError, require_count
 
 # Columns of a film that leaves them to the bearing.
 FEWEST_COLUMNS, MOST_COLUMNS = 96, 176
@@ -30,8 +32,33 @@ FEWEST_COLUMNS, MOST_COLUMNS = 96, 176
 LARGEST_MATRIX = 4e9
 
 
+class _OnVertices(Checked):
+    """Base of the films on vertices in theta and z: checks of their grid."""
+
+    n_theta: int | None
+    n_z: int
+    circumferential_pressure_flow: bool
+
+    checks: ClassVar = {
+        "n_theta": partial(require_count, at_least=16, hint="96 is a good start."),
+        "n_z": partial(require_count, at_least=4, hint="10 is a good start."),
+        "stretch": STRETCH,
+    }
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        columns = MOST_COLUMNS if self.n_theta is None else self.n_theta
+        coupled = self.n_z if self.circumferential_pressure_flow else 1
+        # Python's integers: neither numpy's nor floats hold any product
+        if 16 * int(columns) * int(self.n_z) * int(coupled) > LARGEST_MATRIX:
+            raise InputError(
+                f"{type(self).__name__}: a grid of {columns} x {self.n_z} takes more than {LARGEST_MATRIX:g} bytes for "
+                "one matrix; 192 x 16 is fine."
+            )
+
+
 @dataclass(frozen=True, kw_only=True)
-class FiniteLength:
+class FiniteLength(_OnVertices):
     """Two-dimensional film: the full Reynolds equation on the (theta, z) grid.
 
     Largest error of the load (Swift-Stieber, L/D from 1/8 to 1, any direction of the journal, against extrapolated
@@ -97,9 +124,6 @@ class FiniteLength:
 
     circumferential_pressure_flow = True
 
-    def __post_init__(self) -> None:
-        _check_grid(self)
-
 
 def columns_for(ratio: float) -> int:
     """Vertices around the circumference for a bearing of this L/D.
@@ -123,7 +147,7 @@ def columns_of(film: Film, ratio: float) -> int:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShortBearing:
+class ShortBearing(_OnVertices):
     """Ocvirk's short bearing: pressure flow in theta is dropped, so that every column is solved on its own.
 
     Load too high by 19 % already at L/D = 0.25 and eccentricity ratio 0.8; meant for L/D below 0.25 and moderate
@@ -155,28 +179,9 @@ class ShortBearing:
 
     circumferential_pressure_flow = False
 
-    def __post_init__(self) -> None:
-        _check_grid(self)
-
-
-def _check_grid(film: FiniteLength | ShortBearing) -> None:
-    name, columns = type(film).__name__, MOST_COLUMNS
-    if film.n_theta is not None:
-        columns = film.n_theta
-        require_count(f"{name}.n_theta", columns, at_least=16, hint="96 is a good start.")
-    require_count(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
-    coupled = film.n_z if film.circumferential_pressure_flow else 1
-    # Python's integers: neither numpy's nor floats hold any product
-    if 16 * int(columns) * int(film.n_z) * int(coupled) > LARGEST_MATRIX:
-        raise InputError(
-            f"{name}: a grid of {columns} x {film.n_z} takes more than {LARGEST_MATRIX:g} bytes for one matrix; "
-            "192 x 16 is fine."
-        )
-    require_number(f"{name}.stretch", film.stretch, at_least=0.0, at_most=0.95, hint="0.75 suits most bearings.")
-
 
 @dataclass(frozen=True, kw_only=True)
-class LongBearing:
+class LongBearing(Checked):
     """Long bearing (Sommerfeld): axial flow is dropped, every slice across the axis is a ring of its own.
 
     Load too high (Swift-Stieber, p = 0 at the maximum gap): at eccentricity ratios 0.5 / 0.8 / 0.95 by 262 / 111 / 39 %
@@ -206,9 +211,10 @@ class LongBearing:
     stretch = 0.0
     circumferential_pressure_flow = True
 
-    def __post_init__(self) -> None:
-        require_count("LongBearing.n_theta", self.n_theta, at_least=16, hint="192 is a good start.")
-        require_count("LongBearing.n_z", self.n_z, at_least=2, hint="4 is a good start.")
+    checks: ClassVar = {
+        "n_theta": partial(require_count, at_least=16, hint="192 is a good start."),
+        "n_z": partial(require_count, at_least=2, hint="4 is a good start."),
+    }
 
 
 Film = FiniteLength | ShortBearing | ClassicSOR | LongBearing | ImpedanceMap

@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -25,7 +25,7 @@ __all__ = [
     "FluxEffect",
     "GapLimiter",
     "GapTerm",
-    "PressureLaw",
+    "PressureTransform",
     "ShearFactor",
     "ShearProduct",
     "ThermalEffect",
@@ -138,7 +138,7 @@ class Effects:
     limiter : GapLimiter or None
     contacts : tuple of Contact
     flux : tuple of FluxEffect
-    pressure_law : PressureLaw or None
+    pressure_law : PressureTransform or None
     shear_factor : ShearFactor or None
     thermal : ThermalEffect or None
     density : CompressibleLaw or None
@@ -154,7 +154,7 @@ class Effects:
     limiter: GapLimiter | None = None
     contacts: tuple[Contact, ...] = ()
     flux: tuple[FluxEffect, ...] = ()
-    pressure_law: PressureLaw | None = None
+    pressure_law: PressureTransform | None = None
     shear_factor: ShearFactor | None = None
     thermal: ThermalEffect | None = None
     density: CompressibleLaw | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import ClassVar
 
 import numpy as np
 
@@ -10,14 +11,14 @@ from exudyn_ehd.solid.elements.element import Quadrature
 from exudyn_ehd.solid.elements.hex20 import HEX20
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, own_rule
-from exudyn_ehd.status import InputError, require_number, require_numbers, require_type
+from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_number, require_type
 
 # Limits of a modal bush's tolerance. Below the smallest, the waves of its search do not suffice.
 SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rayleigh:
+class Rayleigh(Checked):
     """Rayleigh damping D = mass_rate M + stiffness_time K.
 
     Parameters
@@ -38,8 +39,7 @@ class Rayleigh:
     mass_rate: float = 0.0
     stiffness_time: float = 0.0
 
-    def __post_init__(self) -> None:
-        require_numbers(self, at_least=0.0, mass_rate="1/s", stiffness_time="s")
+    checks: ClassVar = {"mass_rate": NOT_NEGATIVE, "stiffness_time": NOT_NEGATIVE}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

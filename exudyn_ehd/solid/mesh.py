@@ -7,7 +7,8 @@ z = -length/2 to length/2.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import ClassVar
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -16,7 +17,7 @@ from exudyn_ehd.solid.elements.element import Element
 from exudyn_ehd.solid.elements.hex20 import NODES
 from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
 from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces, wrapped
-from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer, require_number
 
 # Largest distance of a surface's point beyond its faces, in natural coordinates: round-off.
 OUTSIDE = 1e-6
@@ -248,7 +249,7 @@ def patch(nodes: np.ndarray, faces: np.ndarray) -> Surface:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HollowCylinder:
+class HollowCylinder(Checked):
     """A hollow cylinder and the counts of its structured mesh.
 
     Parameters
@@ -273,10 +274,14 @@ class HollowCylinder:
     radial: int = 2
     circumferential: int = 40
 
+    checks: ClassVar = {
+        **dict.fromkeys(("inner_radius", "thickness", "length"), POSITIVE),
+        **dict.fromkeys(("axial", "radial"), partial(require_integer, at_least=1)),
+        "circumferential": partial(require_integer, at_least=3),
+    }
+
     def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, inner_radius="m", thickness="m", length="m")
-        for name, least in (("axial", 1), ("radial", 1), ("circumferential", 3)):
-            require_integer(f"HollowCylinder.{name}", getattr(self, name), at_least=least)
+        super().__post_init__()
         require_number("HollowCylinder: its elements", self.axial * self.radial * self.circumferential, at_most=1e5)
 
     @property

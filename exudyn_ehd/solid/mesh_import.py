@@ -5,14 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import ClassVar, Protocol, TypeAlias
 
 import numpy as np
 
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.elements.kinds import ELEMENTS, boundary_faces, element_of
 from exudyn_ehd.solid.mesh import BushMesh, frame_of, patch, surface_of
-from exudyn_ehd.status import InputError, require_number, require_numbers, require_vector
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number, require_vector
 
 
 class FEMData(Protocol):
@@ -25,7 +25,7 @@ class FEMData(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OnCylinder:
+class OnCylinder(Checked):
     """Nodes on a cylinder about the bush's axis: ``held`` of an imported mesh.
 
     Parameters
@@ -46,8 +46,7 @@ class OnCylinder:
     radius: float
     tolerance: float = 5e-3
 
-    def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, radius="m", tolerance="")
+    checks: ClassVar = {"radius": POSITIVE, "tolerance": POSITIVE}
 
     def __call__(self, positions: np.ndarray) -> np.ndarray:
         """Flags (n,) of positions (n, 3) in the bush frame [m]."""
@@ -82,7 +81,7 @@ class OnPlane:
         require_vector("OnPlane.point", self.point, 3, "m")
         if not np.any(require_vector("OnPlane.normal", self.normal, 3)):
             raise InputError(f"OnPlane.normal must be a direction, got {self.normal!r}.")
-        require_numbers(self, above=0.0, tolerance="m")
+        POSITIVE("OnPlane.tolerance", self.tolerance)
 
     def __call__(self, positions: np.ndarray) -> np.ndarray:
         """Flags (n,) of positions (n, 3) in the bush frame [m]."""

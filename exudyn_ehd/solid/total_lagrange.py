@@ -12,7 +12,8 @@ meant for small strain, or the compressible Neo-Hooke one, P = mu (F - F^-T) + l
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import ClassVar
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -20,11 +21,11 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.solid.elements import blocks, kernels
 from exudyn_ehd.solid.elements.element import Element, Quadrature
 from exudyn_ehd.solid.mesh import BushMesh
-from exudyn_ehd.status import InputError, require_number, require_numbers
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
 
 @dataclass(frozen=True, kw_only=True)
-class SaintVenantKirchhoff:
+class SaintVenantKirchhoff(Checked):
     """Isotropic material of a bush, linear in the Green-Lagrange strain.
 
     For small strain at any rotation: steel, bronze, polymers. It softens under compression, has no stiffness left at
@@ -50,12 +51,16 @@ class SaintVenantKirchhoff:
     poisson_ratio: float
     density: float
 
-    def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, youngs_modulus="Pa", density="kg/m^3")
-        where = f"{type(self).__name__}.poisson_ratio"
-        require_number(where, self.poisson_ratio, above=-1.0)
-        hint = "an incompressible bush needs another element, 0.49 is the sensible limit of this one."
-        require_number(where, self.poisson_ratio, below=0.5, hint=hint)
+    checks: ClassVar = {
+        "youngs_modulus": POSITIVE,
+        "density": POSITIVE,
+        "poisson_ratio": partial(
+            require_number,
+            above=-1.0,
+            below=0.5,
+            hint="an incompressible bush needs another element, 0.49 is the sensible limit of this one.",
+        ),
+    }
 
     @property
     def lame(self) -> tuple[float, float]:

@@ -162,7 +162,6 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
             monkeypatch.setattr(module, name, forbidden)
     for target in ("shear_thinning.ShearThinning.apply", "shear_thinning.ShearThinning.factor"):
         monkeypatch.setattr(f"exudyn_ehd.film.lubricant.{target}", forbidden)
-    monkeypatch.setattr("exudyn_ehd.film.lubricant.pressure_viscosity.BarusPressure.inverse", forbidden)
     for target in (
         "heat.temperature._Temperature.viscosity_ratio",
         "heat.power.film_flows",

@@ -32,7 +32,7 @@ from numba import njit
 from numpy.polynomial import Polynomial
 
 from exudyn_ehd.film.differences import drops, to_ends
-from exudyn_ehd.film.heat.energy import downstream_weight
+from exudyn_ehd.film.heat.energy import downstream_weight, passed
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
@@ -120,22 +120,12 @@ def surfaces(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Temperatures of both surfaces, heat into them, W, and what conduction takes off heat and tilt, W.
 
-    Arguments as for `exudyn_ehd.film.heat.conduction.Passage`; (2, n, m, 4) each.
+    Arguments as for `exudyn_ehd.film.heat.energy.passed`; (2, n, m, 4) each.
     """
-    k, known = kappa[..., None], np.zeros((2, *kappa.shape, 4))
     inside = np.array([[6.0, -10.0, 0.0, 0.0], [6.0, 10.0, 0.0, 0.0]])
-    meets = [0.0 if U is None else 1.0 for U in outward]
-    given = [1.0 if U is None else U for U in outward]
-    own = [9.0 * k * meet + U for meet, U in zip(meets, given, strict=True)]
-    for side in (0, 1):
-        known[side] = k * meets[side] * inside[side]
-        known[side, ..., 2 + side] = given[side]
-    determinant = own[0] * own[1] - 9.0 * k * k * meets[0] * meets[1]
-    T = np.stack([(own[1 - a] * known[a] + 3.0 * k * meets[a] * known[1 - a]) / determinant for a in (0, 1)])
-    through = k * area[..., None]
-    passed = through * (inside[:, None, None] - 9.0 * T + 3.0 * T[::-1])
-    tilt = through * (np.array([0.0, 20.0, 0.0, 0.0]) - 10.0 * (T[1] - T[0]))
-    return T, passed, np.stack((passed[0] + passed[1], tilt))
+    T, through = passed(kappa, area, outward, inside, 9.0, -3.0)
+    tilt = (kappa * area)[..., None] * (np.array([0.0, 20.0, 0.0, 0.0]) - 10.0 * (T[1] - T[0]))
+    return T, through, np.stack((through[0] + through[1], tilt))
 
 
 def at_heights(surface: np.ndarray) -> np.ndarray:

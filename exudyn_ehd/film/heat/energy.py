@@ -20,6 +20,14 @@ In theta T_link is the temperature upstream. In z, where oil that turns with the
 suck in, that would leak as much heat to the sides as the bearing gives off: there it is of second order, by a limiter
 that makes no extrema. What a link carries leaves one side and reaches the other, so that the balance holds.
 
+Heat from a film's mean temperature through both of its surfaces.
+
+Across the film lies a parabola with the mean T and the surfaces' s_1, s_2. It passes
+
+    q_1 = kappa (6 T - 4 s_1 - 2 s_2),    q_2 = kappa (6 T - 4 s_2 - 2 s_1),    kappa = k / h,
+
+as from T(y) = s_1 + b y + d y^2 with its mean T, q_1 = k T'(0) and q_2 = -k T'(h). Uniform heating makes this profile.
+
 Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A
 areas.
 """
@@ -149,3 +157,52 @@ def downstream_weight(T, link_z, j, flow):
         if own * before > 0.0:
             weight = 0.5 if abs(before) >= abs(own) else 2.0 * own * before / (own + before) ** 2
     return weight
+
+
+def passed(
+    kappa: np.ndarray,
+    area: np.ndarray,
+    outward: tuple[float | None, float | None],
+    inside: np.ndarray,
+    own: float,
+    other: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Temperatures of both surfaces, and heat into them, W, (2, n, m, f) each.
+
+    They are linear in f temperatures, of which the last two lie outside both surfaces. Into surface a the film passes
+    ``q_a = kappa (inside[a] . temperatures - own s_a - other s_b)``; a surface with a coefficient has
+    ``q_a = U (s_a - T_a)``, one of a wall that conducts by itself ``s_a = T_a``.
+
+    Parameters
+    ----------
+    kappa, area : (n, m) arrays
+        k / h, W/(m2 K), and m2 of the vertices.
+    outward : (float or None, float or None)
+        U of both sides, W/(m2 K); None: the surface has the wall's temperature.
+    inside : (2, f) array
+        Zero for the temperatures outside.
+    own, other : float
+    """
+    k = kappa[..., None]
+    meets = [0.0 if U is None else 1.0 for U in outward]
+    given = [1.0 if U is None else U for U in outward]
+    diagonal = [own * k * meet + U for meet, U in zip(meets, given, strict=True)]
+    known = k * np.array(meets)[:, None, None, None] * inside[:, None, None]
+    known[0, ..., -2], known[1, ..., -1] = given
+    determinant = diagonal[0] * diagonal[1] - (other * k) ** 2 * meets[0] * meets[1]
+    s = np.stack([(diagonal[1 - a] * known[a] - other * k * meets[a] * known[1 - a]) / determinant for a in (0, 1)])
+    return s, k * area[..., None] * (inside[:, None, None] - own * s - other * s[::-1])
+
+
+def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
+    """Heat into both surfaces, W per kelvin of a film's mean temperature and of those outside, (2, n, m, 3).
+
+    Parameters as for `passed`; ``kappa`` None: the coefficients act on the mean temperature.
+    """
+    if kappa is not None and outward != (0.0, 0.0):
+        return passed(kappa, area, outward, np.array([[6.0, 0.0, 0.0]] * 2), 4.0, 2.0)[1]
+    out = np.zeros((2, *area.shape, 3))
+    for a, U in enumerate(outward):
+        out[a, ..., 0] = (U or 0.0) * area
+        out[a, ..., 1 + a] = -out[a, ..., 0]
+    return out

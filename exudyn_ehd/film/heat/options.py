@@ -11,12 +11,23 @@ as it leaves. Nor does the density follow the temperature.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
-from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_type
+from exudyn_ehd.status import (
+    KELVIN,
+    NOT_NEGATIVE,
+    POSITIVE,
+    SHARE,
+    Checked,
+    InputError,
+    require_integer,
+    require_type,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
-class LumpedThermal:
+class LumpedThermal(Checked):
     """One temperature T for the whole film; for warm-up and a first idea of the viscosity.
 
     Costs 5 % of a step at most, a sixth with a density law.
@@ -62,14 +73,15 @@ class LumpedThermal:
     initial_temperature: float | None = None
     carry_over: float = 1.0
 
-    def __post_init__(self) -> None:
-        _check_temperatures(self, "supply_temperature", "housing_temperature", "initial_temperature")
-        require_numbers(self, at_least=0.0, housing_conductance="W/K", capacity="J/K")
-        require_number("LumpedThermal.carry_over", self.carry_over, above=0.0, at_most=1.0)
+    checks: ClassVar = {
+        **dict.fromkeys(("supply_temperature", "housing_temperature", "initial_temperature"), KELVIN),
+        **dict.fromkeys(("housing_conductance", "capacity"), NOT_NEGATIVE),
+        "carry_over": SHARE,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
-class Conduction:
+class Conduction(Checked):
     """Wall of a bush or a journal that takes heat from the film, conducts it, stores it, and grows with it.
 
     ``rho c dT/dt = k (1/r d/dr (r dT/dr) + 1/r^2 d2T/dtheta2) - loss``, the mean along the bearing, in rings of finite
@@ -124,16 +136,16 @@ class Conduction:
     clearance_temperature: float | None = None
     rings: int = 8
 
-    def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, thickness="m", conductivity="W/(m K)", density="kg/m3")
-        require_numbers(self, above=0.0, specific_heat="J/(kg K)")
-        require_numbers(self, at_least=0.0, conductance="W/K", expansion="1/K")
-        _check_temperatures(self, "ambient_temperature", "initial_temperature", "clearance_temperature")
-        require_integer("Conduction.rings", self.rings, at_least=2)
+    checks: ClassVar = {
+        **dict.fromkeys(("thickness", "conductivity", "density", "specific_heat"), POSITIVE),
+        **dict.fromkeys(("conductance", "expansion"), NOT_NEGATIVE),
+        **dict.fromkeys(("ambient_temperature", "initial_temperature", "clearance_temperature"), KELVIN),
+        "rings": partial(require_integer, at_least=2),
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
-class FilmEnergy:
+class FilmEnergy(Checked):
     """Temperature field T(theta, z), averaged across the film or with its profile; where heating decides load or peak
     temperature.
 
@@ -228,15 +240,19 @@ class FilmEnergy:
     carry_over: float = 1.0
     across: int = 1
 
+    checks: ClassVar = {
+        **dict.fromkeys(
+            ("supply_temperature", "bush_temperature", "journal_temperature", "initial_temperature"), KELVIN
+        ),
+        **dict.fromkeys(("bush_coefficient", "journal_coefficient"), NOT_NEGATIVE),
+        "conductivity": POSITIVE,
+        "carry_over": SHARE,
+        "across": partial(require_integer, at_least=1),
+    }
+
     def __post_init__(self) -> None:
-        _check_temperatures(
-            self, "supply_temperature", "bush_temperature", "journal_temperature", "initial_temperature"
-        )
-        require_numbers(self, at_least=0.0, bush_coefficient="W/(m2 K)", journal_coefficient="W/(m2 K)")
-        if self.conductivity is not None:
-            require_number("FilmEnergy.conductivity", self.conductivity, "W/(m K)", above=0.0)
-        require_number("FilmEnergy.carry_over", self.carry_over, above=0.0, at_most=1.0)
-        if require_integer("FilmEnergy.across", self.across, at_least=1) > 2:
+        super().__post_init__()
+        if self.across > 2:
             raise InputError(
                 f"FilmEnergy.across must be 1, the mean temperature, or 2, mean and tilt, got {self.across}; "
                 "there are no more than two."
@@ -263,11 +279,3 @@ class FilmEnergy:
                 f"FilmEnergy.{side}=Conduction(...) needs the oil's conductivity, got None: the heat reaches the wall "
                 "across the film; give conductivity=0.13 (W/(m K)) for mineral oils."
             )
-
-
-def _check_temperatures(spec: LumpedThermal | FilmEnergy | Conduction, *names: str) -> None:
-    for name in names:
-        value = getattr(spec, name)
-        if value is not None or name == "supply_temperature":
-            hint = "0 degrees Celsius are 273.15 K."
-            require_number(f"{type(spec).__name__}.{name}", value, "K", above=0.0, hint=hint)

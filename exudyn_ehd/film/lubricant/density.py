@@ -11,8 +11,8 @@ p. Below ambient pressure ``q = (1 - exp(-k p)) / k``, k = alpha - a with the vi
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -20,15 +20,16 @@ from numba import njit
 
 from exudyn_ehd.film.lubricant.pressure_viscosity import (
     LARGEST_PRESSURE,
-    BoundPressureLaw,
-    HermiteTable,
+    PressureLaw,
+    PressureTransform,
     expand,
     hermite_inverse,
+    interval_at,
     quintic,
 )
-from exudyn_ehd.status import require_number
+from exudyn_ehd.status import POSITIVE, Checked
 
-LARGEST_COEFFICIENT = 1e-6
+COEFFICIENT = partial(POSITIVE, at_most=1e-6, hint="mineral oils have 0.6e-9 (coefficient) and 1.7e-9 (saturation).")
 # Share of the law's range in which a film presses against its end.
 AT_THE_END = 1.0 - 1e-9
 # Stands for an exponent k = 0, for which q = p: far below what rounding could show.
@@ -68,8 +69,6 @@ class DensityTable(NamedTuple):
         Range of q, Pa.
     a : float
         Slope of the density ratio at ambient pressure, 1/Pa.
-    b : (intervals, 7) array
-        `quintic` spline of rho(p) in equal intervals.
     """
 
     exponent: float
@@ -81,11 +80,10 @@ class DensityTable(NamedTuple):
     lowest: float
     highest: float
     a: float
-    b: np.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)
-class DowsonHigginson:
+class DowsonHigginson(Checked):
     """Density ``rho_0 (1 + a p / (1 + b p))`` of mineral oils: at most a third denser, 10 % at some 230 MPa.
 
     When: pressures above some 100 MPa, or the compliance of the oil itself in fast transients (with `ElrodAdams`, whose
@@ -114,10 +112,7 @@ class DowsonHigginson:
     coefficient: float = 0.6e-9
     saturation: float = 1.7e-9
 
-    def __post_init__(self) -> None:
-        for name, value in (("coefficient", self.coefficient), ("saturation", self.saturation)):
-            where, hint = f"DowsonHigginson.{name}", "mineral oils have 0.6e-9 (coefficient) and 1.7e-9 (saturation)."
-            require_number(where, value, "1/Pa", above=0.0, at_most=LARGEST_COEFFICIENT, hint=hint)
+    checks = dict.fromkeys(("coefficient", "saturation"), COEFFICIENT)
 
     def ratio(self, p: np.ndarray) -> np.ndarray:
         """rho / rho_0 at gauge pressures p, Pa."""
@@ -165,8 +160,6 @@ class DensityField:
         self.known = np.full((9, self.rho.size), np.nan)
         # whether Newton's steps may cross the end of the law
         self.crosses = False
-        # transformed pressure of the cavity when last asked for, Pa, and the density there
-        self._cavity = math.nan, 1.0
 
     def is_exhausted(self, P: np.ndarray) -> bool:
         """Return whether scaled transformed pressures (n, m) reach the end of the law's range."""
@@ -178,30 +171,25 @@ class DensityField:
 
     def at(self, pressure: float) -> float:
         """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""
-        if pressure * self.scale != self._cavity[0]:
-            p, ratio, slope = np.zeros((3, 1, 1))
-            self.law.inverse(np.array([[pressure * self.scale]]), p, ratio, slope)
-            self._cavity = pressure * self.scale, float(self.law.density.ratio(p[0, 0]))
-        return self._cavity[1]
+        return float(density_taylor(pressure * self.scale, self.law.kernel_table)[0])
 
 
-class CompressibleLaw(HermiteTable):
-    """q(p) of a density law together with a viscosity's, and their inverse; a pressure law for a bearing model.
+class CompressibleLaw(PressureTransform):
+    """Transform of a density law together with a viscosity's: ``s = r / (rho / rho_0)``.
 
     Parameters
     ----------
     density : DensityLaw
-    viscosity : BoundPressureLaw or None
+    viscosity : PressureLaw or None
         None: constant viscosity.
     """
 
-    def __init__(self, density: DensityLaw, viscosity: BoundPressureLaw | None) -> None:
+    def __init__(self, density: DensityLaw, viscosity: PressureLaw | None) -> None:
         self.density, self.viscosity = density, viscosity
         exponent = (0.0 if viscosity is None else viscosity.coefficient) - density.coefficient
-        super().__init__(
-            LARGEST_PRESSURE if viscosity is None else viscosity.largest_pressure, exponent or SMALLEST_EXPONENT
-        )
-        p, s, s_q = self.p, self.slope(self.p), self.curvature(self.p)
+        largest_pressure = LARGEST_PRESSURE if viscosity is None else viscosity.largest_pressure
+        self._tabulate(largest_pressure, exponent or SMALLEST_EXPONENT)
+        p, (s, s_p) = self.p, self.slopes(self.p)
         rho, rho_p, rho_pp = density.ratio(p), density.ratio_slope(p), density.ratio_bend(p)
         # Below, q has no p; at its upper end the spline has none either.
         lowest = -np.inf if exponent >= 0.0 else 0.999 / exponent
@@ -209,28 +197,19 @@ class CompressibleLaw(HermiteTable):
             self.alpha,
             self.q,
             self.table,
-            quintic(rho, rho_p * s, rho_pp * s**2 + rho_p * s_q, 1.0 / self.table[:, 0]),
+            quintic(rho, rho_p * s, rho_pp * s**2 + rho_p * s * s_p, 1.0 / self.table[:, 0]),
             self.bucket,
             self.bucket_scale,
             lowest,
             self.q[-1] * (1.0 - 1e-12),
             density.coefficient,
-            quintic(rho, rho_p, rho_pp, np.full(p.size - 1, p[1])),
         )
 
-    def _viscosity(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        if self.viscosity is None:
-            return np.ones_like(p), np.zeros_like(p)
-        return self.viscosity.ratio(p), self.viscosity.ratio_slope(p)
-
-    def slope(self, p: np.ndarray) -> np.ndarray:
-        """dp/dq = mu / rho, both as ratios."""
-        return self._viscosity(p)[0] / self.density.ratio(p)
-
-    def curvature(self, p: np.ndarray) -> np.ndarray:
-        """d2p/dq2 = s ds/dp with s = mu / rho, 1/Pa."""
-        (mu, mu_p), rho, rho_p = self._viscosity(p), self.density.ratio(p), self.density.ratio_slope(p)
-        return mu / rho * (mu_p * rho - mu * rho_p) / rho**2
+    def slopes(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """s = dp/dq and ds/dp, 1/Pa, for p >= 0."""
+        mu, mu_p = (np.ones_like(p), np.zeros_like(p)) if self.viscosity is None else super().slopes(p)
+        rho, rho_p = self.density.ratio(p), self.density.ratio_slope(p)
+        return mu / rho, (mu_p * rho - mu * rho_p) / rho**2
 
     def pressure(self, q: np.ndarray, p_out: np.ndarray, slope_out: np.ndarray, bend_out: np.ndarray) -> bool:
         """p(q) with its first two derivatives for fields (n, m); False where q has no p."""
@@ -243,17 +222,24 @@ class CompressibleLaw(HermiteTable):
         return bool(viscosity_of_transformed(q, self.kernel_table, p_out, ratio_out, ratio_q_out))
 
 
-@njit(cache=True)
-def density_ratio(p, a, b):
-    """rho / rho_0 and its derivative with respect to p; a, b: of `DensityTable`."""
-    if p == 0.0:
-        return 1.0, a
-    if not p > 0.0:
-        e = np.exp(a * p)
-        return e, a * e
-    k = int(min(p * b[0, 0], b.shape[0] - 1.0))
-    rho, rho_p, _, _, _ = expand(b, k, p * b[k, 0] - k)
-    return rho, rho_p
+@njit(cache=True, inline="always")
+def density_taylor(q, law):
+    """Density ratio at a transformed pressure q, Pa, within the law's range; s = dp/dq and ds/dq, 1/Pa; the first to
+    fourth coefficient of Taylor's polynomial of the density about q."""
+    if q > 0.0:
+        low, t = interval_at(q, law.q, law.table, law.bucket, law.bucket_scale)
+        _, s, half, _, _ = expand(law.table, low, t)
+        rho, r1, r2, r3, r4 = expand(law.ratio, low, t)
+        return rho, s, 2.0 * half, r1, r2, r3, r4
+    # exp(a p) with p = -ln(1 - k q) / k
+    a, k = law.a, law.exponent
+    s = 1.0 / (1.0 - k * q)
+    rho = np.exp(-a / k * np.log1p(-k * q))
+    r1 = a * s * rho
+    r2 = (a + k) / 2.0 * s * r1
+    r3 = (a + 2.0 * k) / 3.0 * s * r2
+    r4 = (a + 3.0 * k) / 4.0 * s * r3
+    return rho, s, k * s * s, r1, r2, r3, r4
 
 
 @njit(cache=True)
@@ -267,12 +253,11 @@ def viscosity_of_transformed(q, law, p_out, ratio_out, ratio_q_out):
     inside = hermite_inverse(
         q, law.exponent, law.q, law.table, law.bucket, law.bucket_scale, p_out, ratio_out, ratio_q_out
     )
-    end = law.table[-1, 1:].sum()
     for i in range(n):
         for j in range(m):
             inside = inside and q[i, j] < law.highest
-            rho, rho_p = density_ratio(min(p_out[i, j], end), law.a, law.b)
-            s = ratio_out[i, j]
-            ratio_q_out[i, j] = ratio_q_out[i, j] * rho + (rho_p * s * s if q[i, j] < law.highest else 0.0)
-            ratio_out[i, j] = s * rho
+            rho, _, _, rho_q, _, _, _ = density_taylor(min(q[i, j], law.highest), law)
+            by_density = ratio_out[i, j] * rho_q if q[i, j] < law.highest else 0.0
+            ratio_q_out[i, j] = ratio_q_out[i, j] * rho + by_density
+            ratio_out[i, j] *= rho
     return inside

@@ -9,10 +9,9 @@ Symbols: P scaled transformed pressures (n, m), ``scale`` Pa per unit of P, ``fl
 the density stays.
 """
 
-import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.lubricant.pressure_viscosity import expand, interval_at
+from exudyn_ehd.film.lubricant.density import density_taylor
 
 # Change of dp/dq, and an eighth of that of the density's slope, as shares, up to which Taylor's polynomial about a
 # known value is the law: to 1e-14 in the density, which the balance is solved with, and 1e-10 in its slope.
@@ -41,24 +40,11 @@ def know_at(P, scale, floor, law, known):
 def look_up(x, scale, lowest, highest, law, near, known):
     """Know the law at all x (size,), cut at ``lowest`` and ``highest``, that are farther from what is known than
     ``near`` times its reach."""
-    a, k = law.a, law.exponent
     for c in range(x.size):
         q = _within(x[c], lowest, highest) * scale
         if abs(q - known[0, c]) <= near * known[8, c] and (q > 0.0) == (known[0, c] > 0.0):
             continue
-        if q > 0.0:
-            low, t = interval_at(q, law.q, law.table, law.bucket, law.bucket_scale)
-            _, s, half, _, _ = expand(law.table, low, t)
-            rho, r1, r2, r3, r4 = expand(law.ratio, low, t)
-            s_q = 2.0 * half
-        else:
-            # exp(a p) with p = -ln(1 - k q) / k
-            s = 1.0 / (1.0 - k * q)
-            s_q, rho = k * s * s, np.exp(-a / k * np.log1p(-k * q))
-            r1 = a * s * rho
-            r2 = (a + k) / 2.0 * s * r1
-            r3 = (a + 2.0 * k) / 3.0 * s * r2
-            r4 = (a + 3.0 * k) / 4.0 * s * r3
+        rho, s, s_q, r1, r2, r3, r4 = density_taylor(q, law)
         known[0, c], known[1, c], known[2, c], known[3, c] = q, rho, s, s_q
         known[4, c], known[5, c], known[6, c], known[7, c] = r1, r2, r3, r4
         known[8, c] = NEAR * min(s / abs(s_q), 4.0 * r1 / abs(r2))

@@ -26,13 +26,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import get_args, get_type_hints
+from typing import ClassVar, get_args, get_type_hints
 
-from exudyn_ehd.film.lubricant.density import DowsonHigginson
-from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, DowsonHigginson
+from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, PressureTransform, RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
-from exudyn_ehd.status import InputError, require_number, require_type
+from exudyn_ehd.status import KELVIN, POSITIVE, Checked, InputError, require_type
 
 # kg/(m3 K), ASTM D1250, table 54D
 EXPANSION = 0.6278
@@ -73,7 +73,7 @@ SAE_DENSITY = 880.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lubricant:
+class Lubricant(Checked):
     """Lubricant: Newtonian and of constant viscosity unless laws are named.
 
     When: a pressure law above some 50 MPa, a temperature law where the film warms up by more than a few kelvin, a shear
@@ -123,20 +123,18 @@ class Lubricant:
     shear_law: CarreauShear | None = None
     density_law: DowsonHigginson | None = None
 
+    checks: ClassVar = {"viscosity": POSITIVE, "density": POSITIVE, "temperature": KELVIN, "specific_heat": POSITIVE}
+
     def __post_init__(self) -> None:
-        require_number("Lubricant.density", self.density, "kg/m3", above=0.0)
-        require_number(
-            "Lubricant.temperature", self.temperature, "K", above=0.0, hint="0 degrees Celsius are 273.15 K."
-        )
-        require_number("Lubricant.specific_heat", self.specific_heat, "J/(kg K)", above=0.0)
+        super().__post_init__()
         for name, laws in LAWS.items():
             hint = "laws are objects, not strings or classes."
             require_type(f"Lubricant.{name}", getattr(self, name), *laws, hint=hint)
         if self.viscosity is None:
             object.__setattr__(self, "viscosity", self._viscosity_from_law())
-        require_number("Lubricant.viscosity", self.viscosity, "Pa s", above=0.0)
+            POSITIVE("Lubricant.viscosity", self.viscosity)
         if self.pressure_law is not None:
-            self.pressure_law.check(self.viscosity)
+            self.pressure_law.bound(self.viscosity)
 
     def _viscosity_from_law(self) -> float:
         if self.temperature_law is None:
@@ -166,10 +164,18 @@ class Lubricant:
         """
         if self.temperature_law is None:
             raise InputError("Lubricant.at needs a temperature_law, which says how the viscosity changes; got None.")
-        require_number("Lubricant.at: temperature", temperature, "K", above=0.0)
+        POSITIVE("Lubricant.at: temperature", temperature)
         law = self.temperature_law
         ratio = law.viscosity(temperature, self.density) / law.viscosity(self.temperature, self.density)
         return replace(self, temperature=float(temperature), viscosity=float(self.viscosity * ratio))
+
+
+def transform_of(oil: Lubricant) -> PressureTransform | None:
+    """Transform by which pressure becomes a film's unknown, a `CompressibleLaw` with a density law; None: none."""
+    viscosity = None if oil.pressure_law is None else oil.pressure_law.bound(oil.viscosity)
+    if oil.density_law is not None:
+        return CompressibleLaw(oil.density_law, viscosity)
+    return None if viscosity is None else PressureTransform(viscosity)
 
 
 LAWS = {name: get_args(kinds) for name, kinds in get_type_hints(Lubricant).items() if name.endswith("_law")}
@@ -207,7 +213,7 @@ def oil(name: str, *, temperature: float = CELSIUS_40) -> Lubricant:
     >>> round(ehd.oil("SAE 5W-30", temperature=373.15).viscosity, 4)
     0.0085
     """
-    require_number("oil: temperature", temperature, "K", above=0.0)
+    POSITIVE("oil: temperature", temperature)
     known = {_key(k): k for k in (*ISO_GRADES, *SAE_GRADES, *MULTIGRADES)}
     grade = known.get(_key(name)) if isinstance(name, str) else None
     if grade is None:

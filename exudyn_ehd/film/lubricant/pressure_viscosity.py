@@ -12,15 +12,15 @@ where oil cavitates, it is continued by Barus' law with the same slope.
 
 from __future__ import annotations
 
-import abc
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from functools import partial
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import POSITIVE, Checked, InputError
 
 ROELANDS_SHIFT = 9.67
 TABLE_INTERVALS = 4096
@@ -36,28 +36,15 @@ _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 
 
 class PressureLaw(Protocol):
-    """Viscosity that depends on pressure, by the Kirchhoff transform q = integral dp / (mu(p)/mu_0).
+    """Viscosity ratio ``r(p) = mu(p) / mu(0)`` of an oil with one reference viscosity; pressures are gauge, in Pa."""
 
-    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever
-    the law: the complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
-    """
+    @property
+    def coefficient(self) -> float:
+        """dr/dp at ambient pressure, 1/Pa; below, the law is Barus' with this coefficient."""
 
     @property
     def largest_pressure(self) -> float:
         """Pa, at which the oil counts as solid."""
-
-    def transform(self, p: np.ndarray) -> np.ndarray:
-        """q(p), Pa."""
-
-    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), mu(p)/mu_0 (= dp/dq of an incompressible film) and its derivative to q (1/Pa).
-
-        False where q has no p: there p goes on in a line, for iterations that have gone too far.
-        """
-
-
-class BoundPressureLaw(PressureLaw, Protocol):
-    """A pressure law for one reference viscosity."""
 
     def ratio(self, p: np.ndarray) -> np.ndarray:
         """r(p) for p >= 0."""
@@ -65,21 +52,13 @@ class BoundPressureLaw(PressureLaw, Protocol):
     def ratio_slope(self, p: np.ndarray) -> np.ndarray:
         """dr/dp for p >= 0, 1/Pa."""
 
-    @property
-    def coefficient(self) -> float:
-        """dr/dp at ambient pressure, 1/Pa; below, the law is Barus' with this coefficient."""
-
 
 LARGEST_COEFFICIENT = 1e-4
-
-
-def _check_coefficient(where: str, value: float) -> None:
-    hint = "mineral oils have 1e-8 to 2.5e-8 1/Pa."
-    require_number(where, value, "1/Pa", above=0.0, at_most=LARGEST_COEFFICIENT, hint=hint)
+COEFFICIENT = partial(POSITIVE, at_most=LARGEST_COEFFICIENT, hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.")
 
 
 @dataclass(frozen=True, kw_only=True)
-class BarusPressure:
+class BarusPressure(Checked):
     """Barus' law ``mu = mu_0 exp(alpha p)``; good to some 100 MPa, too steep beyond.
 
     When: oil thickens by 10 % at 5 MPa, so that a law matters above some 5 MPa peak pressure for details, above 50 MPa
@@ -104,14 +83,10 @@ class BarusPressure:
 
     coefficient: float
 
-    def __post_init__(self) -> None:
-        _check_coefficient("BarusPressure.coefficient", self.coefficient)
+    checks: ClassVar = {"coefficient": COEFFICIENT}
 
-    def check(self, viscosity: float) -> None:
-        """Any reference viscosity will do."""
-
-    def bound(self, viscosity: float) -> BoundPressureLaw:
-        """The law for a reference viscosity in Pa s (which does not matter here)."""
+    def bound(self, viscosity: float) -> PressureLaw:
+        """The law for a reference viscosity in Pa s, which does not matter here."""
         return self
 
     @property
@@ -127,30 +102,9 @@ class BarusPressure:
         """dr/dp, 1/Pa."""
         return self.coefficient * self.ratio(p)
 
-    def transform(self, p: np.ndarray) -> np.ndarray:
-        """q(p), Pa."""
-        return -np.expm1(-self.coefficient * p) / self.coefficient
-
-    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p.
-
-        There, for q >= 1 / alpha, p goes on along the tangent of slope BEYOND.
-        """
-        alpha, x = self.coefficient, self.coefficient * q
-        beyond = ~(x < 1.0)
-        known = np.where(beyond, 0.0, x)
-        p_out[:] = -np.log1p(-known) / alpha
-        ratio_out[:] = 1.0 / (1.0 - known)
-        ratio_q_out[:] = alpha * ratio_out**2
-        if not beyond.any():
-            return True
-        p_out[beyond] = (math.log(BEYOND) + 1.0 - BEYOND * (1.0 - x[beyond])) / alpha
-        ratio_out[beyond], ratio_q_out[beyond] = BEYOND, 0.0
-        return False
-
 
 @dataclass(frozen=True, kw_only=True)
-class RoelandsPressure:
+class RoelandsPressure(Checked):
     """Roelands' law: like Barus' at low pressure, less steep at high pressure.
 
     When: as `BarusPressure`, and always above 100 MPa.
@@ -178,25 +132,58 @@ class RoelandsPressure:
     coefficient: float
     reference_pressure: float = 1.96e8
 
-    def __post_init__(self) -> None:
-        _check_coefficient("RoelandsPressure.coefficient", self.coefficient)
-        require_number("RoelandsPressure.reference_pressure", self.reference_pressure, "Pa", above=0.0)
+    checks: ClassVar = {"coefficient": COEFFICIENT, "reference_pressure": POSITIVE}
 
-    def check(self, viscosity: float) -> None:
-        """Raise `InputError` for a reference viscosity below exp(-9.67) Pa s, where the law has no meaning."""
-        if math.log(viscosity) + ROELANDS_SHIFT <= 0.0:
+    def bound(self, viscosity: float) -> PressureLaw:
+        """The law for a reference viscosity in Pa s.
+
+        Raises
+        ------
+        InputError
+            For viscosities below exp(-9.67) Pa s, where the law has no meaning.
+        """
+        a = math.log(viscosity) + ROELANDS_SHIFT
+        if a <= 0.0:
             raise InputError(
                 f"RoelandsPressure needs a lubricant with a viscosity > {math.exp(-ROELANDS_SHIFT):.3g} Pa s, got "
                 f"{viscosity:g} Pa s; use BarusPressure for thinner liquids."
             )
-
-    def bound(self, viscosity: float) -> BoundPressureLaw:
-        """The law for a reference viscosity in Pa s, tabulated."""
-        return RoelandsTable(math.log(viscosity) + ROELANDS_SHIFT, self.coefficient, self.reference_pressure)
+        return BoundRoelands(a, self.coefficient, self.reference_pressure)
 
 
-class HermiteTable(abc.ABC):
-    """A transform whose inverse p(q) is a quintic Hermite spline; Barus' law for p <= 0.
+class BoundRoelands(NamedTuple):
+    """Roelands' law for one reference viscosity: a = ln(mu_0) + 9.67, alpha in 1/Pa and p_0 in Pa."""
+
+    a: float
+    coefficient: float
+    p0: float
+
+    @property
+    def Z(self) -> float:
+        """Exponent alpha p_0 / a."""
+        return self.coefficient * self.p0 / self.a
+
+    @property
+    def largest_pressure(self) -> float:
+        """Pa, at which the oil counts as solid."""
+        # ln(1 + p / p_0) there; bounded, because nearly constant viscosities reach the ratio nowhere
+        end = min(math.log1p(math.log(LARGEST_RATIO) / self.a) / self.Z, 100.0)
+        return min(self.p0 * math.expm1(end), LARGEST_PRESSURE)
+
+    def ratio(self, p: np.ndarray) -> np.ndarray:
+        """r(p) for p >= 0."""
+        return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
+
+    def ratio_slope(self, p: np.ndarray) -> np.ndarray:
+        """dr/dp for p >= 0, 1/Pa."""
+        return self.ratio(p) * self.coefficient * (1.0 + p / self.p0) ** (self.Z - 1.0)
+
+
+class PressureTransform:
+    """Transform ``q = integral dp / s(p)``, s = r, whose inverse p(q) is a quintic Hermite spline.
+
+    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever
+    the law: the complementarity problem and its solver stay as they are. For p <= 0 it is that of Barus' law.
 
     q comes from Gauss quadrature of ``dq/dp`` over each of 4096 intervals of p; p, ``s = dp/dq`` and
     ``s ds/dp = d2p/dq2`` are exact at the nodes. The spline's error in p is about (alpha dp)^6 / (400 alpha), below
@@ -205,35 +192,40 @@ class HermiteTable(abc.ABC):
 
     Parameters
     ----------
-    largest_pressure : float
-        End of the table, Pa.
+    viscosity : PressureLaw
+
+    Attributes
+    ----------
     alpha : float
         ds/dp at p = 0, 1/Pa; not 0.
+    largest_pressure : float
+        End of the table, Pa.
     """
 
-    def __init__(self, largest_pressure: float, alpha: float) -> None:
-        self.alpha = alpha
-        self.largest_pressure = largest_pressure
+    def __init__(self, viscosity: PressureLaw) -> None:
+        self.viscosity: PressureLaw | None = viscosity
+        self._tabulate(viscosity.largest_pressure, viscosity.coefficient)
+
+    def _tabulate(self, largest_pressure: float, alpha: float) -> None:
+        self.alpha, self.largest_pressure = alpha, largest_pressure
         self.p = np.linspace(0.0, largest_pressure, TABLE_INTERVALS + 1)
         widths = self._quadrature(self.p[:-1], self.p[1:])
         self.q = np.concatenate(([0.0], np.cumsum(widths)))
-        self.table = quintic(self.p, self.slope(self.p), self.curvature(self.p), widths)
+        slope, slope_p = self.slopes(self.p)
+        self.table = quintic(self.p, slope, slope * slope_p, widths)
         edges = np.linspace(0.0, self.q[-1], TABLE_INTERVALS + 1)
         self.bucket = np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1)
         self.bucket_scale = TABLE_INTERVALS / self.q[-1]
 
-    @abc.abstractmethod
-    def slope(self, p: np.ndarray) -> np.ndarray:
-        """s(p) = dp/dq for p >= 0."""
-
-    @abc.abstractmethod
-    def curvature(self, p: np.ndarray) -> np.ndarray:
-        """d2p/dq2 for p >= 0, 1/Pa."""
+    def slopes(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """s = dp/dq and ds/dp, 1/Pa, for p >= 0."""
+        assert self.viscosity is not None
+        return self.viscosity.ratio(p), self.viscosity.ratio_slope(p)
 
     def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         lower, half = np.asarray(lower), np.asarray(0.5 * (upper - lower))
         points = lower[..., None] + half[..., None] * (1.0 + _GAUSS_X)
-        return half * np.sum(_GAUSS_W / self.slope(points), axis=-1)
+        return half * np.sum(_GAUSS_W / self.slopes(points)[0], axis=-1)
 
     def transform(self, p: np.ndarray) -> np.ndarray:
         """q(p), Pa."""
@@ -244,7 +236,10 @@ class HermiteTable(abc.ABC):
         return np.where(p > 0.0, positive, negative)
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), s = dp/dq and ds/dq (1/Pa) for fields (n, m); False where q has no p in the table."""
+        """p(q), mu(p)/mu_0 (= dp/dq of an incompressible film) and its derivative to q, 1/Pa, for fields (n, m).
+
+        False where q has no p: there p goes on in a line, for iterations that have gone too far.
+        """
         return bool(
             hermite_inverse(
                 q, self.alpha, self.q, self.table, self.bucket, self.bucket_scale, p_out, ratio_out, ratio_q_out
@@ -262,42 +257,6 @@ def quintic(values: np.ndarray, slopes: np.ndarray, bends: np.ndarray, widths: n
     f, g, w = np.diff(values) - d0 - e0, d1 - d0 - 2.0 * e0, e1 - e0
     c3, c4, c5 = 10.0 * f - 4.0 * g + w, -15.0 * f + 7.0 * g - 2.0 * w, 6.0 * f - 3.0 * g + w
     return np.ascontiguousarray(np.array([1.0 / h, values[:-1], d0, e0, c3, c4, c5]).T)
-
-
-class RoelandsTable(HermiteTable):
-    """Roelands' law for one reference viscosity.
-
-    Parameters
-    ----------
-    a : float
-        ln(mu_0) + 9.67.
-    coefficient, reference_pressure : float
-        alpha, 1/Pa, and p_0, Pa.
-    """
-
-    def __init__(self, a: float, coefficient: float, reference_pressure: float) -> None:
-        self.a, self.p0 = a, reference_pressure
-        self.coefficient = coefficient
-        self.Z = coefficient * reference_pressure / a
-        # ln(1 + p / p_0) where the ratio is reached; bounded, because nearly constant viscosities reach it nowhere.
-        top = reference_pressure * math.expm1(min(math.log1p(math.log(LARGEST_RATIO) / a) / self.Z, 100.0))
-        super().__init__(min(top, LARGEST_PRESSURE), coefficient)
-
-    def ratio(self, p: np.ndarray) -> np.ndarray:
-        """r(p) for p >= 0."""
-        return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
-
-    def ratio_slope(self, p: np.ndarray) -> np.ndarray:
-        """dr/dp for p >= 0, 1/Pa."""
-        return self.ratio(p) * self.coefficient * (1.0 + p / self.p0) ** (self.Z - 1.0)
-
-    def slope(self, p: np.ndarray) -> np.ndarray:
-        """dp/dq is the viscosity's ratio."""
-        return self.ratio(p)
-
-    def curvature(self, p: np.ndarray) -> np.ndarray:
-        """d2p/dq2 = r dr/dp, 1/Pa."""
-        return self.ratio(p) ** 2 * self.coefficient * (1.0 + p / self.p0) ** (self.Z - 1.0)
 
 
 @njit(cache=True)

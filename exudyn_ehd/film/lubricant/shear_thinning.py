@@ -20,13 +20,13 @@ Symbols: k = 2 lambda R / c, so that lambda U / h = k vx / H.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix, diags, kron
 
-from exudyn_ehd.film.differences import drop_weights
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.shear_profile import (
     FLOW_POINTS,
@@ -38,11 +38,13 @@ from exudyn_ehd.film.lubricant.shear_profile import (
     thin_shear,
 )
 from exudyn_ehd.film.reynolds.links import Fluidity, FluxEffect, LinkFlux
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked
+
+THINS = "the law is that of an oil that thins."
 
 
 @dataclass(frozen=True, kw_only=True)
-class CarreauShear:
+class CarreauShear(Checked):
     """Shear thinning after Carreau, for multigrade and polymer-thickened oils.
 
     The viscosity follows the shear rate at every height of the film, under sliding, squeeze and pressure flow; see the
@@ -77,14 +79,11 @@ class CarreauShear:
     exponent: float
     residual: float = 0.0
 
-    def __post_init__(self) -> None:
-        require_number("CarreauShear.relaxation_time", self.relaxation_time, "s", above=0.0)
-        n = require_number("CarreauShear.exponent", self.exponent, above=0.0)
-        r = require_number("CarreauShear.residual", self.residual, at_least=0.0)
-        if n > 1.0 or r > 1.0:
-            raise InputError(
-                f"CarreauShear.exponent and residual must not exceed 1 (an oil that thins), got {n:g} and {r:g}."
-            )
+    checks: ClassVar = {
+        "relaxation_time": POSITIVE,
+        "exponent": partial(POSITIVE, at_most=1.0, hint=THINS),
+        "residual": partial(NOT_NEGATIVE, at_most=1.0, hint=THINS),
+    }
 
     def ratio(self, rate: np.ndarray) -> np.ndarray:
         """mu / mu_0 at shear rates in 1/s."""
@@ -207,10 +206,8 @@ class ShearThinning(FluxEffect):
 
     def gather(self, weights: np.ndarray) -> np.ndarray:
         """Sums (n, m) by the film's unknown of weights (2, n, m) of the gradients at the vertices."""
-        back_x, on_x, back_z, on_z = self.weights
-        x = on_x[:, None] * weights[0] + np.roll(back_x[:, None] * weights[0], -1, axis=0)
-        z = on_z * weights[1] + np.roll(back_z * weights[1], -1, axis=1)
-        return -drop_weights(np.array((x, z))).sum(axis=0)
+        x, z = (w.ravel() @ gradient for w, gradient in zip(weights, self.operators, strict=True))
+        return np.reshape(x + z, weights.shape[1:])
 
     @cached_property
     def operators(self) -> tuple[csr_matrix, csr_matrix]:

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import ClassVar
 
 import numpy as np
 
-from exudyn_ehd.status import InputError, require_number, require_vector
+from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_vector
 
 # Walther's constant for viscosities above 2 mm2/s, ASTM D341.
 WALTHER_SHIFT = 0.7
@@ -20,7 +21,7 @@ CELSIUS_15 = 288.15
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReynoldsTemperature:
+class ReynoldsTemperature(Checked):
     """Exponential law ``mu = mu_1 exp(-beta (T - T_1))`` (O. Reynolds 1886), for narrow ranges of temperature.
 
     Parameters
@@ -40,9 +41,11 @@ class ReynoldsTemperature:
     point: tuple[float, float]
     coefficient: float
 
+    checks: ClassVar = {"coefficient": NOT_NEGATIVE}
+
     def __post_init__(self) -> None:
         _check_point("ReynoldsTemperature.point", self.point, "Pa s")
-        require_number("ReynoldsTemperature.coefficient", self.coefficient, "1/K", at_least=0.0)
+        super().__post_init__()
 
     def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
         """Dynamic viscosity, Pa s, at temperatures in K; the density does not matter."""
@@ -50,7 +53,7 @@ class ReynoldsTemperature:
 
 
 @dataclass(frozen=True, kw_only=True)
-class VogelTemperature:
+class VogelTemperature(Checked):
     """Vogel's law ``mu = A exp(B / (T - T_0))`` (H. Vogel, Physikalische Zeitschrift 22 (1921) 645) through two points.
 
     ``B = ln(mu_1 / mu_2) / (1 / (T_1 - T_0) - 1 / (T_2 - T_0))``, ``A = mu_1 exp(-B / (T_1 - T_0))``.
@@ -73,13 +76,15 @@ class VogelTemperature:
     second: tuple[float, float]
     pole: float = 178.15
 
+    checks: ClassVar = {"pole": NOT_NEGATIVE}
+
     def __post_init__(self) -> None:
         _check_points("VogelTemperature", self.first, self.second, "Pa s")
-        pole = require_number("VogelTemperature.pole", self.pole, "K", at_least=0.0)
-        if not pole < self.first[0]:
+        super().__post_init__()
+        if not self.pole < self.first[0]:
             raise InputError(
-                f"VogelTemperature.pole must be below both temperatures ({self.first[0]:g} K), got {pole:g} K; the "
-                f"law has no viscosity at its pole."
+                f"VogelTemperature.pole must be below both temperatures ({self.first[0]:g} K), got {self.pole:g} K; "
+                "the law has no viscosity at its pole."
             )
 
     @cached_property
@@ -96,7 +101,7 @@ class VogelTemperature:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WaltherTemperature:
+class WaltherTemperature(Checked):
     """Walther's law ``log10 log10(nu + 0.7) = a - b log10 T``, nu in mm2/s (ASTM D341), through two points.
 
     The dynamic viscosity is ``nu rho(T)``, with ``rho = rho_15 exp(-x (1 + 0.8 x))``, ``x = expansion (T - 288.15)`` of
@@ -121,6 +126,8 @@ class WaltherTemperature:
     second: tuple[float, float]
     expansion: float = 0.0
 
+    checks: ClassVar = {"expansion": partial(NOT_NEGATIVE, at_most=0.01, hint="oils have 7e-4 1/K, 0.6278 / density.")}
+
     def __post_init__(self) -> None:
         _check_points("WaltherTemperature", self.first, self.second, "m2/s")
         if not 1e6 * self.second[1] + WALTHER_SHIFT > 1.0 or not 1e6 * self.first[1] < 1e7:
@@ -128,8 +135,7 @@ class WaltherTemperature:
                 f"WaltherTemperature takes kinematic viscosities in m2/s (46 mm2/s is 46e-6), got {self.first[1]!r} "
                 f"and {self.second[1]!r}."
             )
-        hint = "oils have 7e-4 1/K, 0.6278 / density."
-        require_number("WaltherTemperature.expansion", self.expansion, "1/K", at_least=0.0, at_most=0.01, hint=hint)
+        super().__post_init__()
 
     @cached_property
     def constants(self) -> tuple[float, float]:

@@ -28,12 +28,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.reynolds.links import Fluidity, FluxEffect, LinkFlux
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
 # Taylor number Re sqrt(c / R) at which vortices set in between concentric cylinders; G. I. Taylor, Phil. Trans. R. Soc.
 # A 223 (1923) 289.
@@ -42,17 +44,21 @@ TAYLOR = 41.2
 ROUNDING = 0.04
 
 
-class _Transition:
+class _Transition(Checked):
     """Base of the turbulence laws: Reynolds numbers between which a film changes from laminar to turbulent."""
 
     onset: float | None
     full: float | None
 
-    def _check_transition(self) -> None:
+    checks: ClassVar = {
+        **dict.fromkeys(("onset", "full"), partial(POSITIVE, hint="it is a Reynolds number.")),
+        "coefficient": POSITIVE,
+        "exponent": partial(require_number, at_least=-1.0, at_most=0.0),
+    }
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         name = type(self).__name__
-        for key in ("onset", "full"):
-            if getattr(self, key) is not None:
-                require_number(f"{name}.{key}", getattr(self, key), above=0.0, hint="it is a Reynolds number.")
         if self.onset is not None and self.full is not None and not self.full > self.onset:
             raise InputError(
                 f"{name}.full must be above {name}.onset, got {self.full!r} and {self.onset!r}; the film is laminar up "
@@ -122,9 +128,6 @@ class NgPan(_Transition):
     onset: float | None = None
     full: float | None = None
 
-    def __post_init__(self) -> None:
-        self._check_transition()
-
     def _powers(self) -> np.ndarray:
         x, z = (0.0136 / 12.0, 0.90, 0.0, 0.0), (0.0043 / 12.0, 0.96, 0.0, 0.0)
         return np.array([x, z, (0.0012, 0.94, 0.0, 0.0)])
@@ -160,11 +163,6 @@ class Hirs(_Transition):
     full: float | None = None
     coefficient: float = 0.066
     exponent: float = -0.25
-
-    def __post_init__(self) -> None:
-        self._check_transition()
-        require_number("Hirs.coefficient", self.coefficient, above=0.0)
-        require_number("Hirs.exponent", self.exponent, at_least=-1.0, at_most=0.0)
 
     def _powers(self) -> np.ndarray:
         power = 1.0 + self.exponent
@@ -202,8 +200,9 @@ class TurbulentFlow(FluxEffect):
         """Divide the links' conductances by k / 12 at their gaps (n, m), with derivatives."""
         one, f = np.ones((1, 1)), self.field
         x, z = (one, one) if f is None else (f.inverse_x, f.inverse_z)
-        resist(gap_x, x, self.per_speed, vx, self.powers[0], self.transition, flux.gx, flux.gx_h, flux.gx_v)
-        resist(gap_z, z, self.per_speed, vx, self.powers[1], self.transition, flux.gz, flux.gz_h, flux.gz_v)
+        speed, (law_x, law_z, _) = (self.per_speed, vx), self.powers
+        multiply(gap_x, x, *speed, law_x, self.transition, True, flux.gx, flux.gx_h, flux.gx_v)
+        multiply(gap_z, z, *speed, law_z, self.transition, True, flux.gz, flux.gz_h, flux.gz_v)
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
@@ -212,7 +211,8 @@ class TurbulentFlow(FluxEffect):
         fluid = np.ones((1, 1)) if self.field is None else 1.0 / self.field.ratio
         ratio_out[:] = 1.0
         ratio_h_out[:] = ratio_v_out[:] = 0.0
-        drag(H, fluid, self.per_speed, vx, self.powers[2], self.transition, ratio_out, ratio_h_out, ratio_v_out)
+        speed, out = (self.per_speed, vx), (ratio_out, ratio_h_out, ratio_v_out)
+        multiply(H, fluid, *speed, self.powers[2], self.transition, False, *out)
 
 
 @njit(cache=True)
@@ -232,36 +232,24 @@ def excess(Re, power, transition):
 
 
 @njit(cache=True)
-def resist(gap, fluid, per_speed, vx, power, transition, g, g_h, g_v):
-    """Divide conductances (n, m) by 1 + `excess` in place, with their derivatives to gap and vx."""
+def multiply(gap, fluid, per_speed, vx, power, transition, inverse, value, value_h, value_v):
+    """Multiply values (n, m) by 1 + `excess`, or divide by it if ``inverse``, in place, with their derivatives to gap
+    and vx."""
     n, m = gap.shape
     one = fluid.size == 1
-    last, e, e_R = 0.0, 0.0, 0.0
+    last, f, f_R = 0.0, 1.0, 0.0
     for i in range(n):
         for j in range(m):
             Re = per_speed * abs(vx) * gap[i, j] * (fluid[0, 0] if one else fluid[i, j])
             if Re <= transition[0]:
                 continue
             if Re != last:  # an aligned journal has one gap per column
-                e, e_R = excess(Re, power, transition)
-                last = Re
-            f = 1.0 / (1.0 + e)
-            f_R = -e_R * f * f * Re
-            g_h[i, j] = g_h[i, j] * f + g[i, j] * f_R / gap[i, j]
-            g_v[i, j] = g_v[i, j] * f + g[i, j] * f_R / vx
-            g[i, j] *= f
-
-
-@njit(cache=True)
-def drag(gap, fluid, per_speed, vx, power, transition, ratio, ratio_h, ratio_v):
-    """Add `excess` to ratios (n, m) of the shear in place, with its derivatives to gap and vx."""
-    n, m = gap.shape
-    one = fluid.size == 1
-    for i in range(n):
-        for j in range(m):
-            Re = per_speed * abs(vx) * gap[i, j] * (fluid[0, 0] if one else fluid[i, j])
-            if Re > transition[0]:
-                e, e_R = excess(Re, power, transition)
-                ratio[i, j] += e
-                ratio_h[i, j] += e_R * Re / gap[i, j]
-                ratio_v[i, j] += e_R * Re / vx
+                e, f_R = excess(Re, power, transition)
+                last, f = Re, 1.0 + e
+                if inverse:
+                    f = 1.0 / f
+                    f_R *= -f * f
+            by = f_R * Re
+            value_h[i, j] = value_h[i, j] * f + value[i, j] * by / gap[i, j]
+            value_v[i, j] = value_v[i, j] * f + value[i, j] * by / vx
+            value[i, j] *= f

@@ -25,33 +25,34 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 from scipy.interpolate import CubicSpline
 
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.grid import STRETCH, bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.status import FilmError, Status, require_count, require_number
-from exudyn_ehd.storage import Shapes, cached_arrays
+from exudyn_ehd.status import Checked, FilmError, Status, require_count, require_number
+from exudyn_ehd.storage import cached_arrays
 
-FORMAT = 2
-SAMPLES = 1000
+FORMAT = 3
 # Below this eccentricity ratio the direction of e is that of V; forces change by as much.
 SMALLEST_ECCENTRICITY = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class ImpedanceMap:
+class ImpedanceMap(Checked):
     """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
 
-    Built once per L/D and closure (a few seconds) and kept on disk; its error is sampled when it is built. A joint with
-    it refuses tilted journals and states beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and
-    minimum film thickness, but no pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient
-    pressure at the ends and in the cavity, the squeeze term, a closed ring and no further effect.
+    Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states
+    beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum film thickness, but no
+    pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the
+    cavity, the squeeze term, a closed ring and no further effect.
 
     Parameters
     ----------
@@ -85,102 +86,62 @@ class ImpedanceMap:
 
     circumferential_pressure_flow = True
 
-    def __post_init__(self) -> None:
-        require_count("ImpedanceMap.n_theta", self.n_theta, at_least=64, hint="320 is a good start.")
-        require_count("ImpedanceMap.n_z", self.n_z, at_least=4, hint="10 is a good start.")
-        require_count("ImpedanceMap.n_eccentricity", self.n_eccentricity, at_least=8, hint="41 is a good start.")
-        require_count("ImpedanceMap.n_direction", self.n_direction, at_least=8, hint="81 is a good start.")
-        hint = "0.75 suits most bearings."
-        require_number("ImpedanceMap.stretch", self.stretch, at_least=0.0, at_most=0.95, hint=hint)
-        require_number(
-            "ImpedanceMap.largest_eccentricity_ratio",
-            self.largest_eccentricity_ratio,
+    checks: ClassVar = {
+        "n_theta": partial(require_count, at_least=64, hint="320 is a good start."),
+        "n_z": partial(require_count, at_least=4, hint="10 is a good start."),
+        "n_eccentricity": partial(require_count, at_least=8, hint="41 is a good start."),
+        "n_direction": partial(require_count, at_least=8, hint="81 is a good start."),
+        "stretch": STRETCH,
+        "largest_eccentricity_ratio": partial(
+            require_number,
             at_least=0.5,
             at_most=0.995,
             hint="closer to the wall use film=FiniteLength(...) with a contact.",
-        )
+        ),
+    }
 
 
-@dataclass(frozen=True, eq=False)
-class ImpedanceTable:
-    """A built map.
-
-    Attributes
-    ----------
-    nodes : (n_eccentricity, n_direction, 8) array
-        m, dm/ds, dm/dalpha, d2m/ds dalpha, then g alike.
-    step_s, step_alpha : float
-        Node distances.
-    largest_eccentricity_ratio : float
-    worst_error, median_error : float
-        Of the force relative to the force of the film at the same state, over random states (eccentricity uniform in s,
-        every direction, every orientation of the film's grid).
-    samples : int
-        Number of those states.
-    """
-
-    nodes: np.ndarray
-    step_s: float
-    step_alpha: float
-    largest_eccentricity_ratio: float
-    worst_error: float
-    median_error: float
-    samples: int
-
-
-class _SqueezeFilm:
-    """Dimensionless squeeze force of the film behind a map: f with F = -(L D mu / psi^2) |V| / c f."""
-
-    def __init__(self, film: ImpedanceMap, closure: Closure, length_to_radius: float) -> None:
-        self.grid = bearing_grid(1.0, length_to_radius, film.n_theta, film.n_z, stretch=film.stretch)
-        self.solver = FilmSolver(self.grid, closure)
-        self.scale = 6.0 / length_to_radius
-
-    def force(self, eps: float, alpha: float, turn: float = 0.0) -> np.ndarray:
-        """f (2,) along e and across, for e at the angle ``turn`` of the grid and V at ``turn + alpha``."""
-        s, at = self.solver, self.grid.directions
-        pose = np.array([eps * math.cos(turn), eps * math.sin(turn), 0.0, 0.0])
-        rate = np.array([math.cos(turn + alpha), math.sin(turn + alpha), 0.0, 0.0])
-        rigid_gaps(pose, rate, True, at, 0.0, s.H, s.HF, s.H_t)
-        s.pressure[:, 0] = s.pressure[:, -1] = 0.0
-        status, _ = s.solve(0.0, 0.0, 0.0)
-        if status is not Status.CONVERGED:
-            raise FilmError(f"ImpedanceMap: {status.name} at eccentricity ratio {eps:.4f}: {status.advice}")
-        out = np.empty(4)
-        pressure_integrals(s.pressure, self.grid.weight, at[0], at[1], at[4], out)
-        c, d = math.cos(turn), math.sin(turn)
-        return self.scale * np.array([out[0] * c + out[1] * d, out[1] * c - out[0] * d])
-
-
-def build_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
-    """Solve the film on the nodes, fit, and measure the error at random states."""
-    squeeze = _SqueezeFilm(film, closure, length_to_radius)
+def places(film: ImpedanceMap) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of a map in s and in alpha."""
     s = np.linspace(0.0, -math.log(1.0 - film.largest_eccentricity_ratio), film.n_eccentricity)
-    alpha = np.linspace(0.0, math.pi, film.n_direction)
+    return s, np.linspace(0.0, math.pi, film.n_direction)
+
+
+def build_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
+    """Solve the film at the nodes, and fit."""
+    grid = bearing_grid(1.0, length_to_radius, film.n_theta, film.n_z, stretch=film.stretch)
+    solver, (s, alpha) = FilmSolver(grid, closure), places(film)
     f = np.empty((s.size, alpha.size, 2))
     for i, si in enumerate(s):
-        squeeze.solver.forget()
+        solver.forget()
         for j, a in enumerate(alpha):
-            f[i, j] = squeeze.force(1.0 - math.exp(-si), a)
+            f[i, j] = _squeeze_force(solver, 1.0 - math.exp(-si), a)
+    f *= 6.0 / length_to_radius
     m = np.log(np.hypot(f[..., 0], f[..., 1]))
     g = np.arctan2(f[..., 1], f[..., 0]) - alpha
     g = np.remainder(g + math.pi, 2.0 * math.pi) - math.pi
     g[:, 0] = g[:, -1] = 0.0
-    nodes = _fit(s, alpha, m, g)
-    errors = _sample_errors(squeeze, nodes, s[1], alpha[1], float(s[-1]))
-    return ImpedanceTable(
-        nodes=nodes,
-        step_s=float(s[1]),
-        step_alpha=float(alpha[1]),
-        largest_eccentricity_ratio=film.largest_eccentricity_ratio,
-        worst_error=float(errors.max()),
-        median_error=float(np.median(errors)),
-        samples=errors.size,
-    )
+    return _fit(s, alpha, m, g)
+
+
+def _squeeze_force(s: FilmSolver, eps: float, alpha: float) -> np.ndarray:
+    """Scaled force (2,) along e and across, for a velocity at the angle ``alpha`` from e."""
+    at, rate = s.grid.directions, np.array([math.cos(alpha), math.sin(alpha), 0.0, 0.0])
+    rigid_gaps(np.array([eps, 0.0, 0.0, 0.0]), rate, True, at, 0.0, s.H, s.HF, s.H_t)
+    s.pressure[:, 0] = s.pressure[:, -1] = 0.0
+    status, _ = s.solve(0.0, 0.0, 0.0)
+    if status is not Status.CONVERGED:
+        raise FilmError(f"ImpedanceMap: {status.name} at eccentricity ratio {eps:.4f}: {status.advice}")
+    out = np.empty(4)
+    pressure_integrals(s.pressure, s.grid.weight, at[0], at[1], at[4], out)
+    return out[:2]
 
 
 def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.ndarray:
-    """Node values and spline slopes; m even and g odd about alpha = 0 and pi, both smooth in the plane at eps = 0."""
+    """Nodes (n_eccentricity, n_direction, 8): m, dm/ds, dm/dalpha, d2m/ds dalpha, then g alike, with spline slopes.
+
+    m is even and g odd about alpha = 0 and pi, both are smooth in the plane at eps = 0.
+    """
     m[0], g[0] = m[0].mean(), 0.0
     nodes = np.empty((s.size, alpha.size, 8))
     first = (np.cos(alpha), np.sin(alpha))
@@ -194,21 +155,6 @@ def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.n
         nodes[..., 4 * k + 2] = CubicSpline(alpha, field, axis=1, bc_type=ends)(alpha, 1)
         nodes[..., 4 * k + 3] = CubicSpline(alpha, field_s, axis=1, bc_type=ends)(alpha, 1)
     return nodes
-
-
-def _sample_errors(
-    squeeze: _SqueezeFilm, nodes: np.ndarray, step_s: float, step_alpha: float, largest_s: float
-) -> np.ndarray:
-    rng = np.random.default_rng(1)
-    errors, out = np.empty(SAMPLES), np.empty(6)
-    for k in range(SAMPLES):
-        eps, alpha = 1.0 - math.exp(-rng.uniform(0.0, largest_s)), rng.uniform(0.0, math.pi)
-        squeeze.solver.forget()
-        exact = squeeze.force(eps, alpha, rng.uniform(0.0, 2.0 * math.pi))
-        interpolate(nodes, step_s, step_alpha, -math.log(1.0 - eps), alpha, out)
-        guess = math.exp(out[0]) * np.array([math.cos(alpha + out[3]), math.sin(alpha + out[3])])
-        errors[k] = np.linalg.norm(guess - exact) / np.linalg.norm(exact)
-    return errors
 
 
 @njit(cache=True)
@@ -329,25 +275,11 @@ def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
     return 0
 
 
-def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
-    """The map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
-
-    def compute() -> dict[str, np.ndarray]:
-        t = build_table(film, closure, length_to_radius)
-        scalars = t.step_s, t.step_alpha, t.largest_eccentricity_ratio, t.worst_error, t.median_error, t.samples
-        return {"nodes": t.nodes, "scalars": np.array(scalars, dtype=float)}
-
+def impedance_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
+    """Nodes of the map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
     condition = type(closure).__name__ + " in cells" * bool(closure.line_in_cells)
-    key = repr((FORMAT, film, condition, float(length_to_radius), SAMPLES))
-    shapes: Shapes = {"nodes": (film.n_eccentricity, film.n_direction, 8), "scalars": (6,)}
-    data = cached_arrays("impedance_maps", key.encode(), shapes, compute)
-    v = data["scalars"]
-    return ImpedanceTable(
-        nodes=data["nodes"],
-        step_s=float(v[0]),
-        step_alpha=float(v[1]),
-        largest_eccentricity_ratio=float(v[2]),
-        worst_error=float(v[3]),
-        median_error=float(v[4]),
-        samples=int(v[5]),
+    key = repr((FORMAT, film, condition, float(length_to_radius)))
+    data = cached_arrays(
+        "impedance_maps", key.encode(), lambda: {"nodes": build_nodes(film, closure, length_to_radius)}
     )
+    return data["nodes"]

@@ -26,6 +26,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
@@ -36,7 +38,7 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.status import Status, require_count, require_number
+from exudyn_ehd.status import POSITIVE, Checked, Status, require_count
 
 LARGEST_SWEEPS = 20_000
 # Beyond this sum of |P| (1/s) the sweeps have diverged.
@@ -44,7 +46,7 @@ LARGEST_SUM = 1e100
 
 
 @dataclass(frozen=True, kw_only=True)
-class ClassicSOR:
+class ClassicSOR(Checked):
     """The paper's scheme as a selectable film: central differences, SOR, rule (11), Gümbel.
 
     See the module's docstring.
@@ -82,13 +84,12 @@ class ClassicSOR:
     stretch = 0.0
     circumferential_pressure_flow = True
 
-    def __post_init__(self) -> None:
-        require_count("ClassicSOR.n_theta", self.n_theta, at_least=16, hint="96 is a good start.")
-        require_count("ClassicSOR.n_z", self.n_z, at_least=4, hint="24 is a good start.")
-        require_number("ClassicSOR.tolerance", self.tolerance, above=0.0)
-        if self.relaxation is not None:
-            hint = "None chooses one."
-            require_number("ClassicSOR.relaxation", self.relaxation, above=0.0, below=2.0, hint=hint)
+    checks: ClassVar = {
+        "n_theta": partial(require_count, at_least=16, hint="96 is a good start."),
+        "n_z": partial(require_count, at_least=4, hint="24 is a good start."),
+        "tolerance": POSITIVE,
+        "relaxation": partial(POSITIVE, below=2.0, hint="None chooses one."),
+    }
 
 
 def best_relaxation(n_z: int, step_x: float, step_z: float) -> float:

@@ -18,50 +18,34 @@ within twice that; ``supply resolution`` of the audit measures it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_bool, require_number
 
 # Vertices on an edge count as inside: share of the area's width, far above rounding and far below a cell.
 EDGE = 1e-9
 # Length of an axial groove without one, over the bearing's.
 WHOLE_GROOVE = 0.875
 
-# Limits of the arguments that are numbers.
-_DEEP = "write depth=None for an area so deep that its shear does not count."
-_AROUND = "if yours is in degrees, use math.radians; a groove all around is a CircumferentialGroove."
-_LIMITS: dict[str, dict[str, Any]] = {
-    "pressure": {"unit": "Pa"},
-    "angle": {"unit": "rad"},
-    "z": {"unit": "m"},
-    "depth": {"unit": "m", "above": 0.0, "hint": _DEEP},
-    "width_angle": {"unit": "rad", "above": 0.0, "below": 2.0 * math.pi, "hint": _AROUND},
-    "length": {"unit": "m", "above": 0.0},
-    "width": {"unit": "m", "above": 0.0},
-    "diameter": {"unit": "m", "above": 0.0},
-}
 
+class _Area(Checked):
+    """Base of supply areas: checks of their arguments."""
 
-class _Area:
-    """Checks of an area's arguments."""
-
-    rotating: bool
-
-    def __post_init__(self) -> None:
-        given = {field.name: field.default for field in fields(self)}  # type: ignore[arg-type]
-        for name, limits in _LIMITS.items():
-            # an area that may be without a depth or a length has None for it
-            if name in given and not (given[name] is None and getattr(self, name) is None):
-                require_number(f"{type(self).__name__}.{name}", getattr(self, name), **limits)
-        rotating = self.rotating
-        if not isinstance(rotating, bool):
-            raise InputError(
-                f"{type(self).__name__}.rotating must be True (in the journal) or False (in the housing), got "
-                f"{rotating!r}."
-            )
+    checks: ClassVar = {
+        **dict.fromkeys(("angle", "z", "pressure"), require_number),
+        **dict.fromkeys(("length", "width", "diameter"), POSITIVE),
+        "width_angle": partial(
+            POSITIVE,
+            below=2.0 * math.pi,
+            hint="if yours is in degrees, use math.radians; a groove all around is a CircumferentialGroove.",
+        ),
+        "depth": partial(POSITIVE, hint="write depth=None for an area so deep that its shear does not count."),
+        "rotating": require_bool,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)

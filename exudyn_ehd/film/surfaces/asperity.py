@@ -19,20 +19,22 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from scipy.special import gamma, pbdv
 
-from exudyn_ehd.film.surfaces.average_gap import AverageGap
+from exudyn_ehd.film.surfaces.average_gap import ROUGHNESS, AverageGap
 from exudyn_ehd.film.surfaces.contact import Contact
-from exudyn_ehd.status import require_number, require_numbers
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, require_number
 
 REACH, DEEPEST = 8.0, -64.0
 STEPS_PER_SIGMA = 64
 
 
 @dataclass(frozen=True, kw_only=True)
-class GreenwoodTripp:
+class GreenwoodTripp(Checked):
     """Asperity contact of rough surfaces, with boundary friction; what carries a bearing in mixed lubrication.
 
     The film between the asperities then has the average gap, which is positive for any position of the journal.
@@ -80,31 +82,15 @@ class GreenwoodTripp:
     transition_speed: float = 0.01
     residual_film: float = 0.02
 
-    def __post_init__(self) -> None:
-        require_number(
-            "GreenwoodTripp.composite_roughness",
-            self.composite_roughness,
-            "m",
-            above=0.0,
-            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with "
-            "asperity=None.",
-        )
-        require_numbers(
-            self,
-            above=0.0,
-            composite_modulus="Pa",
-            density_radius_roughness="",
-            roughness_radius_ratio="",
-            transition_speed="m/s",
-        )
-        require_number(
-            "GreenwoodTripp.friction_coefficient",
-            self.friction_coefficient,
-            at_least=0.0,
-            at_most=5.0,
-            hint="lubricated metals have 0.05 to 0.2, rubber up to 2.",
-        )
-        require_number("GreenwoodTripp.residual_film", self.residual_film, at_least=0.001, at_most=0.2)
+    checks: ClassVar = {
+        "composite_roughness": partial(POSITIVE, hint=f"{ROUGHNESS} asperity=None."),
+        **dict.fromkeys(("composite_modulus", "density_radius_roughness", "roughness_radius_ratio"), POSITIVE),
+        "transition_speed": POSITIVE,
+        "friction_coefficient": partial(
+            NOT_NEGATIVE, at_most=5.0, hint="lubricated metals have 0.05 to 0.2, rubber up to 2."
+        ),
+        "residual_film": partial(require_number, at_least=0.001, at_most=0.2),
+    }
 
     @property
     def pressure_scale(self) -> float:
@@ -140,7 +126,7 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
     """
     compliance = 0.0
     for E, nu in zip(youngs_moduli, poisson_ratios, strict=True):
-        require_number("composite_modulus: youngs_moduli", E, "Pa", above=0.0)
+        POSITIVE("composite_modulus: youngs_moduli", E)
         require_number("composite_modulus: poisson_ratios", nu, above=-1.0, at_most=0.5)
         compliance += (1.0 - nu**2) / E
     return 1.0 / compliance

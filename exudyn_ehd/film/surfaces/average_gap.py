@@ -28,6 +28,8 @@ from exudyn_ehd.film.surfaces.contact import GapLimiter
 
 # Beyond this many sigma the average gap equals the nominal one (to 2e-13 sigma).
 SMOOTH_BEYOND = 7.0
+# Beginning of the hint on a composite roughness that can't be meant.
+ROUGHNESS = "it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with"
 _INVERSE_ROOT_2 = 1.0 / math.sqrt(2.0)
 _INVERSE_ROOT_2_PI = 1.0 / math.sqrt(2.0 * math.pi)
 

@@ -12,12 +12,14 @@ for incompressible ones. The film on it is that of `exudyn_ehd.film.solvers.line
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
-from exudyn_ehd.status import require_number, require_numbers
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElasticLiner:
+class ElasticLiner(Checked):
     """Bush with an elastic liner on a rigid housing, by Winkler elements.
 
     Each element deflects under its own pressure, solved with the film. When: soft or thick layers whose deflection
@@ -50,10 +52,15 @@ class ElasticLiner:
     youngs_modulus: float
     poisson_ratio: float = 0.3
 
-    def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, thickness="m", youngs_modulus="Pa")
-        hint = "a nearly incompressible liner does not deflect point by point, take a bush with a mesh."
-        require_number("ElasticLiner.poisson_ratio", self.poisson_ratio, at_least=0.0, at_most=0.49, hint=hint)
+    checks: ClassVar = {
+        "thickness": POSITIVE,
+        "youngs_modulus": POSITIVE,
+        "poisson_ratio": partial(
+            NOT_NEGATIVE,
+            at_most=0.49,
+            hint="a nearly incompressible liner does not deflect point by point, take a bush with a mesh.",
+        ),
+    }
 
     @property
     def compliance(self) -> float:

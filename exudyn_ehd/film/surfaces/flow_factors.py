@@ -17,7 +17,7 @@ _unsigned = np.uint64
 
 
 class RoughFlow(FluxEffect):
-    """`PatirCheng` as a flux effect of one bearing model.
+    """`PatirCheng` as flux effect and shear factor of one bearing model.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class RoughFlow(FluxEffect):
 
     def __init__(self, roughness: PatirCheng, clearance: float, residual: float) -> None:
         self.sigma = roughness.composite_roughness / clearance
-        self.phi_x, self.psi_x, _ = flow_tables(roughness.pattern, residual)
+        self.phi_x, self.psi_x, self.friction = flow_tables(roughness.pattern, residual)
         self.phi_z, self.psi_z, _ = flow_tables(1.0 / roughness.pattern, residual)
         self.shear = 2.0 * roughness.journal_share - 1.0
         self.changes_carriers = self.shear != 0.0
@@ -45,22 +45,11 @@ class RoughFlow(FluxEffect):
             multiply_by_table(gap_x, 1.0 / self.sigma, self.psi_x, 1.0, self.shear, flux.cx, flux.cx_h)
             multiply_by_table(gap_z, 1.0 / self.sigma, self.psi_z, 1.0, self.shear, flux.cz, flux.cz_h)
 
-
-class RoughShear:
-    """Couette friction factor phi_f + Phi_fs of rough surfaces as a shear factor of one bearing model.
-
-    Arguments as `RoughFlow`.
-    """
-
-    def __init__(self, roughness: PatirCheng, clearance: float, residual: float) -> None:
-        self.sigma = roughness.composite_roughness / clearance
-        self.table = flow_tables(roughness.pattern, residual)[2]
-
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> None:
-        """Friction factor at average gaps H (n, m) and its derivatives with respect to H and vx."""
-        look_up(H, 1.0 / self.sigma, self.table, ratio_out, ratio_h_out)
+        """Friction factor phi_f + Phi_fs at average gaps H (n, m) and its derivatives with respect to H and vx."""
+        look_up(H, 1.0 / self.sigma, self.friction, ratio_out, ratio_h_out)
         ratio_v_out[:] = 0.0
 
 

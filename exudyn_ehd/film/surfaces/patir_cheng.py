@@ -43,32 +43,24 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.film.surfaces.average_gap import ROUGHNESS, average_gap_ratio
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
-# gamma: C, r, smallest H, A1, a1, a2, a3, A2
+# gamma: C, r, smallest H, A1, a1, a2, a3, A2, A3, a4, a5, a6
 PATTERNS = {
-    1 / 9: (1.48, 0.42, 1.0, 2.046, 1.12, 0.78, 0.03, 1.856),
-    1 / 6: (1.38, 0.42, 1.0, 1.962, 1.08, 0.77, 0.03, 1.754),
-    1 / 3: (1.18, 0.42, 0.75, 1.858, 1.01, 0.76, 0.03, 1.561),
-    1.0: (0.9, 0.56, 0.5, 1.899, 0.98, 0.92, 0.05, 1.126),
-    3.0: (0.225, 1.5, 0.5, 1.56, 0.85, 1.13, 0.08, 0.556),
-    6.0: (0.52, 1.5, 0.5, 1.29, 0.62, 1.09, 0.08, 0.388),
-    9.0: (0.87, 1.5, 0.5, 1.011, 0.54, 1.07, 0.08, 0.295),
-}
-# gamma: A3, a4, a5, a6
-FRICTION_PATTERNS = {
-    1 / 9: (14.1, 2.45, 2.30, 0.10),
-    1 / 6: (13.4, 2.42, 2.30, 0.10),
-    1 / 3: (12.3, 2.32, 2.30, 0.10),
-    1.0: (11.1, 2.31, 2.38, 0.11),
-    3.0: (9.8, 2.25, 2.80, 0.18),
-    6.0: (10.1, 2.25, 2.90, 0.18),
-    9.0: (8.7, 2.15, 2.97, 0.18),
+    1 / 9: (1.48, 0.42, 1.0, 2.046, 1.12, 0.78, 0.03, 1.856, 14.1, 2.45, 2.30, 0.10),
+    1 / 6: (1.38, 0.42, 1.0, 1.962, 1.08, 0.77, 0.03, 1.754, 13.4, 2.42, 2.30, 0.10),
+    1 / 3: (1.18, 0.42, 0.75, 1.858, 1.01, 0.76, 0.03, 1.561, 12.3, 2.32, 2.30, 0.10),
+    1.0: (0.9, 0.56, 0.5, 1.899, 0.98, 0.92, 0.05, 1.126, 11.1, 2.31, 2.38, 0.11),
+    3.0: (0.225, 1.5, 0.5, 1.56, 0.85, 1.13, 0.08, 0.556, 9.8, 2.25, 2.80, 0.18),
+    6.0: (0.52, 1.5, 0.5, 1.29, 0.62, 1.09, 0.08, 0.388, 10.1, 2.25, 2.90, 0.18),
+    9.0: (0.87, 1.5, 0.5, 1.011, 0.54, 1.07, 0.08, 0.295, 8.7, 2.15, 2.97, 0.18),
 }
 FRICTION_REACH = 7.0
 SHEAR_CUTOFF = 0.01
@@ -80,7 +72,7 @@ TABLE_MIDDLE = 8.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class PatirCheng:
+class PatirCheng(Checked):
     """Flow and friction factors of rough surfaces; for films below about five times the roughness.
 
     Without an asperity contact the film ends where the nominal gap does; with one, both must name the same roughness.
@@ -114,23 +106,19 @@ class PatirCheng:
     pattern: float = 1.0
     journal_share: float = 0.5
 
+    checks: ClassVar = {
+        "composite_roughness": partial(POSITIVE, hint=f"{ROUGHNESS} roughness=None."),
+        "pattern": POSITIVE,
+        "journal_share": partial(NOT_NEGATIVE, at_most=1.0, hint="it is a share."),
+    }
+
     def __post_init__(self) -> None:
-        require_number(
-            "PatirCheng.composite_roughness",
-            self.composite_roughness,
-            "m",
-            above=0.0,
-            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with "
-            "roughness=None.",
-        )
-        pattern = require_number("PatirCheng.pattern", self.pattern, above=0.0)
-        if not any(math.isclose(pattern, known, rel_tol=1e-3) for known in PATTERNS):
+        super().__post_init__()
+        if not any(math.isclose(self.pattern, known, rel_tol=1e-3) for known in PATTERNS):
             raise InputError(
                 f"PatirCheng.pattern must be one of 1/9, 1/6, 1/3, 1, 3, 6, 9 (the computed patterns), got "
                 f"{self.pattern!r}; take the nearest one."
             )
-        hint = "it is a share."
-        require_number("PatirCheng.journal_share", self.journal_share, at_least=0.0, at_most=1.0, hint=hint)
 
 
 def pressure_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
@@ -142,14 +130,14 @@ def pressure_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
 
 def shear_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
     """Phi_s(H, gamma) of one rough surface."""
-    _, _, _, A1, a1, a2, a3, A2 = _constants(pattern)
+    A1, a1, a2, a3, A2 = _constants(pattern)[3:8]
     H = np.asarray(H, dtype=float)
     return np.where(H <= 5.0, A1 * H**a1 * np.exp(-a2 * H + a3 * np.minimum(H, 5.0) ** 2), A2 * np.exp(-0.25 * H))
 
 
 def shear_stress_factor(H: np.ndarray, pattern: float) -> np.ndarray:
     """Phi_fs(H, gamma) of one rough surface; beyond H = 7 a power of H that continues the fit with its slope."""
-    A3, a4, a5, a6 = next(v for known, v in FRICTION_PATTERNS.items() if math.isclose(pattern, known, rel_tol=1e-3))
+    A3, a4, a5, a6 = _constants(pattern)[8:]
     H, end = np.asarray(H, dtype=float), FRICTION_REACH
     power = a4 - a5 * end + 2.0 * a6 * end**2
     near = np.minimum(H, end)

@@ -13,16 +13,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from exudyn_ehd.status import (
+    POSITIVE,
+    Checked,
     InputError,
     PlausibilityWarning,
     require_integer,
     require_number,
-    require_numbers,
     require_plausible,
     warn_user,
 )
@@ -35,7 +38,7 @@ BETWEEN, MISSED = (0.21, 0.47, 0.83), 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutOfRound:
+class OutOfRound(Checked):
     """Bore with lobes: ``d = amplitude cos(order (theta - phase))``.
 
     Parameters
@@ -60,9 +63,11 @@ class OutOfRound:
     amplitude: float
     phase: float = 0.0
 
-    def __post_init__(self) -> None:
-        require_integer("OutOfRound.order", self.order, at_least=2, hint="order 1 is a shift of the whole bore.")
-        require_numbers(self, amplitude="m", phase="rad")
+    checks: ClassVar = {
+        "order": partial(require_integer, at_least=2, hint="order 1 is a shift of the whole bore."),
+        "amplitude": require_number,
+        "phase": require_number,
+    }
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
         """Addition to the gap (n, m) in m at the angles theta (n,) and the positions z (m,).
@@ -73,7 +78,7 @@ class OutOfRound:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Crown:
+class Crown(Checked):
     """Crowned (barrelled) journal or bore: ``d = drop |2 z / L|^exponent``.
 
     When: shapes as deep as a tenth of the minimum film thickness and more, against edge pressure of tilted journals.
@@ -96,9 +101,7 @@ class Crown:
     drop: float
     exponent: float = 2.0
 
-    def __post_init__(self) -> None:
-        require_number("Crown.drop", self.drop, "m")
-        require_number("Crown.exponent", self.exponent, at_least=1.0)
+    checks: ClassVar = {"drop": require_number, "exponent": partial(require_number, at_least=1.0)}
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
         """Addition to the gap; see `OutOfRound.depth`."""
@@ -106,7 +109,7 @@ class Crown:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EdgeRelief:
+class EdgeRelief(Checked):
     """Relieved ends: a parabola over the last part of the length, ``d = drop (1 - (L/2 - |z|) / relief_length)^2``.
 
     When: as `Crown`.
@@ -129,9 +132,7 @@ class EdgeRelief:
     drop: float
     relief_length: float
 
-    def __post_init__(self) -> None:
-        require_number("EdgeRelief.drop", self.drop, "m")
-        require_number("EdgeRelief.relief_length", self.relief_length, "m", above=0.0)
+    checks: ClassVar = {"drop": require_number, "relief_length": POSITIVE}
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
         """Addition to the gap; see `OutOfRound.depth`."""

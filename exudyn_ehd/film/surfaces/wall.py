@@ -15,16 +15,18 @@ which the journal meets along its normal, without a torque on it: see Closed gap
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
-from exudyn_ehd.status import require_number, require_numbers
+from exudyn_ehd.status import POSITIVE, Checked, require_number
 
 
 @dataclass(frozen=True, kw_only=True)
-class RegularisedWall:
+class RegularisedWall(Checked):
     """Stiff smooth wall for gaps below an onset.
 
     A stop for journals that touch now and then: a regularisation, not a model of the surfaces. It does nothing while
@@ -51,9 +53,11 @@ class RegularisedWall:
     pressure: float = 1e9
     residual: float = 0.2
 
-    def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, onset="m", pressure="Pa")
-        require_number("RegularisedWall.residual", self.residual, at_least=0.01, at_most=0.9)
+    checks: ClassVar = {
+        "onset": POSITIVE,
+        "pressure": POSITIVE,
+        "residual": partial(require_number, at_least=0.01, at_most=0.9),
+    }
 
 
 class WallContact(Contact, GapLimiter):

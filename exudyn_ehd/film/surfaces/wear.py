@@ -12,14 +12,16 @@ roughness).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 
-from exudyn_ehd.status import require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArchardWear:
+class ArchardWear(Checked):
     """Wear of the bore by its asperity contact; needs ``asperity=GreenwoodTripp(...)``.
 
     The depth is worn off over the accepted steps.
@@ -52,15 +54,10 @@ class ArchardWear:
     wear_rate: float
     acceleration: float = 1.0
 
-    def __post_init__(self) -> None:
-        require_number(
-            "ArchardWear.wear_rate",
-            self.wear_rate,
-            "m2/N",
-            at_least=0.0,
-            hint="1e-16 is a start for a lubricated bush.",
-        )
-        require_number("ArchardWear.acceleration", self.acceleration, above=0.0)
+    checks: ClassVar = {
+        "wear_rate": partial(NOT_NEGATIVE, hint="1e-16 is a start for a lubricated bush."),
+        "acceleration": POSITIVE,
+    }
 
 
 class WearDepth:

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from functools import partial
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.status import (
+    POSITIVE,
+    SHARE,
+    Checked,
     InputError,
     require_bool,
     require_count,
     require_integer,
-    require_number,
-    require_numbers,
     require_type,
     require_vector,
 )
@@ -28,7 +30,7 @@ MOST_PADS = 16
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Pads:
+class _Pads(Checked):
     """Equal pads around a face, recessed over a share of their length."""
 
     pads: int
@@ -36,12 +38,12 @@ class _Pads:
     share: float = 0.75
     reverse: bool = False
 
-    def __post_init__(self) -> None:
-        name = type(self).__name__
-        require_integer(f"{name}.pads", self.pads, at_least=1)
-        require_number(f"{name}.depth", self.depth, "m", above=0.0)
-        require_number(f"{name}.share", self.share, above=0.0, at_most=1.0, hint="it is a share of a pad.")
-        require_bool(f"{name}.reverse", self.reverse)
+    checks: ClassVar = {
+        "pads": partial(require_integer, at_least=1),
+        "depth": POSITIVE,
+        "share": partial(SHARE, hint="it is a share of a pad."),
+        "reverse": require_bool,
+    }
 
     @property
     def edges(self) -> tuple[float, ...]:
@@ -106,7 +108,7 @@ class StepLand(_Pads):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThrustFaces:
+class ThrustFaces(Checked):
     """Oil films between the end faces of a bush and collars of its journal: `JournalBearing.thrust`.
 
     They carry axial load and tilting moments by squeeze, wedge and pressure. Upper face at z = L/2, lower one at -L/2;
@@ -180,8 +182,16 @@ class ThrustFaces:
     n_theta: int | None = None
     n_r: int | None = None
 
+    checks: ClassVar = {
+        **dict.fromkeys(("inner_radius", "outer_radius", "clearance"), POSITIVE),
+        "n_theta": partial(require_count, at_least=16),
+        "n_r": partial(require_count, at_least=6),
+        "lower": require_bool,
+        "upper": require_bool,
+    }
+
     def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, inner_radius="m", outer_radius="m", clearance="m")
+        super().__post_init__()
         if not self.inner_radius < 0.99 * self.outer_radius:
             raise InputError(
                 f"ThrustFaces.inner_radius must be below 0.99 of the outer radius {self.outer_radius!r} m, got "
@@ -193,11 +203,7 @@ class ThrustFaces:
             if getattr(self, name) is not None:
                 pressures = require_vector(f"ThrustFaces.{name}", getattr(self, name), 2, "Pa")
                 object.__setattr__(self, name, tuple(pressures.tolist()))
-        if self.n_theta is not None:
-            require_count("ThrustFaces.n_theta", self.n_theta, at_least=16)
-        if self.n_r is not None:
-            require_count("ThrustFaces.n_r", self.n_r, at_least=6)
-        if not (require_bool("ThrustFaces.lower", self.lower) | require_bool("ThrustFaces.upper", self.upper)):
+        if not (self.lower or self.upper):
             raise InputError("ThrustFaces: lower and upper are both False, so that there is no face; drop the option.")
         if self.contact is not None and not self.contact.onset < self.clearance:
             raise InputError(

@@ -92,7 +92,6 @@ class PairBalance(HeatBalance):
     def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
         assert kappa is not None
         self.surface, self.through, lost = surfaces(kappa, area, outward)
-        self.by = [[-self.through[a, ..., 2 + b] for b in (0, 1)] for a in (0, 1)]
         self.own = lost / self.scale
 
     def _carry(self, field: FluidityField, old: np.ndarray) -> None:

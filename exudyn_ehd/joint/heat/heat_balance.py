@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.heat.conduction import Passage
-from exudyn_ehd.film.heat.energy import transport_slopes
+from exudyn_ehd.film.heat.energy import passage, transport_slopes
 from exudyn_ehd.joint.heat.power import OilFlows
 from exudyn_ehd.joint.heat.temperature import HeatedFilm, temperature_of
 from exudyn_ehd.joint.solved_film import SolvedFilm
@@ -22,15 +21,6 @@ MIXED = 1e4
 PassageData = tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | None]]
 
 
-class EvenPassage(Passage):
-    """`Passage` of a film of one temperature over its height, between surfaces with coefficients, W/(m2 K)."""
-
-    def __init__(self, area: np.ndarray, coefficients: tuple[float | None, float | None]) -> None:
-        self.to = [(U or 0.0) * area for U in coefficients]
-        self.by = [[self.to[0], np.zeros_like(area)], [np.zeros_like(area), self.to[1]]]
-        self.transfer = self.to[0] + self.to[1]
-
-
 class HeatBalance:
     """Energy equation of a film's mean temperature between surfaces that have temperatures outside, K.
 
@@ -41,11 +31,13 @@ class HeatBalance:
     ----------
     scale : float
         W/K per scaled flow, the unit of the equations.
-    by : lists of lists of (n, m) arrays
-        Heat that the temperatures outside give to both sides, at held unknowns, W/K.
+    through : (2, n, m, f) array
+        Heat into both sides, W, per kelvin of a vertex's unknowns and, last, of the temperatures outside.
+    by : (2, 2, n, m) array
+        Heat that each of the temperatures outside gives to both sides, at held unknowns, W/K.
     """
 
-    def __init__(self, thermal: HeatedFilm, film: SolvedFilm, step: float, passage: PassageData) -> None:
+    def __init__(self, thermal: HeatedFilm, film: SolvedFilm, step: float, between: PassageData) -> None:
         area, shape, heat = film.solver.area, film.grid.shape, thermal.heat(film)
         self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
         self.old = temperature_of(film)
@@ -54,14 +46,11 @@ class HeatBalance:
         self.weight = self.flows.lost / (self.flows.total_lost or 1.0)
         self.store = area * self.flows.content / step if step > 0.0 else np.zeros(shape)
         self.follows = thermal.follows(self.old, heat / self.scale, self.store)
-        self._pass(*passage)
+        self._pass(*between)
+        self.by = np.moveaxis(-self.through[..., -2:], -1, 1)
 
     def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
-        if kappa is None or outward == (0.0, 0.0):
-            self.passage: Passage = EvenPassage(area, outward)
-        else:
-            self.passage = Passage(kappa, area, outward)
-        self.by = self.passage.by
+        self.through = passage(kappa, area, outward)
 
     def largest(self) -> float:
         """Largest of the flows and of the storage."""
@@ -77,7 +66,7 @@ class HeatBalance:
 
     def solve(self) -> None:
         """Factor the system, which `between` and `change` use."""
-        flows, store, walls = self.flows, self.store, self.passage.transfer / self.scale
+        flows, store, walls = self.flows, self.store, self.through[..., 0].sum(axis=0) / self.scale
         rigid = STAGNANT * self.largest()
         diagonal = self.follows + store + flows.entering + flows.found + walls + rigid
         held = store if self.step > 0.0 else np.full(store.shape, np.inf)
@@ -95,7 +84,7 @@ class HeatBalance:
 
     def between(self, at: list[np.ndarray]) -> np.ndarray:
         """Unknowns with temperatures ``at`` outside."""
-        gain = self.passage.gain([a - self.supply for a in at]) / self.scale
+        gain = self._gain([a - self.supply for a in at])
         T0, self.returning = self.band.solve(np.array([self.given + gain, self.flows.back * self.flows.found]))
         mixed = 0.0
         if self.flows.back > 0.0:
@@ -104,15 +93,21 @@ class HeatBalance:
 
     def change(self, at: list[np.ndarray]) -> np.ndarray:
         """Change of `between`, which has been asked for, by a change outside."""
-        change = self.band.solve(self.passage.gain(at)[None] / self.scale)[0]
+        change = self.band.solve(self._gain(at)[None])[0]
         if self.flows.back > 0.0:
             mixed = float(np.sum(self.weight * change)) / (1.0 - float(np.sum(self.weight * self.returning)))
             change += mixed * self.returning
         return change
 
+    def _gain(self, at: list[np.ndarray]) -> np.ndarray:
+        """Scaled heat (n, m) from temperatures ``at`` outside into a film of temperature 0."""
+        by = self.by.sum(axis=0)
+        return (by[0] * at[0] + by[1] * at[1]) / self.scale
+
     def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
         """Heat into both sides (n, m), W."""
-        return self.passage.heat(x, at)
+        outside = self.by[:, 0] * at[0] + self.by[:, 1] * at[1]
+        return list(self.through[..., 0] * x - outside)
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
         """Blocks of the film in a state."""

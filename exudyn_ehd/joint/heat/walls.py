@@ -235,10 +235,9 @@ class FilmTemperature(HeatedFilm):
         ]
         return np.concatenate(rows)
 
-    def _held(self, of: list[list[np.ndarray]]) -> np.ndarray:
+    def _held(self, of: np.ndarray) -> np.ndarray:
         """Return the heat from walls to a film of held temperatures, per kelvin of their surfaces (k, k), W/K."""
-        parts = [[by.sum(axis=1) for by in row] for row in of]
-        (bush, both), (_, journal) = parts
+        (bush, both), (_, journal) = of.sum(axis=3)
         if self.sides[1] is None:
             return np.diag(bush)
         if self.sides[0] is None:

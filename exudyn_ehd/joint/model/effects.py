@@ -12,15 +12,15 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
-from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
+from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature, ViscosityField
 from exudyn_ehd.joint.model.parts import grid_of
-from exudyn_ehd.joint.seams import Effects, GapTerm, PressureLaw, Wear, shear_product
+from exudyn_ehd.joint.seams import Effects, GapTerm, Wear, shear_product
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 
 
@@ -58,11 +58,12 @@ def _rough_effects(bearing: JournalBearing) -> Effects:
     if bearing.roughness is None:
         return Effects(limiter=contact, contacts=() if contact is None else (contact,))
     residual = 0.0 if contact is None else contact.residual
+    rough = RoughFlow(bearing.roughness, c, residual)
     return Effects(
         limiter=AverageGap(bearing.roughness.composite_roughness / c, residual) if contact is None else contact,
         contacts=() if contact is None else (contact,),
-        flux=(RoughFlow(bearing.roughness, c, residual),),
-        shear_factor=RoughShear(bearing.roughness, c, residual),
+        flux=(rough,),
+        shear_factor=rough,
         uneven_drag=bearing.roughness.journal_share != 0.5,
     )
 
@@ -81,7 +82,7 @@ def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
 def collect_rheology(bearing: JournalBearing) -> Effects:
     """Laws of the lubricant and the thermal effect of a bearing."""
     oil, thermal = bearing.lubricant, bearing.thermal
-    effects = Effects(pressure_law=transform_law(oil))
+    effects = Effects(pressure_law=transform_of(oil))
     if isinstance(effects.pressure_law, CompressibleLaw):
         effects = replace(effects, density=effects.pressure_law)
     thinning = None
@@ -122,9 +123,3 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     kind = FilmTemperature if thermal.across == 1 else CubicTemperature
     heated = kind(thermal, bearing, field, grid_of(bearing).shape)
     return replace(effects, thermal=heated, gap_terms=(Growth(heated),) if heated.grows else ())
-
-
-def transform_law(lubricant: Lubricant) -> PressureLaw | None:
-    """The law by which pressure becomes the solver's unknown, a `CompressibleLaw` with a density law; None: none."""
-    viscosity = None if lubricant.pressure_law is None else lubricant.pressure_law.bound(lubricant.viscosity)
-    return viscosity if lubricant.density_law is None else CompressibleLaw(lubricant.density_law, viscosity)

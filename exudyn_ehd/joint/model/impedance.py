@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap, ImpedanceTable, impedance_table, impedance_wrench
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap, impedance_nodes, impedance_wrench, places
 from exudyn_ehd.status import FilmError, Status
 
 # Tilt that counts as none: share of the minimum film thickness that it may take at the ends. Its effect on the force
@@ -72,11 +72,6 @@ class ImpedanceModel:
     ----------
     bearing : JournalBearing
         With ``film=ImpedanceMap(...)``.
-
-    Attributes
-    ----------
-    table : ImpedanceTable
-        With the map's measured error (``worst_error``, ``median_error``).
     """
 
     remembers = False
@@ -86,14 +81,12 @@ class ImpedanceModel:
         assert isinstance(bearing.film, ImpedanceMap)
         self.bearing = bearing
         ratio = bearing.length / bearing.journal_radius
-        self.table: ImpedanceTable = impedance_table(bearing.film, bearing.closure, ratio)
+        self.nodes = impedance_nodes(bearing.film, bearing.closure, ratio)
         R, c, mu = bearing.journal_radius, bearing.radial_clearance, bearing.lubricant.viscosity
-        t = self.table
         self.parameters = np.array(
             [
-                t.step_s,
-                t.step_alpha,
-                t.largest_eccentricity_ratio,
+                *(at[1] for at in places(bearing.film)),
+                bearing.film.largest_eccentricity_ratio,
                 c,
                 R,
                 0.5 * bearing.length,
@@ -122,7 +115,7 @@ class ImpedanceModel:
         """
         motion = np.array(motion, dtype=float)
         wrench, tangent = np.empty(6), np.empty((6, 10))
-        code = impedance_wrench(self.table.nodes, self.parameters, motion, wrench, tangent)
+        code = impedance_wrench(self.nodes, self.parameters, motion, wrench, tangent)
         if code == _TILTED:
             self._refuse_tilt(motion)
         return ImpedanceEvaluation(self.bearing, _OUTCOMES[code], motion, wrench, tangent)

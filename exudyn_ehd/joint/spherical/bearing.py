@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,14 +13,14 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftSti
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.joint.spherical.patch import sphere_patch
-from exudyn_ehd.status import InputError, require_count, require_number, require_numbers, require_type, require_vector
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_count, require_number, require_type, require_vector
 
 # Least width of a patch, and least colatitude of its open end from either pole, rad.
 LEAST_ANGLE = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
-class SphericalBearing:
+class SphericalBearing(Checked):
     """A ball in a socket with oil between them, for `CreateLubricatedSphericalJoint` and `steady_spherical`.
 
     The socket is the patch of a sphere between two circles about its axis, the joint's z. It starts at z: an angle of 0
@@ -75,9 +77,16 @@ class SphericalBearing:
     profiles = supply = ()
     levers = (1.0, 1.0, 1.0, 0.0)
 
+    checks: ClassVar = {
+        "ball_radius": POSITIVE,
+        "radial_clearance": POSITIVE,
+        "n_phi": partial(require_count, at_least=16),
+        "n_chi": partial(require_count, at_least=4),
+    }
+
     def __post_init__(self) -> None:
+        super().__post_init__()
         name = "SphericalBearing"
-        require_numbers(self, above=0.0, ball_radius="m", radial_clearance="m")
         if not self.radial_clearance <= 0.05 * self.ball_radius:
             raise InputError(
                 f"{name}.radial_clearance must be at most a twentieth of the ball's radius {self.ball_radius:g} m, for "
@@ -98,8 +107,6 @@ class SphericalBearing:
                 f"{LEAST_ANGLE} and end <= {end:.5g}, got {self.socket_angles!r}; use math.radians for degrees."
             )
         object.__setattr__(self, "socket_angles", (first, last))
-        require_count(f"{name}.n_phi", self.n_phi, at_least=16)
-        require_count(f"{name}.n_chi", self.n_chi, at_least=4)
         require_type(f"{name}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld)
         if self.cavitation.line_in_cells or self.cavitation.cavity_pressure > 0.0:
             raise InputError(

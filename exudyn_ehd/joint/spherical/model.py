@@ -47,6 +47,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
@@ -193,8 +194,7 @@ class SphericalModel:
         self.limiter = None if b.contact is None else WallContact(b.contact, c)
         self.pressure_scale = 12.0 * mu * R**2 / c**2
         self.force_scale, self.shear_scale = self.pressure_scale * R**2, mu * R**2 / c
-        law, self._cavity = b.lubricant.pressure_law, b.cavitation.cavity_pressure
-        self.law = None if law is None else law.bound(mu)
+        self.law, self._cavity = transform_of(b.lubricant), b.cavitation.cavity_pressure
         if self.law is not None:
             self._cavity = float(self.law.transform(np.array(self._cavity)))
         # over control volumes: normals, and storage of a velocity (m/s) per area of the grid

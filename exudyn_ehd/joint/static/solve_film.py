@@ -11,11 +11,10 @@ from exudyn_ehd.bearing import Cavitation
 from exudyn_ehd.film.cavitation.closures import Closure, SwiftStieber, place_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.lubricant.lubricant import Lubricant, transform_of
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.joint.model.effects import transform_law
-from exudyn_ehd.joint.seams import PressureLaw
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import (
     FilmError,
@@ -153,7 +152,7 @@ def solve_film(
     if history is not None:
         mass = history / c
         rate = (H - mass) / step
-    law = transform_law(lubricant)
+    law = transform_of(lubricant)
     solver = _any_gap_solver(grid, closure, law, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
     solver.H[:] = H
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
@@ -185,7 +184,12 @@ def solve_film(
 
 
 def _any_gap_solver(
-    grid: FilmGrid, closure: Closure, law: PressureLaw | None, squeeze: bool, steps: SteppedGap | None, scale: float
+    grid: FilmGrid,
+    closure: Closure,
+    law: PressureTransform | None,
+    squeeze: bool,
+    steps: SteppedGap | None,
+    scale: float,
 ) -> FilmSolver:
     density = law if isinstance(law, CompressibleLaw) else None
     effects = () if steps is None else (steps,)

@@ -94,11 +94,9 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
         GROWTH_INWARDS,
         GROWTH_OUTWARDS,
     )
-    shapes = {"waves": ("k",), "phases": ("k",), "profiles": ("k", "m"), "stiffness": ("k",), "error": ()}
     data = cached_arrays(
         "journal_modes",
         repr((*described, *choice, ANGLES, films.FORMAT)).encode(),
-        shapes,
         lambda: _Reduction(journal, radius, length).modes(),
     )
     error = float(data.pop("error"))

@@ -35,7 +35,7 @@ from exudyn_ehd.solid.modes import films
 from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points, orthogonal_on
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import PlausibilityWarning, warn_user
-from exudyn_ehd.storage import Shapes, cached_arrays
+from exudyn_ehd.storage import cached_arrays
 
 # Elements around a bore, of which fewer are warned of: on 8 the minimum film thickness is 3 to 9 % off.
 FEWEST_AROUND = 12
@@ -131,8 +131,7 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
         modes = compute_modes(bush, mesh, length)
         return {"displacements": modes.displacements, "stiffness": modes.stiffness, "error": np.array(modes.error)}
 
-    shapes: Shapes = {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",)}
-    data = cached_arrays("bush_modes", described, {**shapes, "error": ()}, compute)
+    data = cached_arrays("bush_modes", described, compute)
     return BoreModes(
         mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
     )

@@ -10,6 +10,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.pressure_viscosity import (
     BEYOND,
     BarusPressure,
+    PressureTransform,
     RoelandsPressure,
     hermite_inverse,
 )
@@ -17,6 +18,10 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
 ALPHA = 2e-8
 MU = 0.04
 PRESSURES = np.array([1e3, 1e5, 3.3e6, 5e7, 1.234e8, 3e8, 6e8])
+
+
+def transform(law, mu=MU):
+    return PressureTransform(law.bound(mu))
 
 
 def inverse(law, q):
@@ -33,14 +38,14 @@ def roelands_ratio(p, mu=MU, alpha=ALPHA, p0=1.96e8):
 
 
 def test_barus_transform_is_its_integral():
-    law = BarusPressure(coefficient=ALPHA)
+    law = transform(BarusPressure(coefficient=ALPHA))
     exact = [quad(lambda s: math.exp(-ALPHA * s), 0.0, p, epsabs=0.0, epsrel=1e-13)[0] for p in PRESSURES]
     np.testing.assert_allclose(law.transform(PRESSURES), exact, rtol=1e-13)  # quadrature to rounding
 
 
 @pytest.mark.parametrize("mu", [0.005, 0.04, 0.3])
 def test_roelands_transform_is_its_integral(mu):
-    law = RoelandsPressure(coefficient=ALPHA).bound(mu)
+    law = transform(RoelandsPressure(coefficient=ALPHA), mu)
     exact = [
         quad(lambda s: 1.0 / roelands_ratio(s, mu), 0.0, p, epsabs=0.0, epsrel=1e-12, limit=200)[0] for p in PRESSURES
     ]
@@ -48,55 +53,58 @@ def test_roelands_transform_is_its_integral(mu):
 
 
 def test_barus_round_trip():
-    law = BarusPressure(coefficient=ALPHA)
+    law = transform(BarusPressure(coefficient=ALPHA))
     expected = np.concatenate((-PRESSURES[:5], PRESSURES[:5]))
     p, r, r_q = inverse(law, law.transform(expected))
     np.testing.assert_allclose(p, expected, rtol=1e-13)  # rounding times the viscosity ratio
-    np.testing.assert_allclose(r, np.exp(ALPHA * expected), rtol=1e-13)
-    np.testing.assert_allclose(r_q, ALPHA * np.exp(2.0 * ALPHA * expected), rtol=1e-13)
+    np.testing.assert_allclose(r, np.exp(ALPHA * expected), rtol=1e-12)  # derivative of the spline: one order less
+    np.testing.assert_allclose(r_q, ALPHA * np.exp(2.0 * ALPHA * expected), rtol=1e-7)  # second derivative: two orders
 
 
 @pytest.mark.parametrize("mu", [0.005, 0.04, 0.3])
 @pytest.mark.parametrize("alpha", [1e-10, 1e-8, 2.5e-8])
 def test_roelands_round_trip(mu, alpha):
-    law = RoelandsPressure(coefficient=alpha).bound(mu)
+    law = transform(RoelandsPressure(coefficient=alpha), mu)
     expected = np.linspace(1e4, 3e8, 20001)
     p, r, r_q = inverse(law, law.transform(expected))
     np.testing.assert_allclose(p, expected, rtol=1e-12)  # spline 1e-13, rounding times the viscosity ratio
     np.testing.assert_allclose(
         r, roelands_ratio(expected, mu, alpha), rtol=1e-10
     )  # derivative of the spline: one order less
-    slope = r**2 * alpha * (1.0 + expected / 1.96e8) ** (law.Z - 1.0)
+    slope = r**2 * alpha * (1.0 + expected / 1.96e8) ** (law.viscosity.Z - 1.0)
     np.testing.assert_allclose(r_q, slope, rtol=1e-5)  # second derivative: two orders and digits less
 
 
 def test_roelands_is_barus_to_first_order_and_below_ambient():
-    barus, roelands = BarusPressure(coefficient=ALPHA), RoelandsPressure(coefficient=ALPHA).bound(MU)
+    barus, roelands = transform(BarusPressure(coefficient=ALPHA)), transform(RoelandsPressure(coefficient=ALPHA))
     negative = np.array([-5e7, -1e6, -1.0])
     np.testing.assert_array_equal(roelands.transform(negative), barus.transform(negative))
-    errors = [abs(float(roelands.ratio(np.array(p))) - math.exp(ALPHA * p)) for p in (2e6, 1e6)]
+    errors = [abs(float(roelands.viscosity.ratio(np.array(p))) - math.exp(ALPHA * p)) for p in (2e6, 1e6)]
     assert 3.5 < errors[0] / errors[1] < 4.5  # they part in the second order
 
 
-def test_pressures_that_do_not_exist():
-    q = np.full((1, 1), 1.0 / ALPHA)
-    out = [np.empty((1, 1)) for _ in range(3)]
-    assert not BarusPressure(coefficient=ALPHA).inverse(q, *out)
-    assert BarusPressure(coefficient=ALPHA).inverse(q * (1.0 - 1e-9), *out)
-    table = RoelandsPressure(coefficient=ALPHA).bound(MU)
+@pytest.mark.parametrize("law", [BarusPressure(coefficient=ALPHA), RoelandsPressure(coefficient=ALPHA)])
+def test_pressures_that_do_not_exist(law):
+    table, out = transform(law), np.empty((3, 1, 1))
+    assert table.inverse(np.full((1, 1), table.q[-1] * (1.0 - 1e-12)), *out)
     assert not table.inverse(np.full((1, 1), 1.01 * table.q[-1]), *out)
     assert not table.inverse(np.full((1, 1), np.nan), *out)
 
 
-@pytest.mark.parametrize("law", [BarusPressure(coefficient=ALPHA), RoelandsPressure(coefficient=ALPHA).bound(MU)])
+def test_barus_law_ends_where_oil_is_solid():
+    """Its transform has no pressure from 1 / alpha on."""
+    law = transform(BarusPressure(coefficient=ALPHA))
+    assert law.q[-1] == pytest.approx((1.0 - 1e-7) / ALPHA, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [BarusPressure(coefficient=ALPHA), RoelandsPressure(coefficient=ALPHA)])
 def test_laws_go_on_in_a_line(law):
-    """Where they have ended: on Barus' tangent of that slope, from the end of the table."""
-    end = 1.0 / ALPHA if isinstance(law, BarusPressure) else law.q[-1]
-    q = end * np.array([[1.0, 1.2]])
+    """From the end of the table."""
+    law = transform(law)
+    q = law.q[-1] * np.array([[1.0, 1.2]])
     p, ratio, slope = (np.empty((1, 2)) for _ in range(3))
     assert not law.inverse(q, p, ratio, slope)
-    first = (math.log(BEYOND) + 1.0) / ALPHA if isinstance(law, BarusPressure) else law.largest_pressure
-    np.testing.assert_allclose(p, first + BEYOND * (q - end), rtol=1e-12)
+    np.testing.assert_allclose(p, law.largest_pressure + BEYOND * (q - law.q[-1]), rtol=1e-12)
     np.testing.assert_array_equal(ratio, BEYOND)
     np.testing.assert_array_equal(slope, 0.0)
 
@@ -105,7 +113,7 @@ def test_kernels_equal_their_readable_twins():
     q = np.random.default_rng(2).uniform(-2e7, 4.5e7, (6, 5))
     q[0, 0] = 0.0
     out = [np.empty_like(q) for _ in range(3)]
-    law = RoelandsPressure(coefficient=ALPHA).bound(MU)
+    law = transform(RoelandsPressure(coefficient=ALPHA))
 
     def barus_twin(x):
         p = -math.log(1.0 - ALPHA * x) / ALPHA
@@ -119,9 +127,6 @@ def test_kernels_equal_their_readable_twins():
         t = (x - law.q[k]) * w
         return poly(t), w * poly.deriv()(t), w**2 * poly.deriv(2)(t)
 
-    assert BarusPressure(coefficient=ALPHA).inverse(q, *out)
-    for at, x in np.ndenumerate(q):
-        np.testing.assert_allclose([o[at] for o in out], barus_twin(x), rtol=1e-13, atol=1e-8)  # log1p against log
     assert hermite_inverse(q, ALPHA, law.q, law.table, law.bucket, law.bucket_scale, *out)
     for at, x in np.ndenumerate(q):
         np.testing.assert_allclose([o[at] for o in out], roelands_twin(x), rtol=1e-12, atol=1e-8)  # order of summation

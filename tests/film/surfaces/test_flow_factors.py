@@ -15,7 +15,7 @@ from scipy.stats import norm
 import exudyn_ehd as ehd
 from exudyn_ehd.film.reynolds.links import link_flux
 from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
-from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
+from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.patir_cheng import (
     PATTERNS,
     SHEAR_CUTOFF,
@@ -34,12 +34,12 @@ ANY = (SimpleNamespace(changes_carriers=True, depends_on_speed=True),)
 
 def rough(pattern=1.0, share=0.5, residual=0.02):
     spec = ehd.PatirCheng(composite_roughness=SIGMA, pattern=pattern, journal_share=share)
-    return RoughFlow(spec, CLEARANCE, residual), RoughShear(spec, CLEARANCE, residual)
+    return RoughFlow(spec, CLEARANCE, residual)
 
 
 def factors(t, pattern=1.0, share=0.5, residual=0.02):
     """phi_x, phi_z, shear carrier factors, each with its derivative by t, at average gaps t = h_T / sigma (k,)."""
-    flow, _ = rough(pattern, share, residual)
+    flow = rough(pattern, share, residual)
     gap = np.atleast_2d(t) * flow.sigma
     flux = link_flux(gap, ANY)
     for field in (flux.gx, flux.gz, flux.cx, flux.cz):
@@ -102,7 +102,7 @@ def test_all_factors_stay_positive_and_smooth(pattern, share):
 def test_one_pass_is_the_plain_film_times_its_factors(share, slope):
     """Aligned and tilted gaps, into buffers that an effect of another step has
     used; 1e-14: rounding of products in another order."""
-    flow, _ = rough(3.0, share)
+    flow = rough(3.0, share)
     column = np.linspace(0.05, 1.9, 7)[:, None]
     H, HF = column + slope * np.arange(5.0), 1.1 * column - slope * np.arange(5.0)
     z = np.column_stack((0.5 * (H[:, 1:] + H[:, :-1]), H[:, -1]))
@@ -127,7 +127,7 @@ def test_smooth_surfaces_are_the_limit():
 def test_friction_factor_is_the_mean_inverse_gap_and_the_drag_of_ripples():
     """h_T E[1 / gap] over gaps above sigma / 100 by quadrature, 5e-5 of the
     table's interpolation; plus Phi_fs h_T / h within its range."""
-    _, shear = rough()
+    shear = rough()
     H = np.array([-1.0, 0.0, 0.3, 1.0, 2.0, 3.0, 5.0, 12.0, 40.0])
     t = average_gap_ratio(H, 0.02)
     exact = [

@@ -11,7 +11,7 @@ import numpy as np
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.cavitation.steady_oil import has_unfed_row
-from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.status import Status
 
@@ -62,7 +62,7 @@ def _at_rest(film: LinerFilm) -> bool:
     return still and not film.rigid[2].any()
 
 
-def _transformed(film: LinerFilm, oil: PressureLaw, guess: np.ndarray) -> np.ndarray:
+def _transformed(film: LinerFilm, oil: PressureTransform, guess: np.ndarray) -> np.ndarray:
     """Unknowns of guessed pressures (n, m), limited to the larger of what opens the gap to `OPEN` and the share
     `MODERATE` of the oil's largest pressure."""
     touching = np.maximum((OPEN - film.rigid[0]) / film.beta, 0.0)

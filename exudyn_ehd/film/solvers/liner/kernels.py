@@ -5,7 +5,7 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.oil_line import curve_of
 from exudyn_ehd.film.cavitation.states import take_sink
-from exudyn_ehd.film.lubricant.density import density_ratio
+from exudyn_ehd.film.lubricant.density import density_taylor
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
 from exudyn_ehd.film.solvers.liner.elements import (
     Rates,
@@ -19,15 +19,15 @@ from exudyn_ehd.film.solvers.liner.elements import (
 
 
 @njit(cache=True)
-def density_of_load(load_fields, P, scale, a, b, rho_out, rho_P_out):
+def density_of_load(load_fields, P, scale, law, rho_out, rho_P_out):
     """Set the density ratio at the pressure on the elements and its derivative to the unknown, 0 where the pressure is
     clipped."""
     load = load_of(load_fields)
-    p, x, drive, slope = load.p.reshape(-1), P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)
+    x, drive = P.reshape(-1), load.drive.reshape(-1)
     rho, rho_P = rho_out.reshape(-1), rho_P_out.reshape(-1)
-    for c in range(p.size):
-        rho[c], by = density_ratio(p[c] * scale, a, b)
-        rho_P[c] = by * scale * slope[c] if x[c] == drive[c] else 0.0
+    for c in range(x.size):
+        rho[c], _, _, by, _, _, _ = density_taylor(drive[c] * scale, law)
+        rho_P[c] = by * scale if x[c] == drive[c] else 0.0
 
 
 @njit(cache=True)

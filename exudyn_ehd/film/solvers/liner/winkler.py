@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.cavitation.states import OIL
-from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.elements import (
     Gaps,
@@ -38,13 +38,13 @@ class Liner(NamedTuple):
         Contact whose pressure acts on the liner, as the film's does.
     limiter : GapLimiter or None
         Limiter of the gap that the film sees; comes with a contact or with flow factors.
-    oil : PressureLaw or None
+    oil : PressureTransform or None
         Law of a viscosity that follows the pressure; of a compressible film that of its density.
     """
 
     contact: Contact | None = None
     limiter: GapLimiter | None = None
-    oil: PressureLaw | None = None
+    oil: PressureTransform | None = None
 
 
 class WinklerElements:
@@ -194,8 +194,7 @@ class WinklerElements:
         if scale_load(self.load_fields, self.scale) > self.oil.largest_pressure:
             return False
         if f.law is not None:
-            table = f.law.kernel_table
-            density_of_load(self.load_fields, P, self.scale, table.a, table.b, *self.densities)
+            density_of_load(self.load_fields, P, self.scale, f.law.kernel_table, *self.densities)
         return True
 
     def update_elements(self, P: np.ndarray) -> bool:
