@@ -42,7 +42,7 @@ from exudyn_ehd.joint.solved_film import (
     SolvedFilm,
 )
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
-from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
+from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, traction
 from exudyn_ehd.joint.tangent.spread import complete
 from exudyn_ehd.status import Status, warn_user
 
@@ -126,18 +126,15 @@ class ElasticEvaluation(Evaluation):
         """`nodal_forces` on nodes at x (nodes, 3), completed to the opposite of the wrench on the journal."""
         return complete(x, self.wrench, self.nodal_forces())
 
-    def nodal_tangent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the tangent of `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; there must be a film."""
-        return nodal_tangent(self._found(), self._nodes(), self.model.bore_forces)
+    def nodal_tangent(self) -> NodalTangent:
+        """Return the tangent of wrench and nodal forces; there must be a film."""
+        assert isinstance(self.model.bore, NodalBore)
+        return NodalTangent(self._found(), self.model.bore, self.model.bore_forces)
 
     def tangent_at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """`nodal_tangent` with the forces completed as in `forces_at`."""
-        wrench, nodal = self.nodal_tangent()
+        """`NodalTangent.whole` with the forces completed as in `forces_at`."""
+        wrench, nodal = self.nodal_tangent().whole()
         return wrench, complete(x, wrench, nodal)
-
-    def nodal_product(self) -> NodalProduct:
-        """The tangent of wrench and nodal forces as an operator; there must be a film."""
-        return NodalProduct(self._found(), self._nodes(), self.model.bore_forces)
 
     def quantities(self) -> dict[str, float]:
         """Return `Evaluation.quantities` and the largest ``bore_displacement``, m."""
@@ -148,10 +145,6 @@ class ElasticEvaluation(Evaluation):
         film = self._current()
         assert film is not None
         return film
-
-    def _nodes(self) -> NodalBore:
-        assert isinstance(self.model.bore, NodalBore)
-        return self.model.bore
 
 
 class BoreTerm:
