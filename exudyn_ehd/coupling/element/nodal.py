@@ -23,7 +23,6 @@ from exudyn_ehd.coupling.contract import CURRENT, Evaluation, Index, Side, Trial
 from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
-from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.tangent.spread import complete, resultant, spread_matrix
 from exudyn_ehd.status import Status
 

@@ -20,7 +20,6 @@ from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
-from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of
 from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
@@ -176,7 +175,7 @@ class BearingModel:
             void=s.nothing if remembers else None,
             mass=s.H.copy() if remembers else None,
             outflow=np.array([s.ones, s.nothing, s.nothing]) if remembers else None,
-            wear=None if wear is None else wear.depth(None).copy(),
+            wear=None if wear is None else wear.field(None).copy(),
             deflection=liner.deflection if found and liner is not None else None,
             temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
             density=s.ones if self.remembers_density else None,
@@ -193,7 +192,7 @@ class BearingModel:
             void=void,
             mass=mass,
             outflow=s.outflow() if self.remembers_mass else None,
-            wear=None if effects.wear is None else worn_depth(effects.wear, film),
+            wear=None if effects.wear is None else effects.wear.grown(film),
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             temperature=None if effects.thermal is None else effects.thermal.advance(film),
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,

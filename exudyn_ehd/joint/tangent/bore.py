@@ -62,7 +62,7 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
     change, (by_q, by_rate) = Balances(film).changes(bore.shapes, *combinations), bore_tangent(film, bore)
     out = np.concatenate((wrench_rows(film) @ change, product(load_columns(film, bore).T, change)))
     out[:6, :size] += motion_tangent(film)
-    contact = 0.0
+    contact: np.ndarray | float = 0.0
     if film.pressing is not None:
         contact = bore.product(contact_slope(film, film.pressing)) / film.parts.bearing.radial_clearance
         out[6:, :4] -= _contact_columns(film, bore, film.pressing)

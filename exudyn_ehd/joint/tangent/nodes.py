@@ -35,7 +35,7 @@ from exudyn_ehd.joint.tangent.bore import (
     pressures_by_unknowns,
 )
 from exudyn_ehd.joint.tangent.line import line_by_motion, ratio_of, true_fills
-from exudyn_ehd.joint.tangent.wrench import motion_tangent, wrench_rows
+from exudyn_ehd.joint.tangent.wrench import motion_tangent, pose_columns, wrench_rows
 
 
 class BoreForces:
@@ -255,7 +255,7 @@ class NodalTangent:
         self.by_place, self.by_rate = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
         self.rows, self.at_unknowns, self.of_bore = wrench_rows(film), motion_tangent(film), bore_tangent(film, bore)
         self.change = TractionChange(film, forces)
-        self.columns = _pose_columns(film) * film.parts.pose_scale
+        self.columns = pose_columns(film) * film.parts.pose_scale
         unknowns = -self.by_motion
         film.solver.direct(unknowns)
         self.wrench = self.rows @ unknowns + self.at_unknowns
@@ -300,11 +300,3 @@ def _parts(k: int) -> tuple[slice, slice, slice]:
 
 def _dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
     return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
-
-
-def _pose_columns(film: SolvedFilm) -> np.ndarray:
-    """Minus dH / d(scaled pose) (n m, 4)."""
-    p, z = film.parts, film.grid.z
-    cos, sin = np.repeat(p.directions.cos_x, z.size), np.repeat(p.directions.sin_x, z.size)
-    heights = np.tile(z, p.directions.cos_x.size)
-    return np.column_stack((cos, sin, cos * heights, sin * heights))

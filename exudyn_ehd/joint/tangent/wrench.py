@@ -14,14 +14,13 @@ from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.surfaces.contact_wrench import add_contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
 from exudyn_ehd.joint.tangent.line import (
-    add_by_motion,
     line_by_motion,
     ratio_of,
     shear_of_ends,
@@ -51,10 +50,7 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:
 
 def film_gradient(film: SolvedFilm, rows: np.ndarray, slow_motion: bool) -> np.ndarray:
     """Gradients (k, 10) of sums over the unknowns with weights (k, count) to (scaled pose and rates, vx, vz)."""
-    p, s, gradient = film.parts, film.solver, np.zeros((len(rows), MOTION_SIZE))
-    if not s.plain_links:
-        field_gradient(film, s.adjoint(rows), gradient)
-        return gradient
+    p, s, gradient = film.parts, film.solver, np.empty((len(rows), MOTION_SIZE))
     s.solve_transposed(rows)
     columns = balance_gradients(film)
     functional_gradients(rows, columns, gradient)
@@ -120,19 +116,36 @@ def _following_deflection(film: SolvedFilm, liner: LinerFilm, lam: np.ndarray, c
 
 
 def balance_gradients(film: SolvedFilm) -> np.ndarray:
-    """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz).
-
-    For films on `FilmSolver`'s own links, and on a liner.
-    """
-    w, at = film.solver.work, film.grid.directions
+    """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz)."""
+    s, w, at = film.solver, film.solver.work, film.grid.directions
+    if isinstance(s, ClassicSolver):
+        return _difference_columns(film, s)
     out = np.empty((MOTION_SIZE, w.count))
     if film.parts.liner is not None:
-        film.parts.liner.motion_columns(*film.solver.storage_weights(), at, out)
+        film.parts.liner.motion_columns(*s.storage_weights(), at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
     if (line := true_line(film)) is not None:
         add_line_columns(tuple(line), at, out)
     return out
+
+
+def _difference_columns(film: SolvedFilm, solver: ClassicSolver) -> np.ndarray:
+    """Return `balance_gradients` of central differences."""
+    shapes, f = -pose_columns(film), film.limited
+    none = np.zeros_like(shapes)
+    if f is None:
+        return solver.difference_columns(np.hstack((shapes, none)), np.hstack((none, shapes)))
+    slope, bend = f.slope.reshape(-1, 1) * shapes, f.bend.reshape(-1, 1) * shapes
+    return solver.difference_columns(np.hstack((slope, none)), np.hstack((bend, slope)))
+
+
+def pose_columns(film: SolvedFilm) -> np.ndarray:
+    """Minus dH / d(scaled pose) (n m, 4)."""
+    p, z = film.parts, film.grid.z
+    cos, sin = np.repeat(p.directions.cos_x, z.size), np.repeat(p.directions.sin_x, z.size)
+    heights = np.tile(z, p.directions.cos_x.size)
+    return np.column_stack((cos, sin, cos * heights, sin * heights))
 
 
 def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -146,13 +159,6 @@ def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarra
         d[0] *= f.face_slope
         by_rate, by_gap = by_rate * slope, by_gap * slope + by_rate * f.bend
     return d, slope, by_rate, by_gap
-
-
-def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray) -> Sensitivities:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through fields of sensitivities, of rigid surfaces."""
-    sens = film.solver.sensitivities(lam)
-    add_by_motion(film, sens, gradient)
-    return sens
 
 
 def shear_needs_adjoint(film: SolvedFilm) -> bool:
