@@ -69,15 +69,12 @@ class ElasticEvaluation(Evaluation):
     Attributes
     ----------
     bore : BoreState
-    settling_steps : int
-        Newton trials of `ElasticBearingModel.evaluate_steady`.
     closing : ClosingFilm or None
         The last film that it found on the way to a place without one.
     """
 
     model: ElasticBearingModel = dataclasses.field(repr=False)
     bore: BoreState = dataclasses.field(repr=False)
-    settling_steps: int = 0
     closing: ClosingFilm | None = None
 
     @property
@@ -147,18 +144,6 @@ class ElasticEvaluation(Evaluation):
         return film
 
 
-class BoreTerm:
-    """The bore's displacement as a gap term; its field belongs to the motion being evaluated."""
-
-    def __init__(self) -> None:
-        self.displacement = np.zeros((0, 0))
-        self.rate = np.zeros((0, 0))
-
-    def field(self, history: History | None) -> np.ndarray:
-        """Scaled displacement (n, m)."""
-        return self.displacement
-
-
 def end_load(bore: Bore, grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
     """Return the loads (k,) of the ends' pressure on the bore that the film's weights omit, N.
 
@@ -206,11 +191,7 @@ class ElasticBearingModel(BearingModel):
         start_angle: float = 0.0,
         effects: Effects | None = None,
     ) -> None:
-        effects = Effects() if effects is None else effects
-        term = BoreTerm()
-        effects = dataclasses.replace(effects, gap_terms=(*effects.gap_terms, term))
         super().__init__(bearing, start_angle=start_angle, effects=effects)
-        self._term = term
         self.make_bore, self.bore = bore, bore(self.grid)
         self.elasticity = elasticity
         self._parallel = not all(getattr(part, "tilted", True) for part in (bearing.bush, bearing.journal))
@@ -237,16 +218,14 @@ class ElasticBearingModel(BearingModel):
         journal = super()._journal(motion)
         self._coordinates = journal.motion[MOTION_SIZE : MOTION_SIZE + k]
         scaled = journal.motion[MOTION_SIZE:] / self.bearing.radial_clearance
-        self._term.displacement, self._term.rate = (self.bore.displacement(q) for q in (scaled[:k], scaled[k:]))
+        self._displacement, self._rate = (self.bore.displacement(q) for q in (scaled[:k], scaled[k:]))
         return journal
 
     def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
         s, g = self.solver, self.grid
-        fields = [term.field(history) for term in self.effects.gap_terms]
-        height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
-        # the bore's own term is the last
-        extra = ExtraGap(height, *self._slopes, fields[:-1])
-        rate = self._term.rate if s.squeeze else s.nothing
+        surfaces = [term.field(history) for term in self.effects.gap_terms]
+        height = np.sum([*surfaces, self._displacement], axis=0) if surfaces else self._displacement
+        extra, rate = ExtraGap(height, *self._slopes, surfaces), self._rate if s.squeeze else s.nothing
         smallest = add_gap(height, rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
         return float(smallest), extra
 
@@ -262,7 +241,7 @@ class ElasticBearingModel(BearingModel):
             if self.bore.twist is not None:
                 load -= self.bore.twist * wrench[5]
         q, q_t = journal.motion[MOTION_SIZE : MOTION_SIZE + k], journal.motion[MOTION_SIZE + k :]
-        whole, own = self._term.displacement, self.bearing.journal is not None
+        whole, own = self._displacement, self.bearing.journal is not None
         part = self.bore.of_journal(q / self.bearing.radial_clearance) if own else 0.0
         return BoreState(q, q_t, whole, load, part)
 
@@ -318,14 +297,15 @@ class ElasticBearingModel(BearingModel):
         Starts from the coordinates of the last evaluation. NOT_CONVERGED if no equilibrium was found.
         """
         start = self._coordinates.copy()
-        found, steps, (part, q) = self.elasticity.settle(self, motion, (history, step, spin), start)
+        found = self.elasticity.settle(self, motion, (history, step, spin), start)
         if found is not None:
             assert isinstance(found, ElasticEvaluation)
-            return dataclasses.replace(found, settling_steps=steps)
+            return found
+        part, q = self.elasticity.reached
         closing = self._closing(motion, (history, step, spin), part, q) if part > 0.0 else None
         evaluation = self.evaluate(motion, history, step, spin)
         status = Status.NOT_CONVERGED if evaluation.status is Status.CONVERGED else evaluation.status
-        return dataclasses.replace(evaluation, status=status, film=None, settling_steps=steps, closing=closing)
+        return dataclasses.replace(evaluation, status=status, film=None, closing=closing)
 
     def _closing(
         self, motion: np.ndarray, film: tuple[History | None, float, float], part: float, q: np.ndarray

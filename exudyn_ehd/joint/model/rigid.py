@@ -317,7 +317,7 @@ class BearingModel:
         s, p, at = self.solver, self.parts, self.grid.directions
         smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, s.H, s.HF, s.H_t)
         extra = None
-        if self.effects.gap_terms:
+        if self.effects.gap_terms or self.flexible:
             smallest, extra = self._add_gap_terms(history)
         if p.liner is not None:
             return smallest, extra, None, None
