@@ -76,13 +76,9 @@ class Elasticity:
         """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r), K the stiffness at q."""
         return np.linalg.solve(self.stiffness - softening, rhs)
 
-    def tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
-        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of a film after `settle`, good enough for a search."""
+    def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
+        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of a film after `settle`; good enough for a search, or exact."""
         return evaluation.tangent()
-
-    def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray | None:
-        """Return the exact tangent; None if `tangent` is exact."""
-        return None
 
     def settle(
         self,

@@ -77,17 +77,15 @@ class SolidElasticity(Elasticity):
         """Generalised force (k,) that holds the bore of the linear solid at q, N."""
         return self.stiffness @ (q - self._q_free)
 
-    def tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
-        """Return `Elasticity.tangent` by the stiffness of a nearby state, with radial loads only."""
-        self._require(NEARBY)
-        return evaluation.tangent()
+    def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
+        """Return `Elasticity.tangent` by the stiffness of a nearby state, with radial loads only.
 
-    def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
-        """Exact: of all forces on the bore's nodes, with the solid linear about the last balance.
-
-        Forces along z act as the loads on q that displace the bore alike.
+        Or that of all forces on the bore's nodes, with the solid linear about the last balance. Forces along z act as
+        the loads on q that displace the bore alike.
         """
-        self._require(EXACT)
+        self._require(EXACT if exact else NEARBY)
+        if not exact:
+            return evaluation.tangent()
         bore, moves = self.solid.mesh.bore, self._moves
         wrench, nodal = evaluation.tangent_at(bore.positions + self.displacements[bore.nodes])
         loads = nodal[:, :2].reshape(-1, nodal.shape[2])

@@ -25,7 +25,6 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent
 from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
@@ -35,7 +34,6 @@ from exudyn_ehd.joint.solved_film import (
     MOTION_SIZE,
     BoreState,
     ContactFields,
-    ExtraGap,
     History,
     JournalMotion,
     OilFields,
@@ -99,15 +97,12 @@ class ElasticEvaluation(Evaluation):
             return np.full((6 + k, MOTION_SIZE + k * len(combinations)), np.nan)
         return elastic_tangent(film, self.model.bore, *combinations)
 
-    def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
+    def steady_tangent(self, exact: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10) with the bore following slowly; as `Evaluation.steady_tangent`."""
         if is_central(self):
-            return tangents_beside(self).mean(axis=0)
+            return tangents_beside(self, exact).mean(axis=0)
         elasticity = self.model.elasticity
-        tangent = elasticity.tangent(self) if rough is None else elasticity.refined_tangent(self)
-        if tangent is None:
-            return super().steady_tangent(rough)
-        return condensed_tangent(tangent, elasticity, self.bore.coordinates)
+        return condensed_tangent(elasticity.tangent(self, exact), elasticity, self.bore.coordinates)
 
     def nodal_forces(self) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.
@@ -196,7 +191,6 @@ class ElasticBearingModel(BearingModel):
         self.elasticity = elasticity
         self._parallel = not all(getattr(part, "tilted", True) for part in (bearing.bush, bearing.journal))
         self._coordinates = np.zeros(self.bore.size)
-        self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
         self._end_load = end_load(self.bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
 
     @property
@@ -221,14 +215,6 @@ class ElasticBearingModel(BearingModel):
         self._displacement, self._rate = (self.bore.displacement(q) for q in (scaled[:k], scaled[k:]))
         return journal
 
-    def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
-        s, g = self.solver, self.grid
-        surfaces = [term.field(history) for term in self.effects.gap_terms]
-        height = np.sum([*surfaces, self._displacement], axis=0) if surfaces else self._displacement
-        extra, rate = ExtraGap(height, *self._slopes, surfaces), self._rate if s.squeeze else s.nothing
-        smallest = add_gap(height, rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
-        return float(smallest), extra
-
     def _bore_state(
         self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None, wrench: np.ndarray
     ) -> BoreState:
@@ -242,6 +228,7 @@ class ElasticBearingModel(BearingModel):
                 load -= self.bore.twist * wrench[5]
         q, q_t = journal.motion[MOTION_SIZE : MOTION_SIZE + k], journal.motion[MOTION_SIZE + k :]
         whole, own = self._displacement, self.bearing.journal is not None
+        assert whole is not None
         part = self.bore.of_journal(q / self.bearing.radial_clearance) if own else 0.0
         return BoreState(q, q_t, whole, load, part)
 

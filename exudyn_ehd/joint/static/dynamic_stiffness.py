@@ -126,8 +126,7 @@ class FilmOnBoreResponse(FilmResponse):
     def __init__(self, evaluation: ElasticEvaluation) -> None:
         film, bore, elasticity = evaluation.film, evaluation.model.bore, evaluation.model.elasticity
         assert film is not None
-        T, k, m = elasticity.refined_tangent(evaluation), bore.size, MOTION_SIZE
-        T = elasticity.tangent(evaluation) if T is None else T
+        T, k, m = elasticity.tangent(evaluation, exact=True), bore.size, MOTION_SIZE
         self.stiffness = elasticity.stiffness.copy()
         self.remembers = film.solver.closure.conserves_mass
         if self.remembers:

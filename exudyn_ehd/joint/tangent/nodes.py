@@ -288,14 +288,9 @@ class NodalTangent:
 
     def whole(self) -> tuple[np.ndarray, np.ndarray]:
         """d wrench (6, 10 + 2 k) and d nodal forces (nodes, 3, 10 + 2 k) to the motion, q and q_t."""
-        k = self.bore.size
-        motion, q, q_t = (eye_array(MOTION_SIZE + 2 * k, format="csr")[part] for part in _parts(k))
-        return self.changes(motion.toarray(), q, q_t)
-
-
-def _parts(k: int) -> tuple[slice, slice, slice]:
-    """Rows of the motion (10 + 2 k,) of the rigid surfaces, of q and of q_t."""
-    return slice(MOTION_SIZE), slice(MOTION_SIZE, MOTION_SIZE + k), slice(MOTION_SIZE + k, None)
+        size, k = MOTION_SIZE, self.bore.size
+        unit = eye_array(size + 2 * k, format="csr")
+        return self.changes(unit[:size].toarray(), unit[size : size + k], unit[size + k :])
 
 
 def _dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:

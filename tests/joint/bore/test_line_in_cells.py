@@ -167,7 +167,7 @@ def coefficients(bearing, place):
     model, motion = build_study_model(bearing, 0.0), np.zeros(10)
     motion[:2], motion[8] = place, SPEED
     evaluation = model.evaluate_steady(motion)
-    tangent = evaluation.steady_tangent(model.elasticity.tangent(evaluation))
+    tangent = evaluation.steady_tangent(exact=True)
     return evaluation.wrench[:2], -C * tangent[:2, :2], -C * SPEED * tangent[:2, 4:6]
 
 
