@@ -30,7 +30,6 @@ __all__ = [
     "ShearProduct",
     "ThermalEffect",
     "Wear",
-    "shear_product",
 ]
 
 
@@ -41,14 +40,11 @@ class GapTerm(Protocol):
         """Scaled addition to the gap at the vertices (n, m) for the history at the start of the step."""
 
 
-class Wear(Protocol):
+class Wear(GapTerm, Protocol):
     """A depth that the contact pressure adds to the gap, step by accepted step."""
 
-    def depth(self, wear: np.ndarray | None) -> np.ndarray:
-        """Scaled depth (n, m) of a history; zero for None."""
-
-    def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
-        """Scaled depth (n, m) after a step (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
+    def grown(self, film: SolvedFilm) -> np.ndarray:
+        """Scaled depth (n, m) at the end of a solved film's step."""
 
 
 class ShearFactor(Protocol):
@@ -121,13 +117,6 @@ class ShearProduct:
         return slopes
 
 
-def shear_product(first: ShearFactor | None, second: ShearFactor | None) -> ShearFactor | None:
-    """Both shear factors, or the one that is there."""
-    if first is None or second is None:
-        return second if first is None else first
-    return ShearProduct(first, second)
-
-
 @dataclass(frozen=True)
 class Effects:
     """Effects of a bearing model in addition to the plain film; empty by default.
@@ -144,7 +133,7 @@ class Effects:
     density : CompressibleLaw or None
         Density law of a compressible film; then also the ``pressure_law``.
     wear : Wear or None
-        Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
+        Grows with the pressure of the contacts; one of ``gap_terms``.
     liner : ElasticLiner or None
     uneven_drag : bool
         True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.

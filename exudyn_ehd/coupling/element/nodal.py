@@ -23,8 +23,6 @@ from exudyn_ehd.coupling.contract import CURRENT, Evaluation, Index, Side, Trial
 from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
-from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.tangent.nodes import NodalProduct
 from exudyn_ehd.joint.tangent.spread import complete, resultant, spread_matrix
 from exudyn_ehd.status import Status
 
@@ -97,23 +95,17 @@ class NodalFilmElement(BoreFilmElement):
         force[n:] = (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()
         return force
 
-    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivative (6 + 3 count, 10 + 4 count) of wrench and nodal forces."""
-        wrench, nodal = self._evaluation(trial).nodal_tangent()
-        return np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
-
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        film = FilmMatrix(self._tangent(trial, f_q, f_qt))
-        return NodalTangent(self, mbs, trial, film, f_q, f_qt).matrix()
+        return NodalJacobian(self, mbs, trial, f_q, f_qt).matrix()
 
     def operator(
         self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
-    ) -> NodalTangent | None:
+    ) -> NodalJacobian | None:
         """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
         trial = self._try(mbs, q, q_t, CURRENT, t)
         if trial.status != Status.CONVERGED:
             return None
-        return NodalTangent(self, mbs, trial, self._evaluation(trial).nodal_product(), f_q, f_qt)
+        return NodalJacobian(self, mbs, trial, f_q, f_qt)
 
     def _turning_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Derivative (3 count, n_h) of the forces on the bore's nodes as the housing turns them."""
@@ -142,22 +134,7 @@ class NodalFilmElement(BoreFilmElement):
         return csr_matrix((values.ravel(), np.hstack((housing, nodes)).ravel(), starts), shape=(len(values), size))
 
 
-class FilmMatrix:
-    """Tangent (6 + 3 count, 10 + 4 count) of wrench and nodal forces, with the parts of a `NodalProduct`."""
-
-    def __init__(self, tangent: np.ndarray) -> None:
-        k = (tangent.shape[1] - MOTION_SIZE) // 2
-        parts = np.split(tangent, (MOTION_SIZE, MOTION_SIZE + k), axis=1)
-        self.wrench, self.wrench_place, self.wrench_rate = (np.ascontiguousarray(part[:6]) for part in parts)
-        self.parts = [part[6:] for part in parts]
-
-    def nodal_forces(self, motion: np.ndarray, place: csr_matrix, rate: csr_matrix) -> np.ndarray:
-        """Changes (3 count, N) of the nodal forces with changes of motion (10, N) and of the bore (2 count, N)."""
-        by_motion, by_place, by_rate = self.parts
-        return np.asarray(by_motion @ motion + by_place @ place + by_rate @ rate)
-
-
-class NodalTangent:
+class NodalJacobian:
     """Minus (f_q dQ/dq + f_qt dQ/dq_t) of a film on a nodal bush: a matrix, or an operator of one film solve each.
 
     Parameters
@@ -166,21 +143,11 @@ class NodalTangent:
     mbs : exudyn.MainSystem
     trial : Trial
         The last one of the element.
-    film : FilmMatrix or NodalProduct
-        For `matrix`, and for products.
     f_q, f_qt : float
     """
 
-    def __init__(
-        self,
-        element: NodalFilmElement,
-        mbs: exu.MainSystem,
-        trial: Trial,
-        film: FilmMatrix | NodalProduct,
-        f_q: float,
-        f_qt: float,
-    ) -> None:
-        self.film = film
+    def __init__(self, element: NodalFilmElement, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> None:
+        self.film = film = element._evaluation(trial).nodal_tangent()
         self.n, self.n_h = element.rigid_size, element.sides[0].size
         stiffness, damping, by_place, by_rate = element._rigid_derivatives(mbs, trial, film.wrench)
         self.rigid = (f_q * stiffness + f_qt * damping)[self.n_h :]
@@ -188,7 +155,7 @@ class NodalTangent:
         self.journal = element._wrench_map()[self.n_h :]
         self.frame, omega = element.sides[0].frame[:, :3], element.sides[0].frame[:, 5]
         x = element.arms @ self.frame
-        self.spread, self.resultant = spread_matrix(x).reshape(-1, 6), resultant(x)
+        self.spread, self.resultant = spread_matrix(x), resultant(x)
         place, drift = element._housing_maps()
         # the rate in the turning frame changes with the place as -omega x u
         along, turning = self.frame[:, :2].T, self.frame[:, :2].T @ -relative.skew(omega)
@@ -202,16 +169,17 @@ class NodalTangent:
 
     def __call__(self, change: np.ndarray) -> np.ndarray:
         """Product (N,) with a change (N,) of the element's coordinates."""
-        return self._product(change[: self.n], self.place @ change, self.rate @ change)
+        column = change[:, None]
+        return self._product(column[: self.n], self.place @ column, self.rate @ column)[:, 0]
 
     def _product(self, sides: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix) -> np.ndarray:
-        """Products (N, ...) with changes (n, ...) of the sides' coordinates and (2 count, ...) of the bore's motion."""
-        film, motion = self.film, self.motion @ sides
-        local = film.nodal_forces(motion, place, rate).reshape(-1, *motion.shape[1:])
-        through_bore = film.wrench_place @ place + film.wrench_rate @ rate
-        nodal = local - self.spread @ (through_bore + film.wrench @ motion + self.resultant @ local)
-        turned = np.einsum("ij,aj...->ai...", self.frame, nodal.reshape(-1, 3, *motion.shape[1:]))
-        out = np.zeros((self.place.shape[1], *motion.shape[1:]))
+        """Products (N, r) with r changes (n, r) of the sides' coordinates and (2 count, r) of the bore's motion."""
+        motion = self.motion @ sides
+        wrench, local = self.film.changes(motion, place, rate)
+        nodal = local - np.tensordot(self.spread, wrench + self.resultant @ local.reshape(-1, sides.shape[1]), 1)
+        out = np.zeros((self.place.shape[1], sides.shape[1]))
+        through_bore = wrench - self.film.wrench @ motion
         out[self.n_h : self.n] = -(self.journal @ through_bore + self.rigid @ sides)
-        out[self.n :] = -(turned.reshape(local.shape) + self.turned @ sides[: self.n_h])
+        turned = np.einsum("ij,ajc->aic", self.frame, nodal).reshape(-1, sides.shape[1])
+        out[self.n :] = -(turned + self.turned @ sides[: self.n_h])
         return out

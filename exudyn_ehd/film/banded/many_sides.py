@@ -91,20 +91,20 @@ def _solve_tile(forward, backward, diagonal, rows):
 
 
 @njit(cache=True, nogil=True)
-def solve_columns(forward, backward, inverse, symmetric, count, width, x):
-    """Solve ``A x = b`` with ``A = F^T G`` for every column of x (count, k), in place.
+def solve_columns(lower, upper, inverse, symmetric, count, width, x):
+    """Solve ``A x = b`` for every column of x (count, k), in place.
 
     Parameters
     ----------
-    forward, backward : (size, > width) arrays
-        Bands of F and G, see `ldl` and `lu`.
+    lower, upper : (size, > width) arrays
+        Bands of A's factors, see `ldl` and `lu`.
     inverse : (size,) array
-        1 / diagonal of F.
+        1 / diagonal of ``upper``.
     symmetric : bool
-        G is F with every row times its ``inverse`` (``A = U^T D^-1 U``, F = U); else G has a unit diagonal.
+        ``A = U^T D^-1 U`` with ``upper`` alone; else ``A = L U`` with a unit diagonal of L.
     """
-    ahead = pack_blocks(forward, inverse, True, count, width)
-    back = ahead if symmetric else pack_blocks(backward, inverse, False, count, width)
+    back = pack_blocks(upper, inverse, True, count, width)
+    ahead = back if symmetric else pack_blocks(lower, inverse, False, count, width)
     blocks = len(ahead)
     diagonal, tile = np.zeros(4 * blocks), np.zeros((blocks, 4 * TILE))
     rows = tile.reshape(4 * blocks, TILE)
@@ -125,50 +125,33 @@ def solve_columns(forward, backward, inverse, symmetric, count, width, x):
                 given[q] = own[q]
 
 
-def products(columns: np.ndarray, matrix: np.ndarray | csr_matrix, out: np.ndarray) -> None:
-    """Set out (k, r) to ``columns^T matrix`` for columns (count, k) and a matrix (count, r), dense or sparse."""
+def product(matrix: np.ndarray | csr_matrix, columns: np.ndarray) -> np.ndarray:
+    """Return ``matrix columns`` (r, k) for a matrix (r, count), dense or sparse, and columns (count, k)."""
     if isinstance(matrix, np.ndarray):
-        np.matmul(columns.T, matrix, out=out)
-    else:
-        by_column = matrix.tocsc()
-        _sparse_products(columns, by_column.indptr, by_column.indices, by_column.data, out)
+        return matrix @ columns
+    by_row, out = matrix.tocsr(), np.empty((matrix.shape[0], columns.shape[1]))
+    _sparse_product(by_row.indptr, by_row.indices, by_row.data, columns, out)
+    return out
 
 
 @njit(cache=True, fastmath=_FAST)
-def _sparse_products(columns, indptr, indices, data, out):
-    """`products` with the columns of a sparse matrix, by tiles that the processor's cache holds."""
-    count, sides = columns.shape
-    tile, total = np.zeros((count, TILE)), np.empty(TILE)
+def _sparse_product(indptr, indices, data, columns, out):
+    """`product` with the rows of a sparse matrix, by tiles that the processor's cache holds."""
+    sides = columns.shape[1]
     for start in range(0, sides, TILE):
-        wide = min(TILE, sides - start)
-        for r in range(count):
-            own, given = tile[r], columns[r, start : start + wide]
-            for q in range(wide):
-                own[q] = given[q]
-        for a in range(out.shape[1]):
-            begin, end = indptr[a], indptr[a + 1]
-            fours = end - (end - begin) % 4
-            total[:] = 0.0
-            for p in range(begin, fours, 4):
+        end = min(start + TILE, sides)
+        for a in range(len(out)):
+            first, last, total = indptr[a], indptr[a + 1], out[a, start:end]
+            fours = last - (last - first) % 4
+            for q in range(total.size):
+                total[q] = 0.0
+            for p in range(first, fours, 4):
                 w0, w1, w2, w3 = data[p], data[p + 1], data[p + 2], data[p + 3]
-                x0, x1, x2, x3 = tile[indices[p]], tile[indices[p + 1]], tile[indices[p + 2]], tile[indices[p + 3]]
-                for q in range(TILE):
+                x0, x1 = columns[indices[p], start:end], columns[indices[p + 1], start:end]
+                x2, x3 = columns[indices[p + 2], start:end], columns[indices[p + 3], start:end]
+                for q in range(total.size):
                     total[q] += w0 * x0[q] + w1 * x1[q] + w2 * x2[q] + w3 * x3[q]
-            for p in range(fours, end):
-                w, x = data[p], tile[indices[p]]
-                for q in range(TILE):
+            for p in range(fours, last):
+                w, x = data[p], columns[indices[p], start:end]
+                for q in range(total.size):
                     total[q] += w * x[q]
-            for q in range(wide):
-                out[start + q, a] = total[q]
-
-
-@njit(cache=True)
-def add_product(first, second, out):
-    """Add the product of two CSR matrices, as (indptr, indices, data), to a dense one (r, k)."""
-    starts, middle, weight = first
-    begin, column, value = second
-    for r in range(len(out)):
-        for p in range(starts[r], starts[r + 1]):
-            v, w = middle[p], weight[p]
-            for q in range(begin[v], begin[v + 1]):
-                out[r, column[q]] += w * value[q]

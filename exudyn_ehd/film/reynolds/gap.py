@@ -25,23 +25,6 @@ def rigid_gap(pose, cos_x, sin_x, z, base, H_out):
             H_out[i, j] = level - slope * z[j]
 
 
-@njit(cache=True, fastmath={"nnan", *_FAST})
-def add_to_gap(extra, extra_link, H, HF):
-    """Add to the gaps at vertices and links, all (n, m); returns the smallest gap."""
-    h, e = H.reshape(-1), extra.reshape(-1)
-    for k in range(h.size):
-        h[k] += e[k]
-    face, e_face = HF.reshape(-1), extra_link.reshape(-1)
-    for k in range(face.size):
-        face[k] += e_face[k]
-    smallest = np.inf
-    for k in range(h.size):
-        smallest = min(smallest, h[k])
-    for k in range(face.size):
-        smallest = min(smallest, face[k])
-    return smallest
-
-
 @njit(cache=True)
 def largest_eccentricity(pose, half_length):
     """Largest distance of the journal axis from the bearing axis, scaled by c; it is reached at one of the ends."""

@@ -59,9 +59,6 @@ class FilmSolver(FilmAnswers):
         What lets gaps or conductances follow the pressure; None if they don't.
     """
 
-    # False where a film model has equations of its own, so that its gradients are those of `sensitivities`.
-    plain_links = True
-
     def __init__(
         self,
         grid: FilmGrid,

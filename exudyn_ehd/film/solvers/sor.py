@@ -36,7 +36,6 @@ from scipy.sparse import coo_matrix, csr_matrix, diags_array, eye_array, kron
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.status import POSITIVE, Checked, Status, require_count
 
@@ -112,8 +111,6 @@ class ClassicSolver(FilmSolver):
         As for `FilmSolver`; the grid uniform, the closure `Gumbel`.
     """
 
-    plain_links = False
-
     def __init__(self, film: ClassicSOR, grid, closure, *, squeeze: bool) -> None:
         super().__init__(grid, closure, squeeze=squeeze)
         self.symmetric = False
@@ -165,18 +162,19 @@ class ClassicSolver(FilmSolver):
         lower[a.col[~above], (a.row - a.col)[~above]] = a.data[~above]
         factor_lu(lower, upper, w.count, w.width, w.inv_diag)
 
-    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """Gradients of the adjoint functionals lam (k, n, m) through the difference equations."""
-        h, P, weights = self.H.ravel(), self.system.linear_pressure.ravel(), -lam.reshape(len(lam), -1)
-        by_gap, speed = 3.0 * h * h * (self.curvature @ P), []
-        cell = np.zeros_like(weights)
+    def difference_columns(self, gaps: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """Derivatives (k + 2, count) of the difference equations at the unknowns to k changes of the gap and to vx, vz.
+
+        ``gaps``, ``rates`` (n m, k): changes of the scaled gap and of its rate.
+        """
+        h, P = self.H.ravel(), self.system.linear_pressure.ravel()
+        out, speed = (3.0 * h * h * (self.curvature @ P))[:, None] * gaps, []
         for d, v in ((self.slope_x, self.vx), (self.slope_z, self.vz)):
-            by_gap += 6.0 * h * (d @ h) * (d @ P)
-            cell += (weights * (3.0 * h * h * (d @ P) - v)) @ d
-            speed.append(-weights @ (d @ h))
-        cell = (cell + weights * by_gap).reshape(lam.shape)
-        rate = lam.copy() if self.squeeze else np.zeros_like(lam)
-        return Sensitivities(cell, np.zeros_like(lam), rate, np.stack(speed, axis=1))
+            out += (6.0 * h * (d @ h) * (d @ P))[:, None] * gaps + (3.0 * h * h * (d @ P) - v)[:, None] * (d @ gaps)
+            speed.append(-(d @ h))
+        if self.squeeze:
+            out -= rates
+        return np.concatenate((out.T, speed))[:, self.work.order[: self.work.count]]
 
 
 def difference_operators(

@@ -59,28 +59,7 @@ class ArchardWear(Checked):
         "acceleration": POSITIVE,
     }
 
-
-class WearDepth:
-    """`ArchardWear` in scaled form: gap term and rule of growth of one bearing model.
-
-    Parameters
-    ----------
-    wear : ArchardWear
-    shape : (int, int)
-    clearance : float
-        Radial clearance, m.
-    """
-
-    def __init__(self, wear: ArchardWear, shape: tuple[int, int], clearance: float) -> None:
-        self.rate = wear.wear_rate * wear.acceleration / clearance
-        self.unworn = np.zeros(shape)
-
-    def depth(self, wear: np.ndarray | None) -> np.ndarray:
-        """Scaled depth (n, m) at the start of a step; zero without a history."""
-        return self.unworn if wear is None else wear
-
-    def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
-        """Scaled depth (n, m) after ``step`` (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
-        grown: np.ndarray = contact_pressure * (self.rate * step * abs(speed))
-        grown += self.depth(wear)
-        return grown
+    def growth(self, pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
+        """Depth, m, that contact pressures, Pa, wear off in a step, s, at a sliding speed, m/s."""
+        depth: np.ndarray = pressure * (self.wear_rate * self.acceleration * step * speed)
+        return depth

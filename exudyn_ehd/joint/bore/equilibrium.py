@@ -51,6 +51,8 @@ class Elasticity:
     ----------
     failure : str
         Reason why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
+    reached : float, (k,) array
+        Largest part of the last place of `settle` with an equilibrium on the way, and its coordinates.
     straight : bool
         `settle` gives up where Newton's method does not go straight to a balance: for searches that can come nearer.
     """
@@ -59,7 +61,7 @@ class Elasticity:
     straight = False
 
     def __init__(self, make: Callable[[], np.ndarray], load: np.ndarray | float = 0.0) -> None:
-        self._make, self.load = make, load
+        self._make, self.load, self.reached = make, load, (0.0, np.zeros(0))
 
     @cached_property
     def stiffness(self) -> np.ndarray:
@@ -74,13 +76,9 @@ class Elasticity:
         """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r), K the stiffness at q."""
         return np.linalg.solve(self.stiffness - softening, rhs)
 
-    def tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
-        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of a film after `settle`, good enough for a search."""
+    def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
+        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of a film after `settle`; good enough for a search, or exact."""
         return evaluation.tangent()
-
-    def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray | None:
-        """Return the exact tangent; None if `tangent` is exact."""
-        return None
 
     def settle(
         self,
@@ -88,9 +86,10 @@ class Elasticity:
         motion: np.ndarray,
         film: tuple[History | None, float, float],
         start: np.ndarray,
-    ) -> tuple[NodalEvaluation | None, int, tuple[float, np.ndarray]]:
+    ) -> NodalEvaluation | None:
         """Find the balance of bore and film, as `bore_equilibrium` does."""
-        return bore_equilibrium(model, motion, film, start)
+        found, self.reached = bore_equilibrium(model, motion, film, start)
+        return found
 
 
 class BoreEvaluation(Protocol):
@@ -138,15 +137,15 @@ def bore_equilibrium(
     motion: np.ndarray,
     film: tuple[History | None, float, float],
     start: np.ndarray,
-) -> tuple[Result | None, int, tuple[float, np.ndarray]]:
+) -> tuple[Result | None, tuple[float, np.ndarray]]:
     """Evaluate with the bore in equilibrium.
 
     The place is approached in parts where the rigid surfaces would touch, each from where the last two lead: a thin
     film leaves the bore no room to stay behind.
 
     ``film``: history, step and spin as for `BearingModel.evaluate`; ``start``: coordinates (k,) to begin with, if
-    they leave a gap, before the undeformed bore. Returns the evaluation or None, the number of Newton trials, and the
-    largest part of the place with an equilibrium on the way, with its coordinates (k,).
+    they leave a gap, before the undeformed bore. Returns the evaluation or None, and the largest part of the place with
+    an equilibrium on the way, with its coordinates (k,).
     """
     newton, most = Newton(model, motion, film), STRAIGHT_WAY if model.elasticity.straight else LARGEST_WAY
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
@@ -161,7 +160,7 @@ def bore_equilibrium(
         else:
             rate = (near.bore.coordinates - q) / (target - reached)
             reached, q, part = target, near.bore.coordinates.copy(), LONGER * part
-    return found, newton.trials, (reached, q)
+    return found, (reached, q)
 
 
 class Newton(Generic[Result]):

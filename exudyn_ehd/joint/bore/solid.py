@@ -18,7 +18,7 @@ from numpy.linalg import LinAlgError
 from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.joint.bore.equilibrium import Elasticity, FilmOnBore, Newton, NodalEvaluation, bore_equilibrium
+from exudyn_ehd.joint.bore.equilibrium import Elasticity, FilmOnBore, Newton, NodalEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.solid.linear.solvers import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
@@ -71,24 +71,21 @@ class SolidElasticity(Elasticity):
         self.displacements, self._beside = np.zeros(free.shape), np.zeros(free.shape)
         self._contraction, self._linearised, self._pose = 0.0, 0, np.zeros(4)
         self._q_free = np.zeros(self._moves.size)
-        self._reached = 0.0, self._q_free
         self._factor: SuperLU | None = None
 
     def force(self, q: np.ndarray) -> np.ndarray:
         """Generalised force (k,) that holds the bore of the linear solid at q, N."""
         return self.stiffness @ (q - self._q_free)
 
-    def tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
-        """Return `Elasticity.tangent` by the stiffness of a nearby state, with radial loads only."""
-        self._require(NEARBY)
-        return evaluation.tangent()
+    def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
+        """Return `Elasticity.tangent` by the stiffness of a nearby state, with radial loads only.
 
-    def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
-        """Exact: of all forces on the bore's nodes, with the solid linear about the last balance.
-
-        Forces along z act as the loads on q that displace the bore alike.
+        Or that of all forces on the bore's nodes, with the solid linear about the last balance. Forces along z act as
+        the loads on q that displace the bore alike.
         """
-        self._require(EXACT)
+        self._require(EXACT if exact else NEARBY)
+        if not exact:
+            return evaluation.tangent()
         bore, moves = self.solid.mesh.bore, self._moves
         wrench, nodal = evaluation.tangent_at(bore.positions + self.displacements[bore.nodes])
         loads = nodal[:, :2].reshape(-1, nodal.shape[2])
@@ -97,71 +94,64 @@ class SolidElasticity(Elasticity):
 
     def settle(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
-    ) -> tuple[NodalEvaluation | None, int, tuple[float, np.ndarray]]:
+    ) -> NodalEvaluation | None:
         """Find the balance of bore and film from the last balance, or else from the undeformed bush."""
-        self.failure, self._linearised, self._reached = "", 0, (0.0, start)
+        self.failure, self._linearised, self.reached = "", 0, (0.0, start)
         if self._factor is None:
             self._renew()
         last, pose, rest = self.displacements, self._pose, np.zeros_like(self.displacements)
-        found, trials = self._balance(model, motion, film, start)
+        found = self._balance(model, motion, film, start)
         if found is None and last.any():
             self._return(last)
-            found, more = self._approach(model, motion, film, start)
-            trials += more
+            found = self._approach(model, motion, film, start)
         if found is None and last.any():
             self._return(rest)
-            found, more = self._balance(model, motion, film, np.zeros_like(start))
-            trials += more
+            found = self._balance(model, motion, film, np.zeros_like(start))
         if found is None and (self.failure or not last.any()):
             self._return(rest)
             self._pose = np.zeros(4)
-            found, more = self._approach(model, motion, film, np.zeros_like(start))
-            trials += more
+            found = self._approach(model, motion, film, np.zeros_like(start))
         if found is None:
             self._return(last)
             self._pose = pose
         else:
             self.failure, self._pose = "", motion[:4].copy()
-        return found, trials, self._reached
+        return found
 
     def _approach(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
-    ) -> tuple[NodalEvaluation | None, int]:
+    ) -> NodalEvaluation | None:
         """Find the balance by continuation of the pose, from that of the present displacements."""
-        reached, part, trials = 0.0, 0.5, 0
+        reached, part = 0.0, 0.5
         between = motion.copy()
         while part > SMALLEST_PART and self._linearised < LINEARISATIONS:
             target, before = min(1.0, reached + part), self.displacements
             between[:4] = (1.0 - target) * self._pose + target * motion[:4]
-            near, count = self._balance(model, between, film, start)
-            trials += count
+            near = self._balance(model, between, film, start)
             if near is None:
                 self._return(before)
                 part *= 0.5
             elif target == 1.0:
-                return near, trials
+                return near
             else:
                 reached, start = target, near.bore.coordinates.copy()
-        return None, trials
+        return None
 
     def _balance(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
-    ) -> tuple[NodalEvaluation | None, int]:
-        """Film and bush in balance, from the present displacements on, and the trials; None if it was not found."""
-        trials = 0
+    ) -> NodalEvaluation | None:
+        """Film and bush in balance, from the present displacements on; None if it was not found."""
         try:
             while True:
                 self._release()
-                evaluation, count = self._settled(model, motion, film, start)
-                trials += count
+                evaluation = self._settled(model, motion, film, start)
                 if evaluation is None:
-                    return None, trials
+                    return None
                 if self._follow(evaluation):
-                    balanced, count = self._correct(model, film, evaluation)
-                    trials += count
+                    balanced = self._correct(model, film, evaluation)
                     if balanced is not None:
                         self.failure = self.solid.inversion(self.displacements)
-                        return None if self.failure else balanced, trials
+                        return None if self.failure else balanced
                 if self._linearised >= LINEARISATIONS:
                     break
                 self._renew()
@@ -169,21 +159,19 @@ class SolidElasticity(Elasticity):
         except (RuntimeError, LinAlgError):
             pass
         self.failure = self.solid.inversion(self.displacements) or NO_BALANCE
-        return None, trials
+        return None
 
     def _settled(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
-    ) -> tuple[NodalEvaluation | None, int]:
-        """The bore of the linear solid in balance with the film, and the trials; None if it was not found.
+    ) -> NodalEvaluation | None:
+        """The bore of the linear solid in balance with the film; None if it was not found.
 
         What is linear about a deformed state describes no bore that is far from it: from there the bore comes to
         balance on its own.
         """
         if not self.displacements.any():
-            evaluation, trials, self._reached = bore_equilibrium(model, motion, film, start)
-            return evaluation, trials
-        newton = Newton(model, motion, film)
-        return newton.solve(start, 1.0, straight=True), newton.trials
+            return super().settle(model, motion, film, start)
+        return Newton(model, motion, film).solve(start, 1.0, straight=True)
 
     def _follow(self, evaluation: NodalEvaluation) -> bool:
         """Move the linear solid under the film's loads; a part of the way, and False, where it would be torn."""
@@ -202,17 +190,17 @@ class SolidElasticity(Elasticity):
 
     def _correct(
         self, model: FilmOnBore[NodalEvaluation], film: Film, evaluation: NodalEvaluation
-    ) -> tuple[NodalEvaluation | None, int]:
-        """Balance by the same K and the film's slope at a film, and the trials; None if that is slow."""
+    ) -> NodalEvaluation | None:
+        """Balance by the same K and the film's slope at a film; None if that is slow."""
         full, k, nodes = evaluation.motion.copy(), self._q_free.size, self.solid.mesh.bore.nodes
         S = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
         factor = lu_factor(self.stiffness - S)
         lack, size = self._lack(self.displacements, evaluation)
         error, last = float(np.linalg.norm(lack)), np.inf
-        for count in range(CORRECTIONS):
+        for _ in range(CORRECTIONS):
             rounded = error <= ROUNDING * size
             if error <= TOLERANCE * size or (rounded and error > 0.5 * last):
-                return evaluation, count
+                return evaluation
             if not rounded and error > SLOWEST * last:
                 break
             step, load = self._answer(lack), np.zeros_like(lack)
@@ -230,7 +218,7 @@ class SolidElasticity(Elasticity):
             self.displacements = u
             if not rounded:
                 self._contraction = error / last
-        return None, count + 1
+        return None
 
     def _lack(self, u: np.ndarray, evaluation: NodalEvaluation) -> tuple[np.ndarray, float]:
         """F - f(u) (n, 3) at the free coordinates, and the size of F, N; keeps what of F is no radial load."""

@@ -2,14 +2,14 @@
 
 Module map
 ----------
-build           the only place that asks whether an effect is present
+build           model from a description
 build_flexible  the same for flexible bushes
 compile         kernels compiled before the first step
 rigid           rigid journal in a rigid bore
 centre          one-sided derivatives at the exact centre
 flexible        elastic bore
 impedance       fitted map
-effects         profile, roughness, contact; oil laws
+effects         the only place that asks whether an effect is present
 parts           grid, solver and buffers
 loads           pressure and viscosity by the oil's laws; integrals and wrench
 quantities      scalars of a state

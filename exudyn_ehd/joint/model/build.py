@@ -1,38 +1,14 @@
-"""Model from a bearing's description: the only place that asks whether an effect is present."""
+"""Model from a bearing's description."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.model.compile import compile_kernels
-from exudyn_ehd.joint.model.effects import collect_rheology, surface_effects
+from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.seams import Effects, shear_product
 from exudyn_ehd.status import InputError
-
-
-def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effects:
-    """The effects that a bearing names, in scaled form, on the grid that starts at ``start_angle``."""
-    oil, surfaces = collect_rheology(bearing), surface_effects(bearing, start_angle)
-    if bearing.contact is not None:
-        wall = WallContact(bearing.contact, bearing.radial_clearance)
-        surfaces = replace(surfaces, limiter=wall, contacts=(wall, *surfaces.contacts))
-    return replace(
-        surfaces,
-        gap_terms=surfaces.gap_terms + oil.gap_terms,
-        flux=surfaces.flux + oil.flux,
-        pressure_law=oil.pressure_law,
-        shear_factor=shear_product(oil.shear_factor, surfaces.shear_factor),
-        thermal=oil.thermal,
-        density=oil.density,
-        liner=bearing.bush if isinstance(bearing.bush, ElasticLiner) else None,
-        uneven_drag=surfaces.uneven_drag or oil.uneven_drag,
-    )
 
 
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:

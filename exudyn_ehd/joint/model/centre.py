@@ -35,7 +35,6 @@ FIRST = 1.0
 class FilmModel(Protocol):
     """A film on rigid or flexible surfaces."""
 
-    flexible: bool
     needs_spin: bool
 
     def evaluate_steady(self, motion: np.ndarray, history: History | None, step: float) -> FilmEvaluation:
@@ -51,10 +50,7 @@ class FilmEvaluation(Protocol):
     def film(self) -> SolvedFilm | None: ...
     @property
     def model(self) -> FilmModel: ...
-    def tangent(self, slow_motion: bool = False) -> np.ndarray:
-        """Return the tangent, see `exudyn_ehd.joint.model.rigid.Evaluation`."""
-
-    def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
+    def steady_tangent(self, exact: bool = False) -> np.ndarray:
         """Return the steady tangent, see `exudyn_ehd.joint.model.rigid.Evaluation`."""
 
 
@@ -81,16 +77,15 @@ def evaluate_beside(evaluation: FilmEvaluation, direction: int = 0) -> FilmEvalu
     return evaluation.model.evaluate_steady(motion, film.history, film.step)
 
 
-def tangents_beside(evaluation: FilmEvaluation, slow_motion: bool = False) -> np.ndarray:
-    """Tangents (4, 6, 10) a little off the centre in four directions; a flexible bore follows.
+def tangents_beside(evaluation: FilmEvaluation, exact: bool) -> np.ndarray:
+    """Steady tangents (4, 6, 10) a little off the centre in four directions, ``exact`` or not.
 
     Buffers and records of the evaluation stay as they are.
     """
     film, model, tangents = evaluation.film, evaluation.model, []
     assert film is not None
     for direction in range(4):
-        found = evaluate_beside(evaluation, direction)
-        tangents.append(found.steady_tangent(found.steady_tangent()) if model.flexible else found.tangent(slow_motion))
+        tangents.append(evaluate_beside(evaluation, direction).steady_tangent(exact))
     # the same film into the model's buffers again
     model.evaluate_steady(evaluation.motion[:MOTION_SIZE], film.history, film.step)
     film.parts.evaluations.count = film.serial
@@ -99,7 +94,7 @@ def tangents_beside(evaluation: FilmEvaluation, slow_motion: bool = False) -> np
 
 def require_derivatives(evaluation: FilmEvaluation, where: str) -> None:
     """Raise `FilmError` in the name of ``where`` if K and C beside the centre depend on the direction."""
-    tangents, film = tangents_beside(evaluation, slow_motion=True), evaluation.film
+    tangents, film = tangents_beside(evaluation, exact=True), evaluation.film
     assert film is not None
     for block in (tangents[:, :2, :2], tangents[:, :2, 4:6]):
         mean = block.mean(axis=0)

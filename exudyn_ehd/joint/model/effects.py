@@ -1,125 +1,145 @@
-"""Effects of a bearing's model from its description: profile, wear, roughness and contact of the surfaces, and
-the laws of the lubricant.
-"""
+"""Effects of a bearing's model from its description: the only place that asks which of them are present."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
+from exudyn_ehd.film.reynolds.turbulence import TurbulentFlow
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
-from exudyn_ehd.film.surfaces.wear import WearDepth
+from exudyn_ehd.film.surfaces.wall import WallContact
+from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature, ViscosityField
 from exudyn_ehd.joint.model.parts import grid_of
-from exudyn_ehd.joint.seams import Effects, GapTerm, Wear, shear_product
+from exudyn_ehd.joint.seams import (
+    Contact,
+    Effects,
+    FluxEffect,
+    GapLimiter,
+    GapTerm,
+    ShearFactor,
+    ShearProduct,
+    ThermalEffect,
+)
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 
 
-def surface_effects(bearing: JournalBearing, start_angle: float) -> Effects:
-    """Scaled effects of profile, wear, roughness and asperities, on the grid that starts at ``start_angle``."""
-    c = bearing.radial_clearance
-    gap_terms: list[GapTerm] = []
-    wear = None
-    if bearing.profiles or bearing.wear is not None:
-        grid = grid_of(bearing, start_angle)
-        if bearing.profiles:
-            gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
-        if bearing.wear is not None:
-            wear = WearDepth(bearing.wear, grid.shape, c)
-            gap_terms.append(WearTerm(wear))
-    if bearing.asperity is None and bearing.roughness is None:
-        return Effects(gap_terms=tuple(gap_terms))
-    return replace(_rough_effects(bearing), gap_terms=tuple(gap_terms), wear=wear)
-
-
 class WearTerm:
-    """The worn depth at the start of the step as a gap term."""
+    """The worn depth at the start of the step as a gap term, and its growth.
 
-    def __init__(self, wear: WearDepth) -> None:
-        self.wear = wear
+    Parameters
+    ----------
+    wear : ArchardWear
+    shape : (int, int)
+    clearance : float
+        Radial clearance, m.
+    """
+
+    def __init__(self, wear: ArchardWear, shape: tuple[int, int], clearance: float) -> None:
+        self.wear, self.clearance, self.unworn = wear, clearance, np.zeros(shape)
 
     def field(self, history: History | None) -> np.ndarray:
         """Scaled depth (n, m)."""
-        return self.wear.depth(None if history is None else history.wear)
+        return self.unworn if history is None or history.wear is None else history.wear
+
+    def grown(self, film: SolvedFilm) -> np.ndarray:
+        """Scaled depth (n, m) at the end of a solved film's step."""
+        contacts = film.parts.contacts
+        assert contacts is not None
+        speed = math.hypot(film.grid.reference_length * film.journal.omega, film.journal.axial_speed)
+        growth = self.wear.growth(np.sum(contacts.P, axis=0), speed, film.step)
+        return self.field(film.history) + growth / self.clearance
 
 
-def _rough_effects(bearing: JournalBearing) -> Effects:
-    c = bearing.radial_clearance
-    contact = None if bearing.asperity is None else AsperityContact(bearing.asperity, c)
-    if bearing.roughness is None:
-        return Effects(limiter=contact, contacts=() if contact is None else (contact,))
-    residual = 0.0 if contact is None else contact.residual
-    rough = RoughFlow(bearing.roughness, c, residual)
+def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effects:
+    """The effects that a bearing names, in scaled form, on the grid that starts at ``start_angle``."""
+    c, grid, law = bearing.radial_clearance, grid_of(bearing, start_angle), transform_of(bearing.lubricant)
+    gap_terms: list[GapTerm] = []
+    if bearing.profiles:
+        gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
+    wear = None if bearing.wear is None else WearTerm(bearing.wear, grid.shape, c)
+    if wear is not None:
+        gap_terms.append(wear)
+    limiter, contacts, rough_flux, rough_factors = _touching_surfaces(bearing)
+    thermal, growth, flux, factors = _rheology(bearing, grid)
+    flux, factors = rough_flux + flux, factors + rough_factors
     return Effects(
-        limiter=AverageGap(bearing.roughness.composite_roughness / c, residual) if contact is None else contact,
-        contacts=() if contact is None else (contact,),
-        flux=(rough,),
-        shear_factor=rough,
-        uneven_drag=bearing.roughness.journal_share != 0.5,
+        gap_terms=(*gap_terms, *growth),
+        limiter=limiter,
+        contacts=tuple(contacts),
+        flux=tuple(flux),
+        pressure_law=law,
+        shear_factor=reduce(ShearProduct, factors) if factors else None,
+        thermal=thermal,
+        density=law if isinstance(law, CompressibleLaw) else None,
+        wear=wear,
+        liner=bearing.bush if isinstance(bearing.bush, ElasticLiner) else None,
+        uneven_drag=any(effect.changes_carriers for effect in flux),
     )
 
 
-def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
-    """Scaled wear depth at the end of a solved film's step."""
-    contacts, history = film.parts.contacts, film.history
-    assert contacts is not None
-    speed = math.hypot(film.grid.reference_length * film.journal.omega, film.journal.axial_speed)
-    pressure, *others = contacts.P
-    for other in others:
-        pressure = pressure + other
-    return wear.grown(None if history is None else history.wear, pressure, speed, film.step)
+def _touching_surfaces(
+    bearing: JournalBearing,
+) -> tuple[GapLimiter | None, list[Contact], list[FluxEffect], list[ShearFactor]]:
+    """Limiter, contacts, flux effects and shear factors of roughness, asperities and wall."""
+    c, rough = bearing.radial_clearance, bearing.roughness
+    limiter: GapLimiter | None = None
+    contacts: list[Contact] = []
+    flux: list[FluxEffect] = []
+    factors: list[ShearFactor] = []
+    residual = 0.0
+    if bearing.asperity is not None:
+        limiter = asperities = AsperityContact(bearing.asperity, c)
+        contacts, residual = [asperities], asperities.residual
+    if rough is not None:
+        limiter = AverageGap(rough.composite_roughness / c, residual) if limiter is None else limiter
+        flow = RoughFlow(rough, c, residual)
+        flux, factors = [flow], [flow]
+    if bearing.contact is not None:
+        limiter = wall = WallContact(bearing.contact, c)
+        contacts = [wall, *contacts]
+    return limiter, contacts, flux, factors
 
 
-def collect_rheology(bearing: JournalBearing) -> Effects:
-    """Laws of the lubricant and the thermal effect of a bearing."""
-    oil, thermal = bearing.lubricant, bearing.thermal
-    effects = Effects(pressure_law=transform_of(oil))
-    if isinstance(effects.pressure_law, CompressibleLaw):
-        effects = replace(effects, density=effects.pressure_law)
-    thinning = None
+def _rheology(
+    bearing: JournalBearing, grid: FilmGrid
+) -> tuple[ThermalEffect | None, list[GapTerm], list[FluxEffect], list[ShearFactor]]:
+    """Thermal effect, growth of its walls, flux effects and shear factors of shear thinning or turbulence, and of a
+    temperature field."""
+    oil, spec, R, c = bearing.lubricant, bearing.thermal, bearing.journal_radius, bearing.radial_clearance
+    laws: list[ShearThinning | TurbulentFlow] = []
     if oil.shear_law is not None:
-        thinning = oil.shear_law.bound(bearing.journal_radius, bearing.radial_clearance)
-        effects = replace(effects, flux=(thinning,), shear_factor=thinning)
-    turbulent = None
+        laws.append(oil.shear_law.bound(R, c))
     if bearing.turbulence is not None:
-        R, c = bearing.journal_radius, bearing.radial_clearance
-        turbulent = bearing.turbulence.bound(R, c, oil.density, oil.viscosity)
-        effects = replace(effects, flux=(turbulent,), shear_factor=turbulent)
-    if thermal is None:
-        return effects
-    if isinstance(thermal, LumpedThermal):
-        lumped = LumpedTemperature(thermal, bearing)
-        if turbulent is not None:
-            turbulent.field = lumped.field = ViscosityField()
-        return replace(effects, thermal=lumped)
-    if thermal.across == 2:
-        # imported here: other films have no profile across them
-        from exudyn_ehd.joint.heat.across import CubicTemperature, FluidityField
-
-        field: ViscosityField = FluidityField()
-    else:
-        field = ViscosityField()
-    for law in (thinning, turbulent):
-        if law is not None:
-            law.field = field
-    effects = replace(
-        effects,
-        flux=(*effects.flux, field),
-        shear_factor=shear_product(field, effects.shear_factor),
-        uneven_drag=field.changes_carriers,
-    )
-    # imported here: other films have no field of temperatures
+        laws.append(bearing.turbulence.bound(R, c, oil.density, oil.viscosity))
+    if spec is None:
+        return None, [], [*laws], [*laws]
+    if isinstance(spec, LumpedThermal):
+        lumped = LumpedTemperature(spec, bearing)
+        if bearing.turbulence is not None:
+            laws[0].field = lumped.field = ViscosityField()
+        return lumped, [], [*laws], [*laws]
+    # imported here: other films have no field of temperatures, or no profile across them
     from exudyn_ehd.joint.heat.walls import FilmTemperature, Growth
 
-    kind = FilmTemperature if thermal.across == 1 else CubicTemperature
-    heated = kind(thermal, bearing, field, grid_of(bearing).shape)
-    return replace(effects, thermal=heated, gap_terms=(Growth(heated),) if heated.grows else ())
+    kind, field = FilmTemperature, ViscosityField()
+    if spec.across == 2:
+        from exudyn_ehd.joint.heat.across import CubicTemperature, FluidityField
+
+        kind, field = CubicTemperature, FluidityField()
+    for law in laws:
+        law.field = field
+    thermal = kind(spec, bearing, field, grid.shape)
+    return thermal, [Growth(thermal)] if thermal.grows else [], [*laws, field], [field, *laws]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
@@ -100,6 +99,6 @@ def film_fields(evaluation: Evaluation, time: float, bush_displacement: np.ndarr
         **vars(film_record(film)),
         time=time,
         contact_pressure=None if contacts is None else np.sum(contacts.P, axis=0),
-        wear_depth=None if wear is None else worn_depth(wear, film) * film.parts.bearing.radial_clearance,
+        wear_depth=None if wear is None else wear.grown(film) * film.parts.bearing.radial_clearance,
         bush_displacement=bush_displacement,
     )

@@ -25,7 +25,6 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent
 from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
@@ -35,14 +34,13 @@ from exudyn_ehd.joint.solved_film import (
     MOTION_SIZE,
     BoreState,
     ContactFields,
-    ExtraGap,
     History,
     JournalMotion,
     OilFields,
     SolvedFilm,
 )
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
-from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
+from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, traction
 from exudyn_ehd.joint.tangent.spread import complete
 from exudyn_ehd.status import Status, warn_user
 
@@ -69,15 +67,12 @@ class ElasticEvaluation(Evaluation):
     Attributes
     ----------
     bore : BoreState
-    settling_steps : int
-        Newton trials of `ElasticBearingModel.evaluate_steady`.
     closing : ClosingFilm or None
         The last film that it found on the way to a place without one.
     """
 
     model: ElasticBearingModel = dataclasses.field(repr=False)
     bore: BoreState = dataclasses.field(repr=False)
-    settling_steps: int = 0
     closing: ClosingFilm | None = None
 
     @property
@@ -102,15 +97,12 @@ class ElasticEvaluation(Evaluation):
             return np.full((6 + k, MOTION_SIZE + k * len(combinations)), np.nan)
         return elastic_tangent(film, self.model.bore, *combinations)
 
-    def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
+    def steady_tangent(self, exact: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10) with the bore following slowly; as `Evaluation.steady_tangent`."""
         if is_central(self):
-            return tangents_beside(self).mean(axis=0)
+            return tangents_beside(self, exact).mean(axis=0)
         elasticity = self.model.elasticity
-        tangent = elasticity.tangent(self) if rough is None else elasticity.refined_tangent(self)
-        if tangent is None:
-            return super().steady_tangent(rough)
-        return condensed_tangent(tangent, elasticity, self.bore.coordinates)
+        return condensed_tangent(elasticity.tangent(self, exact), elasticity, self.bore.coordinates)
 
     def nodal_forces(self) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.
@@ -126,18 +118,15 @@ class ElasticEvaluation(Evaluation):
         """`nodal_forces` on nodes at x (nodes, 3), completed to the opposite of the wrench on the journal."""
         return complete(x, self.wrench, self.nodal_forces())
 
-    def nodal_tangent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the tangent of `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; there must be a film."""
-        return nodal_tangent(self._found(), self._nodes(), self.model.bore_forces)
+    def nodal_tangent(self) -> NodalTangent:
+        """Return the tangent of wrench and nodal forces; there must be a film."""
+        assert isinstance(self.model.bore, NodalBore)
+        return NodalTangent(self._found(), self.model.bore, self.model.bore_forces)
 
     def tangent_at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """`nodal_tangent` with the forces completed as in `forces_at`."""
-        wrench, nodal = self.nodal_tangent()
+        """`NodalTangent.whole` with the forces completed as in `forces_at`."""
+        wrench, nodal = self.nodal_tangent().whole()
         return wrench, complete(x, wrench, nodal)
-
-    def nodal_product(self) -> NodalProduct:
-        """The tangent of wrench and nodal forces as an operator; there must be a film."""
-        return NodalProduct(self._found(), self._nodes(), self.model.bore_forces)
 
     def quantities(self) -> dict[str, float]:
         """Return `Evaluation.quantities` and the largest ``bore_displacement``, m."""
@@ -148,22 +137,6 @@ class ElasticEvaluation(Evaluation):
         film = self._current()
         assert film is not None
         return film
-
-    def _nodes(self) -> NodalBore:
-        assert isinstance(self.model.bore, NodalBore)
-        return self.model.bore
-
-
-class BoreTerm:
-    """The bore's displacement as a gap term; its field belongs to the motion being evaluated."""
-
-    def __init__(self) -> None:
-        self.displacement = np.zeros((0, 0))
-        self.rate = np.zeros((0, 0))
-
-    def field(self, history: History | None) -> np.ndarray:
-        """Scaled displacement (n, m)."""
-        return self.displacement
 
 
 def end_load(bore: Bore, grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
@@ -213,16 +186,11 @@ class ElasticBearingModel(BearingModel):
         start_angle: float = 0.0,
         effects: Effects | None = None,
     ) -> None:
-        effects = Effects() if effects is None else effects
-        term = BoreTerm()
-        effects = dataclasses.replace(effects, gap_terms=(*effects.gap_terms, term))
         super().__init__(bearing, start_angle=start_angle, effects=effects)
-        self._term = term
         self.make_bore, self.bore = bore, bore(self.grid)
         self.elasticity = elasticity
         self._parallel = not all(getattr(part, "tilted", True) for part in (bearing.bush, bearing.journal))
         self._coordinates = np.zeros(self.bore.size)
-        self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
         self._end_load = end_load(self.bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
 
     @property
@@ -244,18 +212,8 @@ class ElasticBearingModel(BearingModel):
         journal = super()._journal(motion)
         self._coordinates = journal.motion[MOTION_SIZE : MOTION_SIZE + k]
         scaled = journal.motion[MOTION_SIZE:] / self.bearing.radial_clearance
-        self._term.displacement, self._term.rate = (self.bore.displacement(q) for q in (scaled[:k], scaled[k:]))
+        self._displacement, self._rate = (self.bore.displacement(q) for q in (scaled[:k], scaled[k:]))
         return journal
-
-    def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
-        s, g = self.solver, self.grid
-        fields = [term.field(history) for term in self.effects.gap_terms]
-        height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
-        # the bore's own term is the last
-        extra = ExtraGap(height, *self._slopes, fields[:-1])
-        rate = self._term.rate if s.squeeze else s.nothing
-        smallest = add_gap(height, rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
-        return float(smallest), extra
 
     def _bore_state(
         self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None, wrench: np.ndarray
@@ -269,7 +227,8 @@ class ElasticBearingModel(BearingModel):
             if self.bore.twist is not None:
                 load -= self.bore.twist * wrench[5]
         q, q_t = journal.motion[MOTION_SIZE : MOTION_SIZE + k], journal.motion[MOTION_SIZE + k :]
-        whole, own = self._term.displacement, self.bearing.journal is not None
+        whole, own = self._displacement, self.bearing.journal is not None
+        assert whole is not None
         part = self.bore.of_journal(q / self.bearing.radial_clearance) if own else 0.0
         return BoreState(q, q_t, whole, load, part)
 
@@ -325,14 +284,15 @@ class ElasticBearingModel(BearingModel):
         Starts from the coordinates of the last evaluation. NOT_CONVERGED if no equilibrium was found.
         """
         start = self._coordinates.copy()
-        found, steps, (part, q) = self.elasticity.settle(self, motion, (history, step, spin), start)
+        found = self.elasticity.settle(self, motion, (history, step, spin), start)
         if found is not None:
             assert isinstance(found, ElasticEvaluation)
-            return dataclasses.replace(found, settling_steps=steps)
+            return found
+        part, q = self.elasticity.reached
         closing = self._closing(motion, (history, step, spin), part, q) if part > 0.0 else None
         evaluation = self.evaluate(motion, history, step, spin)
         status = Status.NOT_CONVERGED if evaluation.status is Status.CONVERGED else evaluation.status
-        return dataclasses.replace(evaluation, status=status, film=None, settling_steps=steps, closing=closing)
+        return dataclasses.replace(evaluation, status=status, film=None, closing=closing)
 
     def _closing(
         self, motion: np.ndarray, film: tuple[History | None, float, float], part: float, q: np.ndarray

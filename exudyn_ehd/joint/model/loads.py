@@ -39,19 +39,15 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
     law, shear = effects.pressure_law, effects.shear_factor
     if law is None and shear is None:
         return OilFields(s.pressure)
-    if law is None and shear is not None:
-        ratio, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
-        slopes = shear.factor(s.H, s.vx, ratio, ratio_h, ratio_v)
-        return OilFields(s.pressure, ratio=ratio, ratio_h=ratio_h, ratio_v=ratio_v, ratio_g=slopes)
-    P, ratio, ratio_q = np.empty(shape), np.empty(shape), np.empty(shape)
-    P_q, beyond = ratio, False
+    P, P_q, ratio, ratio_q, beyond = s.pressure, s.ones, s.ones, s.ones, False
     if film is not None:
-        P_q = np.empty(shape)
+        P, P_q, ratio, ratio_q = np.empty((4, *shape))
         beyond = not film.viscosity(P, ratio, ratio_q, P_q)
         if film.law is not None and film.law.viscosity is None and shear is None:
             return None if beyond else OilFields(P, P_q)
     elif law is not None:
-        beyond = not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q)
+        P, ratio, ratio_q = np.empty((3, *shape))
+        P_q, beyond = ratio, not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q)
         P /= pressure_scale
         ratio_q *= pressure_scale
     if beyond and law is not None:
@@ -62,8 +58,10 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
             P_q *= share
     if shear is None:
         return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing, beyond)
-    factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
+    factor, ratio_h, ratio_v = np.empty((3, *shape))
     slopes = shear.factor(s.H, s.vx, factor, ratio_h, ratio_v)
+    if law is None:
+        return OilFields(P, ratio=factor, ratio_h=ratio_h, ratio_v=ratio_v, ratio_g=slopes)
     for by in (ratio_h, ratio_v, slopes):
         if by is not None:
             by *= ratio
@@ -121,7 +119,9 @@ def film_loads(
     contact = _NO_CONTACT
     if pressing is not None:
         contact = np.zeros(6)
-        _add_contacts(parts, journal, pressing, contact, wrench)
+        for P_c, sums, (friction, transition) in zip(pressing.P, pressing.integrals, pressing.friction, strict=True):
+            at = friction, transition, g.reference_length
+            add_contact(P_c, g.weight, g.moments, journal.motion, *at, sums, contact, wrench)
     return Loads(wrench, contact, integrals, couette, s_theta, recess, drag)
 
 
@@ -142,12 +142,3 @@ def recess_of(
         viscosity = viscosity * thermal.viscosity_ratio(temperature)
     oil = viscosity * R**2 / (c * scales.shear), b.lubricant.density * R / viscosity
     return recess_shear([area.depth for area in supply.supply], supply.parts, c, journal.omega, oil)
-
-
-def _add_contacts(
-    parts: FilmParts, journal: JournalMotion, f: ContactFields, friction_out: np.ndarray, wrench: np.ndarray
-) -> None:
-    """Add the contacts' pressures and friction to ``wrench`` (6,), their friction alone to ``friction_out`` (6,)."""
-    g, motion, R = parts.grid, journal.motion, parts.grid.reference_length
-    for k, (friction, transition) in enumerate(f.friction):
-        add_contact(f.P[k], g.weight, g.moments, motion, friction, transition, R, f.integrals[k], friction_out, wrench)

@@ -11,16 +11,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from operator import is_
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
-from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
-from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
+from exudyn_ehd.film.reynolds.gap import rigid_gaps
+from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
-from exudyn_ehd.joint.model.effects import worn_depth
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of
 from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
@@ -81,12 +79,12 @@ class Evaluation:
             tangents_beside(self, slow_motion).mean(axis=0) if is_central(self) else wrench_tangent(film, slow_motion)
         )
 
-    def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
+    def steady_tangent(self, exact: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.
 
-        On a nodal bush good enough for a search; exact if called again with that result as ``rough``.
+        Good enough for a search; ``exact`` for slow motions, which a liner follows too.
         """
-        return self.tangent() if rough is None else rough
+        return self.tangent(slow_motion=exact)
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
@@ -139,9 +137,10 @@ class BearingModel:
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
         self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
         self._scale = p.motion_scale[:8]
-        self._gap_fields: list[np.ndarray] = []
-        self._extra: ExtraGap | None = None
-        self._extra_link = np.zeros((0, 0))
+        # what a flexible bore adds to the gap, and the slopes of all that is added
+        self._displacement: np.ndarray | None = None
+        self._rate = p.solver.nothing
+        self._slopes = np.empty(p.grid.shape), np.empty(p.grid.shape)
         self._plain = not self.flexible and is_plain(p, self.effects)
         self._set_viscosity(1.0)
 
@@ -176,7 +175,7 @@ class BearingModel:
             void=s.nothing if remembers else None,
             mass=s.H.copy() if remembers else None,
             outflow=np.array([s.ones, s.nothing, s.nothing]) if remembers else None,
-            wear=None if wear is None else wear.depth(None).copy(),
+            wear=None if wear is None else wear.field(None).copy(),
             deflection=liner.deflection if found and liner is not None else None,
             temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
             density=s.ones if self.remembers_density else None,
@@ -193,7 +192,7 @@ class BearingModel:
             void=void,
             mass=mass,
             outflow=s.outflow() if self.remembers_mass else None,
-            wear=None if effects.wear is None else worn_depth(effects.wear, film),
+            wear=None if effects.wear is None else effects.wear.grown(film),
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             temperature=None if effects.thermal is None else effects.thermal.advance(film),
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
@@ -318,7 +317,7 @@ class BearingModel:
         s, p, at = self.solver, self.parts, self.grid.directions
         smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, s.H, s.HF, s.H_t)
         extra = None
-        if self.effects.gap_terms:
+        if self.effects.gap_terms or self.flexible:
             smallest, extra = self._add_gap_terms(history)
         if p.liner is not None:
             return smallest, extra, None, None
@@ -340,18 +339,14 @@ class BearingModel:
         return None
 
     def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
-        """Add the gap terms; returns the smallest gap and what was added.
-
-        Slopes by central differences, one-sided at the ends; they are kept while the terms stay the same.
-        """
-        s, g, extra = self.solver, self.grid, self._extra
-        fields = [term.field(history) for term in self.effects.gap_terms]
-        if extra is None or not all(map(is_, fields, self._gap_fields)):
-            height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
-            self._gap_fields, self._extra_link = fields, np.empty(g.shape)
-            self._extra = extra = ExtraGap(height, np.empty(g.shape), np.empty(g.shape), fields)
-            gap_slopes(height, g.width_x[0], g.z, self._extra_link, extra.slope_x, extra.slope_z)
-        return float(add_to_gap(extra.height, self._extra_link, s.H, s.HF)), extra
+        """Add the gap terms and a bore's displacement; returns the smallest gap and what was added."""
+        s, g = self.solver, self.grid
+        surfaces = [term.field(history) for term in self.effects.gap_terms]
+        fields = surfaces if self._displacement is None else [*surfaces, self._displacement]
+        height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+        rate = self._rate if s.squeeze else s.nothing
+        smallest = add_gap(height, rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
+        return float(smallest), ExtraGap(height, *self._slopes, surfaces)
 
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
         """Solve for the gaps in the solver's buffers, with the known pressures."""

@@ -39,7 +39,7 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, load_columns
 from exudyn_ehd.joint.tangent.line import line_by_motion, true_fills, weigh_fills
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients, liner_weights
+from exudyn_ehd.joint.tangent.wrench import balance_gradients, wrench_rows
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
 SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
@@ -63,11 +63,10 @@ class FilmResponse:
         s, w, liner = film.solver, film.solver.work, film.parts.liner
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
-        rows, stored = adjoint_rows(film), np.zeros(film.grid.shape)
+        rows, stored = -wrench_rows(film)[:2] / film.scales.force, np.zeros(film.grid.shape)
         self.matrix = s.matrix()
         if liner is not None:
             stored += s.storage_weights()[0] * liner.deflection_by_pressure
-            rows = -liner_weights(film)[:2] @ rows / film.scales.force
         if s.closure.conserves_mass:
             whole = s.area * s.H
             if s.law is not None:
@@ -77,7 +76,7 @@ class FilmResponse:
                 stored += whole * s.oil_line.rise
             stored = np.where(w.active, stored, whole)
         self.store = diags_array(stored.reshape(-1)[order])
-        self.rows = rows[:2].T.astype(complex)
+        self.rows = rows.T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count))
         fills, self.contents = true_fills(film), None
@@ -127,8 +126,7 @@ class FilmOnBoreResponse(FilmResponse):
     def __init__(self, evaluation: ElasticEvaluation) -> None:
         film, bore, elasticity = evaluation.film, evaluation.model.bore, evaluation.model.elasticity
         assert film is not None
-        T, k, m = elasticity.refined_tangent(evaluation), bore.size, MOTION_SIZE
-        T = elasticity.tangent(evaluation) if T is None else T
+        T, k, m = elasticity.tangent(evaluation, exact=True), bore.size, MOTION_SIZE
         self.stiffness = elasticity.stiffness.copy()
         self.remembers = film.solver.closure.conserves_mass
         if self.remembers:
@@ -143,8 +141,8 @@ class FilmOnBoreResponse(FilmResponse):
     def _add_bore(self, film: SolvedFilm, bore: Bore) -> None:
         """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
         balances, force = Balances(film), film.scales.force
-        self.rows = np.concatenate((self.rows, -load_columns(film, bore) / force), axis=1)
-        place, rate = (-force * _dense(balances.times(bore.shapes, *ends)).T for ends in ((1.0, 0.0), (0.0, 1.0)))
+        self.rows = np.concatenate((self.rows, _dense(-load_columns(film, bore)) / force), axis=1)
+        place, rate = (-force * balances.times(bore.shapes, *ends).T for ends in ((1.0, 0.0), (0.0, 1.0)))
         sway = content = np.zeros_like(rate)
         if self.contents is not None:
             parts = line_matrices(self.contents, film.grid.shape, len(balances.places))

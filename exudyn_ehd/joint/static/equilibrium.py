@@ -296,14 +296,14 @@ def _small_motions(model: BearingModel, found: Carried) -> tuple[np.ndarray, np.
     central = is_central(evaluation)
     if central:
         require_derivatives(evaluation, "equilibrium")
-    K, C = own = _slow_motions(evaluation, found.tangent)
+    K, C = own = _slow_motions(evaluation)
     if found.faces is not None:
         K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
     if not (model.remembers_mass or model.flexible or model.parts.liner is not None):
         return K, C, None
     if central and not model.remembers_mass:
         evaluation = cast("Evaluation", evaluate_beside(evaluation))
-        own = _slow_motions(evaluation, evaluation.steady_tangent())
+        own = _slow_motions(evaluation)
     assert evaluation.film is not None
     if isinstance(evaluation, ElasticEvaluation):
         response: FilmResponse = FilmOnBoreResponse(evaluation)
@@ -313,11 +313,10 @@ def _small_motions(model: BearingModel, found: Carried) -> tuple[np.ndarray, np.
     return K, C, response
 
 
-def _slow_motions(evaluation: Evaluation, rough: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """K and C (2, 2) of slow motions, which a liner and a bore follow, of one film; ``rough``: its `steady_tangent`."""
-    tangent = evaluation.steady_tangent(rough)
-    slow = tangent if evaluation.model.parts.liner is None else evaluation.tangent(slow_motion=True)
-    return -tangent[:2, :2], -slow[:2, 4:6]
+def _slow_motions(evaluation: Evaluation) -> tuple[np.ndarray, np.ndarray]:
+    """K and C (2, 2) of slow motions, which a liner and a bore follow, of one film."""
+    tangent = evaluation.steady_tangent(exact=True)
+    return -tangent[:2, :2], -tangent[:2, 4:6]
 
 
 def _faces(model: BearingModel, position: float, load: float | None, across: float) -> FacesUnderLoad | None:

@@ -8,5 +8,5 @@ nodes      flexible bore: wrench and forces on its nodes, pressure and shear
 spread     a wrench carried by the nodes
 drag       pull of the pressure gradient on two unlike surfaces
 one_sided  of films that rupture as soon as they move
-line       from the film's gap to the true one: a rupture line in the cells, sensitivities to the motion
+line       rupture line in the cells: derivatives to the true gap
 """

@@ -1,20 +1,16 @@
 """Exact tangent of a film on a flexible bore.
 
-The journal's wrench and the bore's loads to motion, q and q_t; as a matrix and as an operator.
+The journal's wrench and the bore's loads to motion, q and q_t. With the balances r(u, m, delta, delta_t) = 0 of the
+film's unknowns u, one film solve for each change,
 
-The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each (all in
-one sweep over the factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point
-stencil on S, since the gap on a link is the mean of its two columns; those to the motion are ten columns. What flows
-carry from the line of a mass-conserving film inside its cells follows the gaps around it, also in the balances of its
-neighbours: a sparse matrix on S besides. What an integrator asks for is one combination of the derivatives to q and
-q_t, which costs as much as one of them.
+    A du = -(dr/dm dm + dr/d delta S dq + dr/d delta_t S dq_t),
 
-What an iterative solver needs are products with vectors, one film solve each: with the balances r(u, m, delta,
-delta_t) = 0 of the film's unknowns u,
-
-    A du = -(dr/dm dm + dr/d delta S dq + dr/d delta_t S dq_t),   dQ = S^T W du + (contacts);
-
-the six rows of the wrench are made once, by adjoint solves.
+all in one sweep over the factor; wrench and loads are sums over the unknowns, ``dQ = S^T W du``, and what depends on
+the motion at fixed u, as contacts do. The balances' derivatives to delta are a five-point stencil, since the gap on a
+link is the mean of its two columns; those to the motion are ten columns. What flows carry from the line of a
+mass-conserving film inside its cells follows the gaps around it, also in the balances of its neighbours: a sparse
+matrix besides. What an integrator asks for is one combination of the derivatives to q and q_t, which costs as much as
+one of them.
 """
 
 from __future__ import annotations
@@ -22,26 +18,24 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
-from exudyn_ehd.film.banded.many_sides import products
+from exudyn_ehd.film.banded.many_sides import product
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_matrices
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_stencil, shear_fields, sum_rows
-from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
+from exudyn_ehd.film.sensitivity.rigid import motion_columns
 from exudyn_ehd.film.surfaces.contact_wrench import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap
 from exudyn_ehd.joint.tangent.line import shear_of_fills, true_fills, true_line, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import (
-    adjoint_rows,
     couette_slopes,
     gap_derivatives,
-    shear_needs_adjoint,
-    wrench_tangent,
+    integrals_in_wrench,
+    motion_tangent,
+    wrench_rows,
 )
 
-# Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
-_WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
 # Weights of a `gap_stencil` (columns) by the first six derivatives of `LineGradients` (rows), to the gap and its rate:
 # the gap on a link in theta is the mean of its two columns.
 _LINE_BY_GAP, _LINE_BY_RATE = np.zeros((6, 5)), np.zeros((6, 5))
@@ -65,12 +59,17 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
         d/d motion, then the combinations.
     """
     k, size = bore.size, MOTION_SIZE
-    out = pressure_tangent(film, bore, Balances(film), load_columns(film, bore), *combinations)
+    change, (by_q, by_rate) = Balances(film).changes(bore.shapes, *combinations), bore_tangent(film, bore)
+    out = np.concatenate((wrench_rows(film) @ change, product(load_columns(film, bore).T, change)))
+    out[:6, :size] += motion_tangent(film)
+    contact: np.ndarray | float = 0.0
     if film.pressing is not None:
         contact = bore.product(contact_slope(film, film.pressing)) / film.parts.bearing.radial_clearance
-        for i, (by_place, _) in enumerate(combinations):
-            out[6:, size + i * k : size + (i + 1) * k] += by_place * contact
         out[6:, :4] -= _contact_columns(film, bore, film.pressing)
+    for i, (a, b) in enumerate(combinations):
+        part = out[:, size + i * k : size + (i + 1) * k]
+        part[:6] += a * by_q + b * by_rate
+        part[6:] += a * contact
     if bore.twist is not None:
         out[6:] -= np.multiply.outer(bore.twist, out[5])
     return out
@@ -91,6 +90,7 @@ class Balances:
 
     def __init__(self, film: SolvedFilm) -> None:
         p, work = film.parts, film.solver.work
+        self.film = film
         self.clearance, self.size = p.bearing.radial_clearance, work.order.size
         self.places = work.order[: work.count]
         self.gaps = gap_derivatives(film)
@@ -109,13 +109,26 @@ class Balances:
         near = csr_matrix((weight.ravel(), vertices.ravel(), starts), shape=(len(weight), self.size))
         return near if self.beyond is None else near + self._beyond(by_place, by_rate)
 
-    def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray | csr_matrix:
-        """Return `matrix` times the shapes (n m, k) of a bore, dense or sparse as they are."""
+    def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray:
+        """Return `matrix` times the shapes (n m, k) of a bore."""
         if not isinstance(shapes, np.ndarray):
-            return self.matrix(by_place, by_rate) @ shapes
+            return np.asarray((self.matrix(by_place, by_rate) @ shapes).toarray())
         out = np.empty((len(self.places), shapes.shape[1]))
         sum_rows(*self._stencil(by_place, by_rate), shapes, out)
         return out if self.beyond is None else out + self._beyond(by_place, by_rate) @ shapes
+
+    def changes(self, shapes: np.ndarray | csr_matrix, *combinations: tuple[float, float]) -> np.ndarray:
+        """Changes (count, 10 + k * combinations) of the unknowns with the motion, and with coordinates of the shapes.
+
+        ``combinations`` as for `elastic_tangent`; SI units.
+        """
+        size, k = MOTION_SIZE, shapes.shape[1]
+        out = np.empty((len(self.places), size + k * len(combinations)))
+        out[:, :size] = self.motion.T * -self.film.parts.motion_scale
+        for i, (by_place, by_rate) in enumerate(combinations):
+            out[:, size + i * k : size + (i + 1) * k] = self.times(shapes, -by_place, -by_rate)
+        self.film.solver.direct(out)
+        return out
 
     def _stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
         count, place, rate = len(self.places), by_place / self.clearance, by_rate / self.clearance
@@ -130,40 +143,12 @@ class Balances:
         return (by_place * self.beyond[0] + by_rate * self.beyond[1]) / self.clearance
 
 
-def pressure_tangent(
-    film: SolvedFilm, bore: Bore, balances: Balances, weights: np.ndarray, *combinations: tuple[float, float]
-) -> np.ndarray:
-    """Tangent (6 + r, 10 + k * combinations) of the wrench and of r sums over the film's unknowns.
+def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray | csr_matrix:
+    """Weights (count, k) of the unknowns in the film's loads on the bore, one column per coordinate, N.
 
-    ``weights`` (count, r): of the unknowns in the sums, whose derivatives at fixed unknowns are left out; the rest as
-    for `elastic_tangent`.
+    Sparse with the bore's shapes.
     """
-    integrals, size, k = adjoint_rows(film), MOTION_SIZE, bore.size
-    own = len(integrals)
-    lam = np.concatenate((integrals.T, weights), axis=1)
-    film.solver.adjoint_columns(lam)
-    whole = np.empty((lam.shape[1], size + k * len(combinations)))
-    np.matmul(lam.T, -balances.motion.T, out=whole[:, :size])
-    in_wrench, direct = wrench_weights(film, bore)
-    wrench = np.empty((6, whole.shape[1]))
-    wrench[:, :size] = wrench_tangent(film, gradient=whole[:own, :size].copy())
-    for i, (by_place, by_rate) in enumerate(combinations):
-        part = slice(size + i * k, size + (i + 1) * k)
-        if weights.size:
-            products(lam, balances.times(bore.shapes, -by_place, -by_rate), whole[:, part])
-        else:
-            # few rows, which meet the many shapes last
-            whole[:, part] = lam.T @ balances.matrix(-by_place, -by_rate) @ bore.shapes
-        wrench[:, part] = in_wrench @ whole[:own, part] + by_place * direct[0] + by_rate * direct[1]
-    whole[own:, :size] *= film.parts.motion_scale
-    # the wrench takes the rows of the last integrals
-    whole[own - 6 : own] = wrench
-    return whole[own - 6 :]
-
-
-def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray:
-    """Weights (count, k) of the unknowns in the film's loads on the bore, one column per coordinate, N."""
-    w = film.solver.work
+    w, y = film.solver.work, film.solver.system
     places = w.order[: w.count]
     weight = np.where(w.active, film.scales.force * film.grid.weight, 0.0)
     if film.oil.P_q is not None:
@@ -172,10 +157,10 @@ def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray:
         columns = np.empty((places.size, bore.size))
         sum_rows(weight.ravel()[places, None], places[:, None], bore.shapes, columns)
     else:
-        columns = (at_unknowns(film, weight).T @ bore.shapes).toarray()
-    if film.solver.system.continued is not None:
+        columns = at_unknowns(film, weight).T @ bore.shapes
+    if y.continued is not None:
         columns = pressures_by_unknowns(film)[places].T @ columns
-    return np.asarray(columns)
+    return columns
 
 
 def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
@@ -194,20 +179,11 @@ def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:
     return csc_matrix((field.reshape(-1)[places], places, np.arange(w.count + 1)), shape=(field.size, w.count))
 
 
-def wrench_weights(film: SolvedFilm, bore: Bore) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the integrals of `adjoint_rows` in the wrench; its derivatives (2, 6, k) to q and q_t at fixed
-    pressure."""
-    w, scales, weights = film.journal, film.scales, np.empty((6, 8))
-    integral_weights(w.pose, film.grid.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, weights)
-    direct = _direct(film, bore, weights)
-    return weights[:, :7] if shear_needs_adjoint(film) else weights[:, _WITHOUT_SHEAR], direct
-
-
-def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
-    """Derivatives of the wrench to q and q_t at fixed film pressure (2, 6, k): gap, slopes, fills and contacts."""
+def bore_tangent(film: SolvedFilm, bore: Bore) -> np.ndarray:
+    """Derivatives (2, 6, k) of the wrench to q and q_t at fixed unknowns: gap, slopes, fills and contacts."""
     g = film.grid
     # force and moment across the axis do not depend on the gap
-    factors, rows = weights[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
+    factors, rows = integrals_in_wrench(film)[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
     shear_fields(film.oil.P, g.weight, g.width_x[0], g.z, couette_field(film), _end_field(film), factors, rows)
     if film.loads.drag is not None:
         face, cell = drag_by_gap(film)

@@ -1,16 +1,10 @@
-"""Conversion of derivatives to the film's gap to derivatives to the true gap.
-
-For a rupture line inside the cells, the change of balances and of sums over the film with its position; for fields of
-sensitivities, the derivatives to the motion of a rigid journal.
-"""
+"""Derivatives of balances and of sums over the film to the true gap, by a rupture line inside the cells."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, add_line_columns, to_true_gap
-from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.edge_flows import at_beside_ends
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
@@ -46,21 +40,6 @@ def line_by_motion(film: SolvedFilm, line: LineGradients, count: int) -> np.ndar
 def _to_true_gap(film: SolvedFilm, line: LineGradients | None) -> LineGradients | None:
     f = film.limited
     return line if line is None or f is None else to_true_gap(line, f.slope, f.bend, f.face_slope)
-
-
-def add_by_motion(film: SolvedFilm, sens: Sensitivities, gradient: np.ndarray) -> None:
-    """Add to ``gradient`` (k, 10) that to (scaled pose and rates, vx, vz) of functionals with ``sens`` to the film's
-    gap, which becomes that to the true gap."""
-    p, z, f = film.parts, film.grid.z, film.limited
-    if f is not None:
-        sens.face[:] *= f.face_slope
-        sens.cell[:] = sens.cell * f.slope + sens.rate * f.bend
-        sens.rate[:] *= f.slope
-    pose, rates = np.zeros((len(gradient), 4)), np.zeros((len(gradient), 4))
-    contract_pose(sens.cell, p.directions.cos_x, p.directions.sin_x, z, pose)
-    contract_pose(sens.face, p.directions.cos_f, p.directions.sin_f, z, pose)
-    contract_pose(sens.rate, p.directions.cos_x, p.directions.sin_x, z, rates)
-    gradient += np.concatenate((pose, rates, sens.speed), axis=1)
 
 
 def shear_of_fills(film: SolvedFilm) -> np.ndarray:

@@ -10,17 +10,17 @@ friction torque and axial force, whose parts are summed by parts (`exudyn_ehd.fi
 surfaces is left to what spreads the difference. What the deformed bore's directions would change is smaller by the
 bore's slope, displacement over radius.
 
-The tangent has rows of three forces per node in place of the loads on the radial displacements of
-`exudyn_ehd.joint.tangent.bore`: the weights of the film's unknowns in them are ``E^T`` times the vertex forces'
-derivatives (`TractionChange`), and one adjoint solve each gives their gradients.
+The tangent has three forces per node in place of the loads on the radial displacements of
+`exudyn_ehd.joint.tangent.bore`: the vertex forces change with the film's unknowns, and with motion and gap at fixed
+unknowns (`TractionChange`).
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
+from scipy.sparse import csr_matrix, diags, eye_array
 
-from exudyn_ehd.film.banded.many_sides import add_product
+from exudyn_ehd.film.banded.many_sides import product
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
@@ -29,12 +29,13 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import (
     Balances,
     at_unknowns,
+    bore_tangent,
     contact_slope,
     couette_field,
-    pressure_tangent,
     pressures_by_unknowns,
 )
 from exudyn_ehd.joint.tangent.line import line_by_motion, ratio_of, true_fills
+from exudyn_ehd.joint.tangent.wrench import motion_tangent, pose_columns, wrench_rows
 
 
 class BoreForces:
@@ -53,19 +54,11 @@ class BoreForces:
         self.slope_x, self.slope_z = slope_matrices(grid)
 
     def nodal(self, forces: np.ndarray) -> np.ndarray:
-        """Forces (nodes, 3) of vertex forces (3, n m), joint frame."""
-        f, t, z = forces
-        along = np.stack((self.cos * f - self.sin * t, self.sin * f + self.cos * t, z), axis=1)
-        return np.asarray(self.onto_nodes @ along)
-
-    def columns(self, forces: list[csr_matrix]) -> csr_matrix:
-        """Transpose (r, 3 nodes) of E^T times three sparse maps (n m, r) to vertex forces."""
-        f, t, z = forces
-        cos, sin = diags(self.cos), diags(self.sin)
-        along = [(part.T @ self.bore.values).tocoo() for part in (cos @ f - sin @ t, sin @ f + cos @ t, z)]
-        place = np.concatenate([3 * part.col + axis for axis, part in enumerate(along)])
-        values, rows = (np.concatenate([getattr(part, name) for part in along]) for name in ("data", "row"))
-        return csr_matrix((values, (rows, place)), shape=(f.shape[1], 3 * self.count))
+        """Forces (nodes, 3, ...) of vertex forces (3, n m, ...), joint frame."""
+        along = np.moveaxis(forces, 0, 1).copy()
+        cos, sin = (field.reshape(-1, *(1,) * (forces.ndim - 2)) for field in (self.cos, self.sin))
+        along[:, 0], along[:, 1] = cos * forces[0] - sin * forces[1], sin * forces[0] + cos * forces[1]
+        return product(self.onto_nodes, along.reshape(len(along), -1)).reshape(self.count, *along.shape[1:])
 
 
 def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
@@ -166,29 +159,20 @@ class TractionChange:
                 self.gap[1 + c] += direction * friction * slope.ravel()
                 self.speed[1 + c] += np.outer(friction * P.ravel(), by_speed[c])
 
-    def by_unknown(self) -> list[csr_matrix]:
-        """Derivatives of the three vertex forces to the unknowns, each (n m, count)."""
-        out = [diags(self.load) @ self.pressure]
-        for c, along in enumerate((self.forces.slope_x, self.forces.slope_z)):
-            force = (diags(self.by_slope) @ along + diags(self.by_pressure[c])) @ self.pressure
-            out.append(force if self.shear is None else force + self.speeds[c] * self.shear)
-        return out
-
     def vertex_forces(self, unknowns: np.ndarray, gap: np.ndarray, moved: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Change (3, n m) of the vertex forces.
+        """Changes (3, n m, r) of the vertex forces.
 
-        With changes of the unknowns (count,), of the scaled gap and of the bore's scaled displacement ``moved`` (n
-        m,), and of the speeds (2,).
+        With r changes of the unknowns (count, r), of the scaled gap and of the bore's scaled displacement ``moved`` (n
+        m, r), and of the speeds (2, r).
         """
-        out = self.gap * gap + self.speed @ speed
-        pressure, shear = self.pressure @ unknowns, None if self.shear is None else self.shear @ unknowns
+        out = self.gap[:, :, None] * gap + self.speed @ speed
+        pressure = self.pressure @ unknowns
+        out[0] += self.load[:, None] * pressure
         for c, along in enumerate((self.forces.slope_x, self.forces.slope_z)):
-            out[1 + c] += (
-                self.by_slope * (along @ pressure) + self.by_pressure[c] * pressure + self.slope * (along @ moved)
-            )
-            if shear is not None:
-                out[1 + c] += self.speeds[c] * shear
-        out[0] += self.load * pressure
+            out[1 + c] += self.by_slope[:, None] * (along @ pressure) + self.by_pressure[c][:, None] * pressure
+            out[1 + c] += self.slope[:, None] * (along @ moved)
+        if self.shear is not None:
+            out[1:] += np.multiply.outer(self.speeds, self.shear @ unknowns)
         return out
 
 
@@ -253,61 +237,35 @@ def _extra_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     return film.extra.slope_x.ravel(), film.extra.slope_z.ravel()
 
 
-def nodal_tangent(film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> tuple[np.ndarray, np.ndarray]:
-    """Tangent of wrench and nodal forces of a solved film, SI units.
+class NodalTangent:
+    """Tangent of a solved film's wrench and nodal forces, by one film solve per change of the motion.
 
-    Returns
-    -------
-    wrench : (6, 10 + 2 k) array
-    nodal : (nodes, 3, 10 + 2 k) array
-        d/d motion, then d/dq and d/dq_t.
-    """
-    k, size, clearance = bore.size, MOTION_SIZE, film.parts.bearing.radial_clearance
-    change = TractionChange(film, forces)
-    loads = forces.columns(change.by_unknown()).toarray()
-    whole = pressure_tangent(film, bore, Balances(film), loads, (1.0, 0.0), (0.0, 1.0))
-    wrench, nodal = whole[:6], whole[6:]
-    nodal[:, :size] += _by_motion(film, forces, change)
-    gaps, slope = [diags(field / clearance) for field in change.gap], diags(change.slope / clearance)
-    gaps[1:] = [gap + slope @ along for gap, along in zip(gaps[1:], (forces.slope_x, forces.slope_z), strict=True)]
-    if change.line is not None:
-        a, b = change.speeds / clearance
-        gaps[1:] = [gap + speed * change.line.gap for gap, speed in zip(gaps[1:], (a, b), strict=True)]
-        rates = [0.0 * change.line.rate, a * change.line.rate, b * change.line.rate]
-        _add_through(bore, forces.columns(rates), nodal[:, size + k :])
-    _add_through(bore, forces.columns(gaps), nodal[:, size : size + k])
-    return wrench, nodal.reshape(forces.count, 3, -1)
-
-
-def _add_through(bore: NodalBore, columns: csr_matrix, out: np.ndarray) -> None:
-    """Add the derivatives to the bore's coordinates to ``out`` (r, k), of those (n m, r) to its displacement."""
-    by_vertex, S = columns.T.tocsr(), bore.shapes
-    add_product((by_vertex.indptr, by_vertex.indices, by_vertex.data), (S.indptr, S.indices, S.data), out)
-
-
-class NodalProduct:
-    """Tangent of a solved film as an operator, one film solve per product; valid until the model's next evaluation.
+    It is valid until the model's next evaluation.
 
     Attributes
     ----------
     wrench : (6, 10) array
         d wrench / d motion.
-    wrench_place, wrench_rate : (6, k) arrays
-        d wrench / dq, / dq_t.
     """
 
     def __init__(self, film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> None:
-        k, balances, none = bore.size, Balances(film), np.empty((film.solver.work.count, 0))
-        whole = pressure_tangent(film, bore, balances, none, (1.0, 0.0), (0.0, 1.0))
-        self.wrench, self.wrench_place, self.wrench_rate = np.split(whole, (MOTION_SIZE, MOTION_SIZE + k), axis=1)
+        balances = Balances(film)
         self.film, self.bore, self.forces = film, bore, forces
-        self.motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
+        self.by_motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
         self.by_place, self.by_rate = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
+        self.rows, self.at_unknowns, self.of_bore = wrench_rows(film), motion_tangent(film), bore_tangent(film, bore)
         self.change = TractionChange(film, forces)
-        self.columns = _pose_columns(film) * film.parts.pose_scale
+        self.columns = pose_columns(film) * film.parts.pose_scale
+        unknowns = -self.by_motion
+        film.solver.direct(unknowns)
+        self.wrench = self.rows @ unknowns + self.at_unknowns
 
-    def nodal_forces(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """Change (nodes, 3) with changes of motion (10,), q and q_t (k,).
+    def changes(
+        self, motion: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Changes (6, r) of the wrench and (nodes, 3, r) of the nodal forces with r changes of the motion.
+
+        Those of the rigid surfaces (10, r), and of q and q_t (k, r).
 
         Raises
         ------
@@ -315,35 +273,25 @@ class NodalProduct:
             If the model has evaluated another state since.
         """
         self.film.require_current()
-        moved, speed, p = self.bore.shapes @ place, self.bore.shapes @ rate, self.film.parts
-        unknowns = -(self.motion @ motion + self.by_place @ moved + self.by_rate @ speed)
+        p, line = self.film.parts, self.change.line
+        moved, speed = _dense(self.bore.shapes @ place), _dense(self.bore.shapes @ rate)
+        unknowns = -(self.by_motion @ motion + self.by_place @ moved + self.by_rate @ speed)
         self.film.solver.direct(unknowns)
         scaled = moved / p.bearing.radial_clearance
-        gap, line = scaled - self.columns @ motion[:4], self.change.line
-        forces = self.change.vertex_forces(unknowns, gap, scaled, motion[8:])
+        forces = self.change.vertex_forces(unknowns, scaled - self.columns @ motion[:4], scaled, motion[8:])
         if line is not None:
             shear = line.gap @ scaled + line.rate @ (speed / p.bearing.radial_clearance)
-            shear += (motion * p.motion_scale) @ line.motion
+            shear += line.motion.T @ (p.motion_scale[:, None] * motion)
             forces[1:] += np.multiply.outer(self.change.speeds, shear)
-        return self.forces.nodal(forces)
+        wrench = self.rows @ unknowns + self.at_unknowns @ motion + self.of_bore[0] @ place + self.of_bore[1] @ rate
+        return wrench, self.forces.nodal(forces)
+
+    def whole(self) -> tuple[np.ndarray, np.ndarray]:
+        """d wrench (6, 10 + 2 k) and d nodal forces (nodes, 3, 10 + 2 k) to the motion, q and q_t."""
+        size, k = MOTION_SIZE, self.bore.size
+        unit = eye_array(size + 2 * k, format="csr")
+        return self.changes(unit[:size].toarray(), unit[size : size + k], unit[size + k :])
 
 
-def _pose_columns(film: SolvedFilm) -> np.ndarray:
-    """Minus dH / d(scaled pose) (n m, 4)."""
-    p, z = film.parts, film.grid.z
-    cos, sin = np.repeat(p.directions.cos_x, z.size), np.repeat(p.directions.sin_x, z.size)
-    heights = np.tile(z, p.directions.cos_x.size)
-    return np.column_stack((cos, sin, cos * heights, sin * heights))
-
-
-def _by_motion(film: SolvedFilm, forces: BoreForces, change: TractionChange) -> np.ndarray:
-    """Derivatives (3 nodes, 10) to the motion at fixed unknowns; rows as in `BoreForces.columns`."""
-    vertex = np.zeros((MOTION_SIZE, *change.gap.shape))
-    columns = _pose_columns(film) * film.parts.pose_scale
-    for j in range(4):
-        vertex[j] = -change.gap * columns[:, j]
-    vertex[8], vertex[9] = change.speed[:, :, 0], change.speed[:, :, 1]
-    if change.line is not None:
-        of_line = change.line.motion * film.parts.motion_scale[:, None]
-        vertex[:, 1:] += change.speeds[:, None] * of_line[:, None]
-    return np.column_stack([forces.nodal(forces_of).ravel() for forces_of in vertex])
+def _dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
+    return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())

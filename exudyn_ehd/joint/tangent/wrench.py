@@ -1,8 +1,9 @@
-"""Exact tangent of a bearing's wrench: adjoint solves for the load integrals, then the chain rule to the motion.
+"""Exact tangent of a bearing's wrench: adjoint solves for its rows, then the chain rule to the motion.
 
-For an integral S = sum w p with the film's residual r(p, H, H_t, v) = 0: ``dS = -lam . dr`` at fixed p with ``A^T lam
-= w``, plus what depends on the motion directly. Four integrals carry force and moments; shear needs a fifth where
-fill or pressure enter it, and gap terms and uneven drag together two more.
+The wrench is linear in integrals S = sum w p of the film, with weights that follow the motion. With the film's residual
+r(p, H, H_t, v) = 0 a sum of them changes by ``-lam . dr`` with ``A^T lam = w``, and by what depends on the motion at
+fixed pressure. Four integrals carry force and moments, a fifth the shear where fill or pressure enter it; gap terms and
+uneven drag together have two more, a contact on a liner five.
 """
 
 from __future__ import annotations
@@ -13,14 +14,13 @@ from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.surfaces.contact_wrench import add_contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
 from exudyn_ehd.joint.tangent.line import (
-    add_by_motion,
     line_by_motion,
     ratio_of,
     shear_of_ends,
@@ -31,31 +31,57 @@ from exudyn_ehd.joint.tangent.line import (
 )
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
-_NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
 
-
-def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.ndarray | None = None) -> np.ndarray:
+def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:
     """d wrench / d motion (6, 10) of a solved film in SI units.
 
     With ``slow_motion`` the columns of the rates include what a liner's deflection adds to the squeeze when it
-    follows a slow motion, ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient``
-    (k, 10) of the integrals of `adjoint_rows`, if they are known already.
+    follows a slow motion, ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state.
     """
-    if gradient is None and is_plain(film):
+    if is_plain(film):
         return plain_tangent(film)
-    p, w, scales, through_film = film.parts, film.journal, film.scales, None
-    if gradient is None and _pressed_contact(film):
-        # six rows instead of the film's and the contact's ten and more
-        through_film = film_gradient(film, slow_motion, liner_weights(film)) * p.motion_scale
-        gradient = np.zeros((shape_rows(film), MOTION_SIZE))
-    elif gradient is None:
-        gradient = film_gradient(film, slow_motion)
-    ds, dc, extra = _integral_gradients(film, gradient)
-    ends = _end_gradient(film) if _film_gap_slope(film) is not None and scales.ends.any() else _NO_ENDS
+    rows = adjoint_rows(film)
+    if len(rows) <= 7:
+        return motion_tangent(film, film_gradient(film, rows, slow_motion))
+    # six rows instead of the film's and the contact's ten and more
+    through_film = film_gradient(film, wrench_weights(film) @ rows, slow_motion) * film.parts.motion_scale
+    return motion_tangent(film) + through_film
+
+
+def film_gradient(film: SolvedFilm, rows: np.ndarray, slow_motion: bool) -> np.ndarray:
+    """Gradients (k, 10) of sums over the unknowns with weights (k, count) to (scaled pose and rates, vx, vz)."""
+    p, s, gradient = film.parts, film.solver, np.empty((len(rows), MOTION_SIZE))
+    s.solve_transposed(rows)
+    columns = balance_gradients(film)
+    functional_gradients(rows, columns, gradient)
+    if slow_motion and p.liner is not None:
+        gradient[:, 4:8] += _following_deflection(film, p.liner, s.fields_of(rows), columns)
+    return gradient
+
+
+def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.ndarray:
+    """d wrench / d motion (6, 10) for a ``gradient`` of the integrals of `adjoint_rows`, SI units; None: at fixed
+    unknowns."""
+    p, w, scales, ends = film.parts, film.journal, film.scales, np.zeros(4)
+    shear, extra, fills = np.zeros(MOTION_SIZE), np.zeros((2, MOTION_SIZE)), true_fills(film)
+    if gradient is None:
+        gradient = np.zeros((4, MOTION_SIZE))
+    else:
+        if shear_needs_adjoint(film):
+            shear = gradient[4]
+        if has_extra_rows(film):
+            extra = gradient[-2:]
+    if fills is not None:
+        shear += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
+    _contract_couette(film, shear)
+    if film.loads.drag is not None:
+        add_drag_by_pose(film, extra)
+    if _film_gap_slope(film) is not None and scales.ends.any():
+        ends = _end_gradient(film)
     out = np.empty((6, MOTION_SIZE))
     wrench_gradient(
-        ds,
-        dc,
+        gradient[:4],
+        shear,
         extra,
         ends,
         w.pose,
@@ -71,39 +97,7 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.nda
     )
     if film.pressing is not None:
         _add_contacts(film, film.pressing, out)
-    return out if through_film is None else out + through_film
-
-
-def film_gradient(film: SolvedFilm, slow_motion: bool, weights: np.ndarray | None = None) -> np.ndarray:
-    """Gradients (k, 10) of the integrals, or of their sums with ``weights``, to (scaled pose and rates, vx, vz)."""
-    p, s = film.parts, film.solver
-    rows = adjoint_rows(film)
-    if weights is not None:
-        rows = weights @ rows
-    gradient = np.zeros((rows.shape[0], MOTION_SIZE))
-    if not s.plain_links:
-        field_gradient(film, s.adjoint(rows), gradient)
-        return gradient
-    s.solve_transposed(rows)
-    columns = balance_gradients(film)
-    functional_gradients(rows, columns, gradient)
-    if slow_motion and p.liner is not None:
-        gradient[:, 4:8] += _following_deflection(film, p.liner, s.fields_of(rows), columns)
-    return gradient
-
-
-def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
-    shear = shear_needs_adjoint(film)
-    dc = gradient[4] if shear else np.zeros(MOTION_SIZE)
-    fills = true_fills(film)
-    if fills is not None:
-        dc += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
-    extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
-    _contract_couette(film, dc)
-    if film.loads.drag is not None:
-        add_drag_by_pose(film, extra)
-    return gradient[:4], dc, extra
+    return out
 
 
 def _following_deflection(film: SolvedFilm, liner: LinerFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
@@ -122,19 +116,36 @@ def _following_deflection(film: SolvedFilm, liner: LinerFilm, lam: np.ndarray, c
 
 
 def balance_gradients(film: SolvedFilm) -> np.ndarray:
-    """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz).
-
-    For films on `FilmSolver`'s own links, and on a liner.
-    """
-    w, at = film.solver.work, film.grid.directions
+    """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz)."""
+    s, w, at = film.solver, film.solver.work, film.grid.directions
+    if isinstance(s, ClassicSolver):
+        return _difference_columns(film, s)
     out = np.empty((MOTION_SIZE, w.count))
     if film.parts.liner is not None:
-        film.parts.liner.motion_columns(*film.solver.storage_weights(), at, out)
+        film.parts.liner.motion_columns(*s.storage_weights(), at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
     if (line := true_line(film)) is not None:
         add_line_columns(tuple(line), at, out)
     return out
+
+
+def _difference_columns(film: SolvedFilm, solver: ClassicSolver) -> np.ndarray:
+    """Return `balance_gradients` of central differences."""
+    shapes, f = -pose_columns(film), film.limited
+    none = np.zeros_like(shapes)
+    if f is None:
+        return solver.difference_columns(np.hstack((shapes, none)), np.hstack((none, shapes)))
+    slope, bend = f.slope.reshape(-1, 1) * shapes, f.bend.reshape(-1, 1) * shapes
+    return solver.difference_columns(np.hstack((slope, none)), np.hstack((bend, slope)))
+
+
+def pose_columns(film: SolvedFilm) -> np.ndarray:
+    """Minus dH / d(scaled pose) (n m, 4)."""
+    p, z = film.parts, film.grid.z
+    cos, sin = np.repeat(p.directions.cos_x, z.size), np.repeat(p.directions.sin_x, z.size)
+    heights = np.tile(z, p.directions.cos_x.size)
+    return np.column_stack((cos, sin, cos * heights, sin * heights))
 
 
 def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -150,13 +161,6 @@ def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarra
     return d, slope, by_rate, by_gap
 
 
-def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray) -> Sensitivities:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through fields of sensitivities, of rigid surfaces."""
-    sens = film.solver.sensitivities(lam)
-    add_by_motion(film, sens, gradient)
-    return sens
-
-
 def shear_needs_adjoint(film: SolvedFilm) -> bool:
     """Return whether fill or pressure enter the Couette shear."""
     s, oil = film.solver, film.oil
@@ -169,64 +173,59 @@ def has_extra_rows(film: SolvedFilm) -> bool:
     return film.extra is not None or film.loads.drag is not None
 
 
-def shape_rows(film: SolvedFilm) -> int:
-    """Number of the film's own integrals: four of the pressure, of the shear, and two as `has_extra_rows` says."""
-    return 4 + shear_needs_adjoint(film) + 2 * has_extra_rows(film)
-
-
-def _pressed_contact(film: SolvedFilm) -> bool:
-    """Return whether a contact acts on a liner, and so depends on the film's pressure."""
-    return film.parts.liner is not None and film.pressing is not None
-
-
-def liner_weights(film: SolvedFilm) -> np.ndarray:
-    """Weights (6, k) of the integrals of `adjoint_rows` in the wrench, on a liner, with a contact that presses."""
-    w, scales, count, R = film.journal, film.scales, shape_rows(film), film.grid.reference_length
-    out, own = np.empty((6, count + 5 * _pressed_contact(film))), np.empty((6, 8))
-    integral_weights(w.pose, R, scales.force, scales.shear, w.omega, w.axial_speed, own)
-    # the last of the film's eight is the ends', which no row of `adjoint_rows` has
-    out[:, :count] = own[:, :count]
-    if film.pressing is not None:
-        out[:, count:] = contact_weights(w.motion, *film.pressing.friction[0], R)
+def integrals_in_wrench(film: SolvedFilm) -> np.ndarray:
+    """Weights (6, 8) of S_c, S_s, S_zc, S_zs, C, slopes in theta and z, and the ends' force in the wrench."""
+    w, scales, out = film.journal, film.scales, np.empty((6, 8))
+    size = film.grid.reference_length
+    integral_weights(w.pose, size, scales.force, scales.shear, w.omega, w.axial_speed, out)
     return out
 
 
+def wrench_weights(film: SolvedFilm) -> np.ndarray:
+    """Weights (6, k) of the integrals of `adjoint_rows` in the wrench."""
+    whole, shear, extra = integrals_in_wrench(film), shear_needs_adjoint(film), has_extra_rows(film)
+    parts = [whole[:, : 4 + shear], whole[:, 5 : 5 + 2 * extra]]
+    if film.parts.liner is not None and film.pressing is not None:
+        motion, R = film.journal.motion, film.grid.reference_length
+        parts.append(contact_weights(motion, *film.pressing.friction[0], R))
+    return np.concatenate(parts, axis=1)
+
+
+def wrench_rows(film: SolvedFilm) -> np.ndarray:
+    """Weights (6, count) of the unknowns in the wrench, N and Nm."""
+    rows: np.ndarray = wrench_weights(film) @ adjoint_rows(film)
+    return rows
+
+
 def adjoint_rows(film: SolvedFilm) -> np.ndarray:
-    """Weights of the integrals at the unknowns, (k, count)."""
+    """Weights of the unknowns in the integrals that they enter, (k, count)."""
     p, g, w, P_q = film.parts, film.grid, film.solver.work, film.oil.P_q
-    own = shape_rows(film)
-    rows = np.empty((own + 5 * _pressed_contact(film), w.count))
-    load_adjoint_rhs(w.order, w.count, g.weight, p.directions.cos_x, p.directions.sin_x, g.z, w.active, rows)
+    shear, extra = shear_needs_adjoint(film), has_extra_rows(film)
+    pressed = p.liner is not None and film.pressing is not None
+    own, at, directions = 4 + shear + 2 * extra, w.order[: w.count], (p.directions.cos_x, p.directions.sin_x, g.z)
+    rows = np.empty((own + 5 * pressed, w.count))
+    load_adjoint_rhs(w.order, w.count, g.weight, *directions, w.active, rows)
+    if extra:
+        slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
+        if film.extra is not None:
+            slopes = slopes + g.weight * np.stack((film.extra.slope_x, film.extra.slope_z))
+        rows[own - 2 : own] = (slopes * w.active).reshape(2, -1)[:, at]
     if P_q is not None:
-        P_q = P_q.ravel()[w.order[: w.count]]
-        rows[:4] *= P_q
-    if shear_needs_adjoint(film):
+        rows[:own] *= P_q.ravel()[at]
+    if shear:
         _shear_row(film, rows[4])
-    if has_extra_rows(film):
-        extra = rows[own - 2 : own]
-        if film.extra is None:
-            extra[:] = 0.0
-        else:
-            weight, slopes = g.weight * w.active, (film.extra.slope_x, film.extra.slope_z)
-            extra[:] = [(weight * slope).ravel()[w.order[: w.count]] for slope in slopes]
-        if film.loads.drag is not None:
-            extra += (film.loads.drag * w.active).reshape(2, -1)[:, w.order[: w.count]]
-        if P_q is not None:
-            extra *= P_q
     y = film.solver.system
     if y.continued is not None:
         rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
     # what follows the pressure of a vertex itself
-    if shear_needs_adjoint(film):
+    if shear:
         _add_shear_of_vertices(film, rows[4])
-    if p.liner is not None and has_extra_rows(film) and film.loads.drag is not None:
-        rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
-    if rows.shape[0] > own and p.liner is not None:
+    if p.liner is not None and film.loads.drag is not None:
+        rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, at]
+    if p.liner is not None and film.pressing is not None:
         by_pressure = g.weight * p.liner.contact_by_pressure
-        load_adjoint_rhs(
-            w.order, w.count, by_pressure, p.directions.cos_x, p.directions.sin_x, g.z, w.active, rows[own:]
-        )
-        rows[own + 4] = by_pressure.ravel()[w.order[: w.count]]
+        load_adjoint_rhs(w.order, w.count, by_pressure, *directions, w.active, rows[own:])
+        rows[own + 4] = by_pressure.ravel()[at]
     return rows
 
 

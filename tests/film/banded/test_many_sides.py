@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import random_array
 
-from exudyn_ehd.film.banded.many_sides import TILE, products, solve_columns
+from exudyn_ehd.film.banded.many_sides import TILE, product, solve_columns
 
 
 def solved(factor, count, width, b):
@@ -18,11 +18,9 @@ def solved(factor, count, width, b):
 def test_products_with_sparse_and_dense_matrices(density, sides):
     rng = np.random.default_rng(4)
     columns, matrix = rng.normal(size=(31, sides)), random_array((31, 17), density=density, rng=rng, format="csr")
-    expected = columns.T @ matrix.toarray()
+    expected = matrix.toarray().T @ columns
     for given in (matrix, matrix.toarray()):
-        out = np.empty(expected.shape)
-        products(columns, given, out)
-        np.testing.assert_allclose(out, expected, rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(product(given.T, columns), expected, rtol=1e-12, atol=1e-13)
 
 
 @pytest.mark.parametrize("count, width", [(1, 1), (3, 2), (7, 3), (8, 7), (30, 5), (41, 12), (45, 44)])
@@ -30,7 +28,7 @@ def test_products_with_sparse_and_dense_matrices(density, sides):
 def test_twins(factors, count, width, sides):
     f = factors(count, width)
     b = np.random.default_rng(1).normal(size=(count, sides))
-    x = solved((f.upper, f.lower, f.inverse, False), count, width, b)
-    np.testing.assert_allclose(x, np.linalg.solve(f.A.T, b), rtol=1e-11, atol=1e-13)
+    x = solved((f.lower, f.upper, f.inverse, False), count, width, b)
+    np.testing.assert_allclose(x, np.linalg.solve(f.A, b), rtol=1e-11, atol=1e-13)
     x = solved((f.band, f.band, f.band_inverse, True), count, width, b)
     np.testing.assert_allclose(x, np.linalg.solve(f.symmetric, b), rtol=1e-11, atol=1e-13)

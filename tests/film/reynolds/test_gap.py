@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.reynolds.gap import (
-    add_to_gap,
     contract_ends,
     contract_pose,
     largest_eccentricity,
     rigid_gap,
     rigid_gaps,
 )
+from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
 
 
 def _gap(pose, theta, z, base):
@@ -52,13 +52,14 @@ def test_largest_eccentricity_is_one_minus_the_smallest_gap():
 
 
 @pytest.mark.parametrize("where", ["vertex", "link"])
-def test_add_to_gap_finds_the_smallest(where):
+def test_add_gap_finds_the_smallest(where):
     rng = np.random.default_rng(4)
-    H, HF, extra, extra_link = rng.uniform(0.5, 1.0, (4, 6, 5))
-    (extra if where == "vertex" else extra_link)[5, 4] = -1.5
-    expected = H + extra, HF + extra_link
-    assert add_to_gap(extra, extra_link, H, HF) == min(expected[0].min(), expected[1].min()) < 0.0
-    np.testing.assert_array_equal((H, HF), expected)
+    H, HF, H_t, extra, rate = rng.uniform(0.5, 1.0, (5, 6, 5))
+    (H if where == "vertex" else HF)[5, 4] = -1.5
+    expected = H + extra, HF + 0.5 * (extra + np.roll(extra, -1, axis=0)), H_t + rate
+    smallest = add_gap(extra, rate, 0.1, np.linspace(-1, 1, 5), H, HF, H_t, *np.empty((2, 6, 5)))
+    assert smallest == min(expected[0].min(), expected[1].min()) < 0.0
+    np.testing.assert_allclose((H, HF, H_t), expected, rtol=1e-15)
 
 
 def test_contract_pose_is_the_chain_rule_and_adds():

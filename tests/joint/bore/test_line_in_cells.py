@@ -86,7 +86,8 @@ def worst_error(evaluation, probe, args, unit, rng):
     motion, tangent, k, worst = evaluation.motion, evaluation.tangent(), evaluation.bore.coordinates.size, 0.0
     rows = np.abs(tangent * unit).max(axis=1)
     rows = np.maximum(rows, 1e-9 * rows.max())
-    nodal = None if not hasattr(probe.bore, "surface") else (evaluation.nodal_tangent()[1], evaluation.nodal_product())
+    operator = evaluation.nodal_tangent() if hasattr(probe.bore, "surface") else None
+    nodal = None if operator is None else operator.whole()[1]
     for kept in (slice(0, 10), slice(10, 10 + k), slice(10 + k, None), slice(None)):
         change, errors = np.zeros(motion.size), []
         change[kept] = (unit * rng.normal(size=motion.size) / np.sqrt(motion.size))[kept]
@@ -100,10 +101,10 @@ def worst_error(evaluation, probe, args, unit, rng):
             off = np.abs(tangent @ change - (ends[0][0] - ends[1][0]) / (2.0 * size)) - round_off
             error = np.max(off / rows)
             if nodal is not None:
-                along = nodal[0] @ change
-                product = nodal[1].nodal_forces(change[:10], change[10 : 10 + k], change[10 + k :])
-                size_of = np.abs(nodal[0] * unit).max(axis=(0, 2))
-                assert np.all(np.abs(product - along) < 1e-9 * size_of)
+                along = nodal @ change
+                product = operator.changes(*np.split(change[:, None], (10, 10 + k)))[1]
+                size_of = np.abs(nodal * unit).max(axis=(0, 2))
+                assert np.all(np.abs(product[..., 0] - along) < 1e-9 * size_of)
                 error = max(error, np.max(np.abs(along - (ends[0][1] - ends[1][1]) / (2.0 * size)) / size_of))
             errors.append(error)
         worst = max(worst, min(errors))
@@ -166,7 +167,7 @@ def coefficients(bearing, place):
     model, motion = build_study_model(bearing, 0.0), np.zeros(10)
     motion[:2], motion[8] = place, SPEED
     evaluation = model.evaluate_steady(motion)
-    tangent = evaluation.steady_tangent(model.elasticity.tangent(evaluation))
+    tangent = evaluation.steady_tangent(exact=True)
     return evaluation.wrench[:2], -C * tangent[:2, :2], -C * SPEED * tangent[:2, 4:6]
 
 

@@ -149,7 +149,7 @@ def test_single_mode_is_the_plain_field_of_its_angle(measured):
     gap = model.bearing.radial_clearance
     measured("gap", np.abs(found.film.extra.height * gap - S * q).max() / abs(q), 1e-3)
     rate = S * q_t - omega * slope * q
-    measured("rate", np.abs(model._term.rate * gap - rate).max() / np.abs(rate).max(), 1e-3)
+    measured("rate", np.abs(model._rate * gap - rate).max() / np.abs(rate).max(), 1e-3)
     force = found.film.oil.P * found.film.scales.pressure * grid.weight * R**2
     measured("load", abs(found.bore_load[0] / np.sum(force * S) - 1.0), 1e-3)
     moment = np.sum(force * -slope * q)

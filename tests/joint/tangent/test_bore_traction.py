@@ -108,20 +108,18 @@ def test_tangent_is_the_derivative_of_wrench_and_nodal_forces(option):
     model, motion, history, step, evaluation, _ = evaluated(option)
     probe = build_model(make_bearing(BUSHES["nodal"], **MORE[option]))
     k, active = model.bore.size, model.solver.work.active.copy()
-    wrench, nodal = evaluation.nodal_tangent()
+    tangent = evaluation.nodal_tangent()
+    wrench, nodal = tangent.whole()
     assert np.abs(wrench - evaluation.tangent()[:6]).max() < 1e-12 * np.abs(wrench).max()
-    product = evaluation.nodal_product()
     change = np.random.default_rng(4).normal(size=motion.size)
     unit = np.concatenate(([C, C, C / 0.03, C / 0.03, 0.01, 0.01, 0.3, 0.3, 300, 9.0], np.full(k, C), np.full(k, 0.01)))
     change *= unit
-    place, rate = change[10 : 10 + k], change[10 + k :]
-    rows = product.wrench @ change[:10] + product.wrench_place @ place + product.wrench_rate @ rate
+    rows, got = (part[..., 0] for part in tangent.changes(*np.split(change[:, None], (10, 10 + k))))
     # rounding of one film solve against another, in the largest force and the largest moment
     for part in (slice(3), slice(3, 6)):
         expected = wrench[part] @ change
         assert np.abs(rows[part] - expected).max() < 1e-10 * np.abs(expected).max()
     expected = nodal @ change
-    got = product.nodal_forces(change[:10], place, rate)
     for axis in range(3):
         # rounding of one film solve against another
         assert np.abs(got[:, axis] - expected[:, axis]).max() < 1e-9 * np.abs(expected[:, axis]).max()
