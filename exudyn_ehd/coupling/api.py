@@ -392,9 +392,9 @@ def attach(
     element.presence = Presence(mbs, name, element, number, sides)
     if getattr(model.bearing, "thrust", None) is not None:
         # imported here: a bearing without faces needs none of it
-        from exudyn_ehd.coupling.element.thrust import attach_faces
+        from exudyn_ehd.coupling.element.thrust import add_faces
 
-        element.faces = attach_faces(mbs, name, model.bearing, element.steps, (housing, journal), points, rotation)
+        add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
     constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
     register_joint(mbs, make)

@@ -26,6 +26,7 @@ from exudyn_ehd.joint.balance.limits import (
     seized,
 )
 from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.thrust import no_film
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 
 # Mean over peak pressure below which no film is.
@@ -61,6 +62,9 @@ class Failures:
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
         """The film can't be evaluated, and the solver can't repeat the step."""
+        if trial.faces is not None and trial.faces.status is not Status.CONVERGED:
+            where = f"LubricatedJoint '{self.name}' can't be evaluated at t = {time:.9g} s"
+            return FilmError(no_film(trial.faces, where))
         if np.all(np.isfinite(trial.motion)):
             state = self.place(trial.motion)
         elif trial.status == Status.NOT_FINITE:
@@ -114,17 +118,17 @@ class Failures:
         gap, peak, force = (float(row[column]) for column in THRUST)
         assert self.bearing.thrust is not None
         if gap < -DEEPEST * self.bearing.thrust.clearance:
-            return FilmError(
-                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: a collar is pressed through its thrust face, "
-                f"smallest gap {gap:.4g} m; check load, mass and units, give ThrustFaces.contact more stiffness "
-                "(RegularisedWall.pressure), or take smaller steps."
+            return self._at(
+                time,
+                f"a collar is pressed through its thrust face, smallest gap {gap:.4g} m; check load, mass and units, "
+                "give ThrustFaces.contact more stiffness (RegularisedWall.pressure), or take smaller steps.",
             )
         if peak > self.largest_pressure:
-            return FilmError(
-                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: its thrust faces have a film that neither oil nor "
-                f"steel bears: peak pressure {peak:.4g} Pa, axial force {force:.4g} N, smallest gap {gap:.4g} m; check "
-                "masses, loads and units, take more steps, or name ThrustFaces.contact; joint.stop_at(pressure=...) "
-                "allows more."
+            return self._at(
+                time,
+                f"its thrust faces have a film that neither oil nor steel bears: peak pressure {peak:.4g} Pa, axial "
+                f"force {force:.4g} N, smallest gap {gap:.4g} m; check masses, loads and units, take more steps, or "
+                "name ThrustFaces.contact; joint.stop_at(pressure=...) allows more.",
             )
         return None
 

@@ -73,12 +73,6 @@ class BoreFilmElement(FilmElement):
         """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
         return q, q_t
 
-    def _wrench_map(self) -> np.ndarray:
-        """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
-        housing, journal = self.sides
-        found: np.ndarray = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
-        return found
-
 
 class ModalFilmElement(BoreFilmElement):
     """Film on a modal bush; see the module's docstring.

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import dataclasses
 import weakref
+from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
@@ -108,12 +109,20 @@ class NodalFilmElement(BoreFilmElement):
 
     def operator(
         self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
-    ) -> NodalTangent | None:
+    ) -> Callable[[np.ndarray], np.ndarray] | None:
         """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
         trial = self._try(mbs, q, q_t, CURRENT, t)
         if trial.status != Status.CONVERGED:
             return None
-        return NodalTangent(self, mbs, trial, self._evaluation(trial).nodal_product(), f_q, f_qt)
+        film, n = NodalTangent(self, mbs, trial, self._evaluation(trial).nodal_product(), f_q, f_qt), self.rigid_size
+        of_faces = self.faces_jacobian(mbs, trial, f_q, f_qt)
+
+        def product(change: np.ndarray) -> np.ndarray:
+            out = film(change)
+            out[:n] += of_faces @ change[:n]
+            return out
+
+        return product
 
     def _turning_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Derivative (3 count, n_h) of the forces on the bore's nodes as the housing turns them."""

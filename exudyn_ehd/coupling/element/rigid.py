@@ -23,6 +23,7 @@ from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.axial import axial_motion, axial_variation
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between, read_state
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
@@ -31,7 +32,7 @@ from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
 from exudyn_ehd.status import Status
 
 if TYPE_CHECKING:
-    from exudyn_ehd.coupling.element.thrust import ThrustElement
+    from exudyn_ehd.joint.thrust import ThrustModel
 
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
@@ -64,8 +65,10 @@ class FilmElement:
     steps : AcceptedSteps
     presence : Presence
         Set once the element is in a system.
-    faces : ThrustElement or None
-        Films on the end faces, an element of their own.
+    faces : ThrustModel or None
+        Films on the end faces.
+    offset : float
+        Distance of the joint points along the axis in the reference configuration, m, which the faces need.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own whose mass is a numerical one.
@@ -94,7 +97,8 @@ class FilmElement:
         self.steps = AcceptedSteps(self)
         self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
         self.presence: Presence
-        self.faces: ThrustElement | None = None
+        self.faces: ThrustModel | None = None
+        self.offset = 0.0
         self._bound = False
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
@@ -108,9 +112,14 @@ class FilmElement:
             self.evaluate(trial)
         if self._refuses(t, trial):
             return np.full(len(q), np.nan)
-        if steps.control is not None and t > steps.start and steps.control.rejects(trial.motion, steps.solver):
+        if steps.control is not None and t > steps.start and steps.control.rejects(trial, steps.solver):
             return np.full(len(q), np.nan)
-        return self._generalized_force(trial)
+        force = self._generalized_force(trial)
+        if trial.faces is not None:
+            of_faces = np.empty(self.rigid_size)
+            self._rigid_force(trial.faces.wrench, of_faces)
+            force[: self.rigid_size] += of_faces
+        return force
 
     def jacobian(
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
@@ -121,7 +130,11 @@ class FilmElement:
             return np.full((len(q), len(q)), np.nan)
         if self.crew is not None:
             self.crew.derive(self, f_q, f_qt)
-        return self._jacobian(mbs, trial, f_q, f_qt)
+        jacobian = self._jacobian(mbs, trial, f_q, f_qt)
+        if trial.faces is not None:
+            n = self.rigid_size
+            jacobian[:n, :n] += self.faces_jacobian(mbs, trial, f_q, f_qt)
+        return jacobian
 
     def at(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
         """The film at a state for which Exudyn asks."""
@@ -196,9 +209,14 @@ class FilmElement:
         # a sum is finite only if all its terms are
         if math.isfinite(trial.motion.dot(trial.motion)):
             spin = relative.angle_of(self.sides[0].frame, self.sides[1].frame) if self.model.needs_spin else 0.0
-            trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
+            found = self.model.evaluate(trial.motion, trial.memory, trial.step, spin)
+            trial.take(found, None if self.faces is None else self.faces.evaluate(self.faces_motion(trial.bodies)))
             self.evaluations += 1
         self.last = trial
+
+    def faces_motion(self, motion: np.ndarray) -> np.ndarray:
+        """Motion (11,) of the end faces' films at the state to which the sides' arrays and a motion (10,) belong."""
+        return axial_motion(self.sides[0].frame, self.sides[1].frame, self.offset, motion)
 
     def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
         """Keep the derivatives of the film at the last trial for `jacobian`."""
@@ -241,9 +259,27 @@ class FilmElement:
         housing, journal = self.sides
         relative.wrench_force(housing.frame, journal.frame, housing.jac, journal.jac, wrench, force_out)
 
+    def _wrench_map(self) -> np.ndarray:
+        """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
+        housing, journal = self.sides
+        found: np.ndarray = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
+        return found
+
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
+        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) of the journal's film at the trial."""
         stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, self._tangent(trial, f_q, f_qt))
+        return -(f_q * stiffness + f_qt * damping)
+
+    def faces_jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) of the films on the end faces at the trial; zero without them."""
+        n, (housing, journal) = self.rigid_size, self.sides
+        if trial.faces is None:
+            return np.zeros((n, n))
+        tangent, state = trial.faces.tangent(), (np.array(trial.q[:n]), np.array(trial.q_t[:n]))
+        own = np.ascontiguousarray(tangent[:, :10])
+        stiffness, damping, _, _ = derivatives_between(mbs, self.sides, state, trial.faces.wrench, own)
+        along = axial_variation(housing.frame, journal.frame, housing.jac, journal.jac, self.offset)
+        stiffness += np.outer(self._wrench_map() @ tangent[:, 10], along)
         return -(f_q * stiffness + f_qt * damping)
 
     def _rigid_derivatives(
@@ -313,8 +349,8 @@ class FilmElement:
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
         quantities = self._quantities(trial.evaluation)
-        if self.faces is not None:
-            quantities = {**quantities, **self.faces.quantities(self.sides, trial)}
+        if trial.faces is not None:
+            quantities = {**quantities, **trial.faces.quantities()}
         tangent, load = self.steps.tangent, self.outer.load
         return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, tangent, load)
 

@@ -17,10 +17,10 @@ import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 
-from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.contract import CURRENT, Index
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record.history import COLUMNS, FORCE, WIDTH, Quantity
-from exudyn_ehd.status import InputError
+from exudyn_ehd.coupling.record.history import COLUMNS, WIDTH, Quantity
+from exudyn_ehd.status import InputError, Status
 
 _NO_ROW = np.full(WIDTH, np.nan)
 
@@ -99,10 +99,10 @@ def reader(
 
 def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) -> _State:
     """State of the joint; its sides are there once the film was asked."""
-    row = element.current_row(mbs)
-    load = -(_NO_ROW if row is None else row)[FORCE.start : FORCE.start + 6]
-    if element.faces is not None:
-        load -= element.faces.wrench(element.sides)
+    trial = element.look(mbs, mbs.systemData.GetTime(CURRENT), CURRENT)
+    load = np.full(6, np.nan) if trial.status is not Status.CONVERGED else -trial.found.wrench
+    if trial.faces is not None:
+        load -= trial.faces.wrench
     if constraint is not None:
         output = exu.OutputVariableType
         load[:3] += mbs.GetObjectOutput(constraint, output.ForceLocal)

@@ -55,7 +55,7 @@ def place(
         speed=float(motion[8]),
         load=(force[0], force[1]),
         tilt=(motion[2], motion[3]),
-        axial_position=0.0 if element.faces is None else element.faces.place(element.sides, motion),
+        axial_position=0.0 if element.faces is None else float(element.faces_motion(motion)[-1]),
     )
     housing = element.sides[0].frame[:, :3]
     coordinates = np.array(mbs.systemData.GetODE2Coordinates(INITIAL), dtype=float)

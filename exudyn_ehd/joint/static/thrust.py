@@ -78,9 +78,9 @@ class ThrustResult:
         return f"<ThrustResult: axial force {force}, {film}>"
 
 
-def faces_at(bearing: JournalBearing, motion: np.ndarray, position: float, where: str) -> ThrustResult:
-    """Films on the faces of a bearing with ``thrust`` at a motion (10,); `FilmError` if there are none."""
-    found = ThrustModel(bearing).evaluate(motion, position)
+def faces_at(bearing: JournalBearing, motion: np.ndarray, where: str) -> ThrustResult:
+    """Films on the faces of a bearing with ``thrust`` at a motion (11,); `FilmError` if there are none."""
+    found = ThrustModel(bearing).evaluate(motion)
     if found.status is not Status.CONVERGED:
         raise FilmError(no_film(found, where))
     return result_of(found, found.tangent())
@@ -101,7 +101,7 @@ def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
     """Result of the last evaluation of its model, with its tangent (6, 11)."""
     model, values, first = found.model, found.quantities(), found.model.faces[0]
     return ThrustResult(
-        axial_position=found.position,
+        axial_position=values["axial_position"],
         force=found.wrench[:3],
         moment=found.wrench[3:],
         axial_force=float(found.wrench[2]),
