@@ -51,7 +51,7 @@ class NodalFilmElement(BoreFilmElement):
         name: str,
         bush: FlexibleBush,
     ) -> None:
-        super().__init__(model, housing, journal, nodes, name)
+        super().__init__(model, housing, journal, name, nodes)
         # the system holds this element: it must not keep the system alive
         self.bush = dataclasses.replace(bush, mbs=weakref.proxy(bush.mbs))
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]

@@ -9,14 +9,14 @@ force user function alone; what can't be evaluated is explained by `failures`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, Index, JointModel, Side, Trial
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
@@ -24,7 +24,7 @@ from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.axial import axial_motion, axial_variation
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between, read_state
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
@@ -59,6 +59,8 @@ class FilmElement:
         Carriers of the joint frame and of the journal's frame (z = its axis).
     name : str
         For messages.
+    bore_nodes : sequence
+        Nodes of a flexible bore, whose coordinates follow those of housing and journal.
 
     Attributes
     ----------
@@ -84,9 +86,11 @@ class FilmElement:
 
     kinematics: ModuleType = relative
 
-    def __init__(self, model: JointModel, housing: Side, journal: Side, name: str) -> None:
+    def __init__(
+        self, model: JointModel, housing: Side, journal: Side, name: str, bore_nodes: Sequence[Index] = ()
+    ) -> None:
         self.model = model
-        self.sides = (housing, journal)
+        self.sides, self.bore_nodes = (housing, journal), bore_nodes
         self.failures = Failures(name, model.bearing)
         self.is_massless = False
         self.evaluations = 0
@@ -99,7 +103,8 @@ class FilmElement:
         self.presence: Presence
         self.faces: ThrustModel | None = None
         self.offset = 0.0
-        self._bound = False
+        # places of the coordinates in the system's, known once it is assembled
+        self._places: np.ndarray | None = None
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
@@ -125,7 +130,7 @@ class FilmElement:
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        trial = self.at(mbs, t, q, q_t)
+        trial = self._try(mbs, q, q_t, CURRENT, t, stepping=not self.steps.is_idle)
         if self._refuses(t, trial):
             return np.full((len(q), len(q)), np.nan)
         if self.crew is not None:
@@ -135,10 +140,6 @@ class FilmElement:
             n = self.rigid_size
             jacobian[:n, :n] += self.faces_jacobian(mbs, trial, f_q, f_qt)
         return jacobian
-
-    def at(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
-        """The film at a state for which Exudyn asks."""
-        return self._try(mbs, q, q_t, CURRENT, t, stepping=not self.steps.is_idle)
 
     def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
         """Take the last step as accepted if the solver has moved on; return the trial at a state, the last one or new.
@@ -236,13 +237,29 @@ class FilmElement:
     def _move(
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
     ) -> np.ndarray:
-        """Motion (10,) at a state, to which the sides' frames and Jp, Jr are brought."""
-        if not self._bound:
-            self.require_items(mbs)
-            bind(mbs, *self.sides)
-            self._bound = True
+        """Motion at a state, to which the sides' frames and Jp, Jr are brought.
+
+        That of the rigid surfaces (10,), and behind it the coordinates and rates of a flexible bore (2 k,).
+        """
+        if self._places is None:
+            self._find_places(mbs)
         n = self.rigid_size
-        return motion_between(mbs, self.sides, np.array(q[:n]), np.array(q_t[:n]), configuration, self.kinematics)
+        rigid = motion_between(mbs, self.sides, np.array(q[:n]), np.array(q_t[:n]), configuration, self.kinematics)
+        if not self.bore_nodes:
+            return rigid
+        return np.concatenate((rigid, *self._bore_motion(np.array(q[n:]), np.array(q_t[n:]))))
+
+    def _find_places(self, mbs: exu.MainSystem) -> np.ndarray:
+        """Bind the sides to a system, once it is assembled; the places of the element's coordinates."""
+        self.require_items(mbs)
+        bind(mbs, *self.sides)
+        places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
+        self._places = np.array(places, dtype=int)
+        return self._places
+
+    def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
+        return q, q_t
 
     def require_items(self, mbs: exu.MainSystem) -> None:
         """Refuse a system of which items were deleted that the joint was made on."""
@@ -293,6 +310,11 @@ class FilmElement:
         return derivatives_between(mbs, self.sides, state, trial.found.wrench, tangent, self.kinematics)
 
     @property
+    def nodes(self) -> list[Index]:
+        """Nodes of housing, journal and bore."""
+        return [*self.sides[0].nodes, *self.sides[1].nodes, *self.bore_nodes]
+
+    @property
     def rigid_size(self) -> int:
         """Number of coordinates of housing and journal."""
         return self.sides[0].size + self.sides[1].size
@@ -313,7 +335,9 @@ class FilmElement:
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""
-        return read_state(mbs, self.sides, configuration)
+        data, places = mbs.systemData, self._find_places(mbs) if self._places is None else self._places
+        q, q_t = data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration)
+        return np.asarray(q)[places].tolist(), np.asarray(q_t)[places].tolist()
 
     def look(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> Trial:
         """Evaluate the film at the state that Exudyn holds in ``configuration``."""
@@ -326,16 +350,12 @@ class FilmElement:
 
     def motion(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray:
         """Motion at the state that Exudyn holds in ``configuration``, without asking the film."""
-        motion = self._move(mbs, *self.read(mbs, configuration), configuration)
+        q, q_t = self.read(mbs, configuration)
+        motion = self._move(mbs, q, q_t, configuration)
         self.forget()
-        return motion
-
-    def peek(self, mbs: exu.MainSystem) -> np.ndarray:
-        """Motion at Exudyn's current state, for which the film will be asked next."""
-        q, q_t = self.read(mbs, CURRENT)
-        motion = self._move(mbs, q, q_t, CURRENT)
-        self.forget()
-        self._peeked = q, q_t, motion
+        if configuration == CURRENT:
+            # the film will be asked there next
+            self._peeked = q, q_t, motion
         return motion
 
     def forget(self) -> None:

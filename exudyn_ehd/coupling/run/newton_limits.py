@@ -97,7 +97,7 @@ class GapLimit:
             last = film.last
             if last is not None:
                 bearing = film.model.bearing
-                bore, after = self.bores[film], film.peek(mbs)
+                bore, after = self.bores[film], film.motion(mbs, CURRENT)
                 if bore.depth.size:
                     allowed = _allowed_in_profile(bore, last.bodies, after)
                 else:
