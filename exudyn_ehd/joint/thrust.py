@@ -28,21 +28,6 @@ from exudyn_ehd.status import Status
 
 SIZE, PLACE = 11, 10
 """Entries of the motion, and the axial position's among them."""
-NAMES = (
-    "axial_position",
-    "thrust_force",
-    "thrust_minimum_gap",
-    "thrust_peak_pressure",
-    "thrust_torque",
-    "thrust_power_loss",
-    "thrust_contact_load",
-)
-"""Quantities of the faces, as in histories."""
-ADVICE = (
-    "give the faces contact=RegularisedWall(onset=...), pads that carry (profile=TaperLand(...)), more clearance or "
-    "less load, or take smaller steps."
-)
-"""What helps where a face has no film."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,22 +77,20 @@ class ThrustEvaluation:
         return math.nan if abs(uneven) > 2.0 * LARGEST_SPREAD * damping else damping
 
     def quantities(self) -> Mapping[str, float]:
-        """Scalars by the names of `NAMES`.
+        """Scalars by their names in histories, SI units.
 
-        Place (m), axial force on the journal (N), smallest gap (m), highest pressure (Pa), torque on the journal about
-        the bearing's axis (Nm), power that turns into heat or pumps oil (W), load carried by contact (N).
+        Force and torque are on the journal, along the bearing's axis and about it; the power turns into heat or pumps
+        oil.
         """
-        s = self.states
-        values = (
-            float(self.motion[PLACE]),
-            float(self.wrench[2]),
-            self.minimum_gap,
-            max(f.peak_pressure for f in s),
-            float(self.wrench[5]),
-            sum(f.power_loss for f in s),
-            sum(f.contact_load for f in s),
-        )
-        return dict(zip(NAMES, values, strict=True))
+        return {
+            "axial_position": float(self.motion[PLACE]),
+            "thrust_force": float(self.wrench[2]),
+            "thrust_minimum_gap": self.minimum_gap,
+            "thrust_peak_pressure": max(face.peak_pressure for face in self.states),
+            "thrust_torque": float(self.wrench[5]),
+            "thrust_power_loss": sum(face.power_loss for face in self.states),
+            "thrust_contact_load": sum(face.contact_load for face in self.states),
+        }
 
 
 class ThrustModel:
@@ -189,7 +172,9 @@ def no_film(found: ThrustEvaluation, where: str) -> str:
     _, _, bx, by, *_, place = found.motion
     return (
         f"{where}: {found.status.name} on a thrust face at the axial position {place:.4g} m, tilt = "
-        f"({bx:.3g}, {by:.3g}), smallest gap {found.minimum_gap:.3g} m: {ADVICE}"
+        f"({bx:.3g}, {by:.3g}), smallest gap {found.minimum_gap:.3g} m: give the faces "
+        "contact=RegularisedWall(onset=...), pads that carry (profile=TaperLand(...)), more clearance or less load, or "
+        "take smaller steps."
     )
 
 

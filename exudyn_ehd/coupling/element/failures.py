@@ -10,7 +10,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
-from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, THRUST, eccentricity_ratios
+from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
 from exudyn_ehd.joint.balance.limits import (
     DEEPEST,
     HIGHEST_MEAN,
@@ -26,7 +26,7 @@ from exudyn_ehd.joint.balance.limits import (
     seized,
 )
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.thrust import no_film
+from exudyn_ehd.joint.thrust import ThrustEvaluation, no_film
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 
 # Mean over peak pressure below which no film is.
@@ -110,12 +110,12 @@ class Failures:
         pressure = self._pressure(row)
         if pressure > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
-        on_faces = None if getattr(self.bearing, "thrust", None) is None else self._absurd_faces(time, row)
+        on_faces = None if trial.faces is None else self._absurd_faces(time, trial.faces)
         return on_faces or self._beyond_limit(time, row, trial, pressure) or self._pressed_through(time, trial)
 
-    def _absurd_faces(self, time: float, row: np.ndarray) -> FilmError | None:
+    def _absurd_faces(self, time: float, faces: ThrustEvaluation) -> FilmError | None:
         """A collar pressed through its contact by more than any explains, or with what no steel bears."""
-        gap, peak, force = (float(row[column]) for column in THRUST)
+        gap, peak = faces.minimum_gap, faces.quantities()["thrust_peak_pressure"]
         assert self.bearing.thrust is not None
         if gap < -DEEPEST * self.bearing.thrust.clearance:
             return self._at(
@@ -127,8 +127,8 @@ class Failures:
             return self._at(
                 time,
                 f"its thrust faces have a film that neither oil nor steel bears: peak pressure {peak:.4g} Pa, axial "
-                f"force {force:.4g} N, smallest gap {gap:.4g} m; check masses, loads and units, take more steps, or "
-                "name ThrustFaces.contact; joint.stop_at(pressure=...) allows more.",
+                f"force {faces.wrench[2]:.4g} N, smallest gap {gap:.4g} m; check masses, loads and units, take more "
+                "steps, or name ThrustFaces.contact; joint.stop_at(pressure=...) allows more.",
             )
         return None
 
