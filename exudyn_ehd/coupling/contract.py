@@ -62,10 +62,11 @@ class Trial:
     """One state and the films' evaluation there; ``evaluation`` is None if the film was not evaluated.
 
     ``motion`` is the film's input. It follows from the motion of the ``bodies`` in the step from ``begin``. ``faces``
-    is the evaluation of films on end faces, whose motion is that of the bodies; None without them.
+    is the evaluation of films on end faces, whose motion is that of the bodies; None without them. ``derived`` are the
+    journal's film's derivatives, behind the factors that they are for, if they are known.
     """
 
-    __slots__ = ("begin", "bodies", "evaluation", "faces", "memory", "motion", "q", "q_t", "status", "step")
+    __slots__ = ("begin", "bodies", "derived", "evaluation", "faces", "memory", "motion", "q", "q_t", "status", "step")
 
     def __init__(
         self,
@@ -86,6 +87,7 @@ class Trial:
         self.motion = motion
         self.evaluation: Evaluation | None = None
         self.faces: ThrustEvaluation | None = None
+        self.derived: tuple[tuple[float, float], np.ndarray] | None = None
         # a sum is finite only if all its terms are
         self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
 

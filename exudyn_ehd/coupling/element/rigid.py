@@ -96,7 +96,6 @@ class FilmElement:
         self.evaluations = 0
         self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
-        self._derived: tuple[Trial, tuple[float, float], np.ndarray] | None = None
         self.crew: Crew | None = None
         self.steps = AcceptedSteps(self)
         self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
@@ -202,7 +201,7 @@ class FilmElement:
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own
-        self.last = self._derived = None
+        self.last = None
         return Trial(q, q_t, memory, step, begin, bodies, motion)
 
     def evaluate(self, trial: Trial) -> None:
@@ -221,13 +220,12 @@ class FilmElement:
 
     def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
         """Keep the derivatives of the film at the last trial for `jacobian`."""
-        self._derived = trial, (f_q, f_qt), self._film_tangent(trial, f_q, f_qt)
+        trial.derived = (f_q, f_qt), self._film_tangent(trial, f_q, f_qt)
 
     def _tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivatives of the film at the last trial, as its kind has them."""
-        known, self._derived = self._derived, None
-        if known is not None and known[0] is trial and known[1] == (f_q, f_qt):
-            return known[2]
+        if trial.derived is not None and trial.derived[0] == (f_q, f_qt):
+            return trial.derived[1]
         return self._film_tangent(trial, f_q, f_qt)
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
@@ -360,7 +358,7 @@ class FilmElement:
 
     def forget(self) -> None:
         """Evaluate the film anew at the next state, whichever it is."""
-        self.last = self._peeked = self._derived = None
+        self.last = self._peeked = None
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film."""

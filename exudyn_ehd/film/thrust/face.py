@@ -61,9 +61,8 @@ class FaceState:
     status : Status
     wrench : (6,) array
         On the journal, moment about the face's centre, N and Nm; nan without a film.
-    minimum_gap, peak_pressure, power_loss, inflow, outflow, contact_load : float
-        m; Pa; W that film and contact turn into heat, or work on the oil that they press out; m3/s in at the inner
-        radius and out at the outer one; N.
+    minimum_gap, peak_pressure, power_loss, contact_load : float
+        m; Pa; W that film and contact turn into heat, or work on the oil that they press out; N.
     """
 
     status: Status
@@ -71,8 +70,6 @@ class FaceState:
     minimum_gap: float
     peak_pressure: float = np.nan
     power_loss: float = np.nan
-    inflow: float = np.nan
-    outflow: float = np.nan
     contact_load: float = np.nan
 
 
@@ -139,18 +136,15 @@ class FaceFilm:
         if status is not Status.CONVERGED:
             return FaceState(status, np.full(6, np.nan), smallest)
         self._integrate(motion)
-        (fx, fz, rate), (P, full), grid = s.couette_flows(), s.flow_pressures(), self.annulus.grid
+        peak, contact = float(s.pressure.max()) * k.pressure, float((self.annulus.weight * self.contact).sum())
+        return FaceState(status, self._wrench(), smallest, peak, self._power(), contact * k.R**2)
+
+    def flows(self) -> tuple[float, float]:
+        """Flows of the last solution in at the inner radius and out at the outer one, m3/s."""
+        s, grid, unit = self.solver, self.annulus.grid, self.scales.c * self.scales.R**2
+        (fx, fz, rate), (P, full) = s.couette_flows(), s.flow_pressures()
         inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
-        return FaceState(
-            status,
-            self._wrench(),
-            smallest,
-            float(s.pressure.max()) * k.pressure,
-            self._power(),
-            -k.c * k.R**2 * inner,
-            k.c * k.R**2 * outer,
-            float((self.annulus.weight * self.contact).sum()) * k.R**2,
-        )
+        return -unit * inner, unit * outer
 
     @property
     def pressure(self) -> np.ndarray:

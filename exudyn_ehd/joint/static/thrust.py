@@ -100,6 +100,7 @@ def require_faces(bearing: JournalBearing, where: str, **arguments: float | None
 def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
     """Result of the last evaluation of its model, with its tangent (6, 11)."""
     model, values, first = found.model, found.quantities(), found.model.faces[0]
+    inflow, outflow = np.array([face.flows() for face in model.faces]).T
     return ThrustResult(
         axial_position=values["axial_position"],
         force=found.wrench[:3],
@@ -113,8 +114,8 @@ def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
         power_loss=values["thrust_power_loss"],
         contact_load=values["thrust_contact_load"],
         edge_pressures=np.array([face.known[0] * face.scales.pressure for face in model.faces]),
-        inflow=np.array([state.inflow for state in found.states]),
-        outflow=np.array([state.outflow for state in found.states]),
+        inflow=inflow,
+        outflow=outflow,
         theta=first.annulus.grid.x,
         r=first.annulus.scale * first.annulus.r,
         pressure=np.array([face.pressure for face in model.faces]),
