@@ -23,7 +23,7 @@ from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.axial import axial_motion, axial_variation
+from exudyn_ehd.coupling.kinematics.axial import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
@@ -216,7 +216,7 @@ class FilmElement:
 
     def faces_motion(self, motion: np.ndarray) -> np.ndarray:
         """Motion (11,) of the end faces' films at the state to which the sides' arrays and a motion (10,) belong."""
-        return axial_motion(self.sides[0].frame, self.sides[1].frame, self.offset, motion)
+        return np.append(motion[:10], centre_of(self.sides[0].frame, self.sides[1].frame, self.offset)[2])
 
     def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
         """Keep the derivatives of the film at the last trial for `jacobian`."""
@@ -293,8 +293,8 @@ class FilmElement:
         tangent, state = trial.faces.tangent(), (np.array(trial.q[:n]), np.array(trial.q_t[:n]))
         own = np.ascontiguousarray(tangent[:, :10])
         stiffness, damping, _, _ = derivatives_between(mbs, self.sides, state, trial.faces.wrench, own)
-        along = axial_variation(housing.frame, journal.frame, housing.jac, journal.jac, self.offset)
-        stiffness += np.outer(self._wrench_map() @ tangent[:, 10], along)
+        by_wrench, centre = self._wrench_map(), centre_of(housing.frame, journal.frame, self.offset)
+        stiffness += np.outer(by_wrench @ tangent[:, 10], axial_variation(by_wrench, centre))
         return -(f_q * stiffness + f_qt * damping)
 
     def _rigid_derivatives(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import exudyn as exu
+import numpy as np
 
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
-from exudyn_ehd.coupling.kinematics.axial import axial_motion
+from exudyn_ehd.coupling.kinematics.axial import centre_of
 from exudyn_ehd.coupling.kinematics.relative import motion_of
 from exudyn_ehd.joint.model.compile import MESSAGE
 from exudyn_ehd.joint.thrust import ThrustModel
@@ -36,7 +37,7 @@ def add_faces(mbs: exu.MainSystem, element: FilmElement, items: tuple[Item, Item
     element.faces, element.offset = model, offset
     housing, journal = (initial_frame(mbs, item, side) for item, side in zip(items, sides, strict=True))
     with announced(MESSAGE):
-        start = model.evaluate(axial_motion(housing, journal, offset, motion_of(housing, journal)))
+        start = model.evaluate(np.append(motion_of(housing, journal), centre_of(housing, journal, offset)[2]))
         start.tangent()
     if start.status is not Status.CONVERGED:
         _, _, bx, by, *_, place = start.motion

@@ -10,7 +10,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.axial import axial_motion, axial_variation
+from exudyn_ehd.coupling.kinematics.axial import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
@@ -108,7 +108,7 @@ class RotorFilm:
             )
         self.places = np.concatenate((housing.places, journal.places))
         self.motion = np.zeros(10)
-        self.faces, self.offset = joint.element.faces, joint.element.offset
+        self.faces, self.offset, self.centre = joint.element.faces, joint.element.offset, np.zeros(3)
         self._on_faces: ThrustEvaluation | None = None
         self._told = False
 
@@ -118,7 +118,8 @@ class RotorFilm:
             side.update(q, u)
         self.motion = relative.motion_of(*self.frames)
         if self.faces is not None:
-            self._on_faces = self.faces.evaluate(axial_motion(*self.frames, self.offset, self.motion))
+            self.centre = centre_of(*self.frames, self.offset)
+            self._on_faces = self.faces.evaluate(np.append(self.motion, self.centre[2]))
 
     def evaluate(self) -> Evaluation | None:
         """The film at the motion; None if there is none, or none on an end face."""
@@ -147,8 +148,8 @@ class RotorFilm:
         tangent = np.ascontiguousarray(tangent)
         relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_x, motion_u, by_place, by_rate)
         if on_faces is not None:
-            by_axial_place = relative.wrench_map(*frames, *jacobians) @ on_faces[:, 10]
-            by_place += np.outer(by_axial_place, axial_variation(*frames, *jacobians, self.offset))
+            by_wrench = relative.wrench_map(*frames, *jacobians)
+            by_place += np.outer(by_wrench @ on_faces[:, 10], axial_variation(by_wrench, self.centre))
         return FilmLoads(force, by_place, by_rate, motion_x)
 
     def by_spin(self, tangent: np.ndarray) -> np.ndarray:
@@ -187,7 +188,7 @@ class RotorFilm:
         thrust = self.bearing.thrust
         if self._on_faces is None or thrust is None:
             return 1.0
-        along = axial_variation(*self.frames, *self.jacobians, self.offset) @ x[self.places]
+        along = axial_variation(relative.wrench_map(*self.frames, *self.jacobians), self.centre) @ x[self.places]
         turn = relative.variation_of(*self.frames, *self.jacobians)[0][2:4] @ x[self.places]
         closed = abs(float(along)) + thrust.outer_radius * float(np.hypot(*turn))
         allowed = 0.6 * self._on_faces.minimum_gap if thrust.contact is None else 0.3 * thrust.clearance
