@@ -96,6 +96,10 @@ class Trial:
         self.evaluation, self.faces = evaluation, faces
         self.status = evaluation.status if faces is None else max(evaluation.status, faces.status)
 
+    def lacks(self, f_q: float, f_qt: float) -> bool:
+        """Return whether the film's derivatives for these factors are not known."""
+        return self.derived is None or self.derived[0] != (f_q, f_qt)
+
     @property
     def found(self) -> Evaluation:
         """Evaluation of the film, which must exist."""

@@ -120,9 +120,7 @@ class FilmElement:
             return np.full(len(q), np.nan)
         force = self._generalized_force(trial)
         if trial.faces is not None:
-            of_faces = np.empty(self.rigid_size)
-            self._rigid_force(trial.faces.wrench, of_faces)
-            force[: self.rigid_size] += of_faces
+            force[: self.rigid_size] += self._wrench_map() @ trial.faces.wrench
         return force
 
     def jacobian(
@@ -219,14 +217,15 @@ class FilmElement:
         return np.append(motion[:10], centre_of(self.sides[0].frame, self.sides[1].frame, self.offset)[2])
 
     def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
-        """Keep the derivatives of the film at the last trial for `jacobian`."""
+        """Keep the derivatives of the film at the last trial, as its kind has them, for `jacobian`."""
         trial.derived = (f_q, f_qt), self._film_tangent(trial, f_q, f_qt)
 
     def _tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivatives of the film at the last trial, as its kind has them."""
-        if trial.derived is not None and trial.derived[0] == (f_q, f_qt):
-            return trial.derived[1]
-        return self._film_tangent(trial, f_q, f_qt)
+        """Derivatives of the film at the last trial, see `derive`."""
+        if trial.lacks(f_q, f_qt):
+            self.derive(trial, f_q, f_qt)
+        assert trial.derived is not None
+        return trial.derived[1]
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion."""
@@ -387,7 +386,7 @@ class FilmElement:
         """Scalars of an evaluation, to which the sides' arrays belong."""
         return evaluation.quantities()
 
-    def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
-        """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
+    def current(self, mbs: exu.MainSystem) -> tuple[float, Trial]:
+        """Time of Exudyn's current state, and the film there."""
         time = mbs.systemData.GetTime(CURRENT)
-        return self.row(time, self.look(mbs, time, CURRENT))
+        return time, self.look(mbs, time, CURRENT)
