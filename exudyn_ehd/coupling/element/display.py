@@ -73,7 +73,8 @@ class FilmDisplay:
         self.bore = (film.bore.displacement - film.bore.of_journal) * clearance
         self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
         modes = getattr(model.bore, "modes", None)
-        if modes is not None:
+        # finite-element bodies show themselves
+        if hasattr(modes, "mesh"):
             self.bush = np.tensordot(film.bore.coordinates[: modes.count], modes.displacements, 1)
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:
