@@ -91,7 +91,7 @@ class Trial:
         # a sum is finite only if all its terms are
         self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
 
-    def take(self, evaluation: Evaluation, faces: ThrustEvaluation | None) -> None:
+    def take(self, evaluation: Evaluation, faces: ThrustEvaluation | None = None) -> None:
         """Store the evaluations of the journal's film and of the end faces."""
         self.evaluation, self.faces = evaluation, faces
         self.status = evaluation.status if faces is None else max(evaluation.status, faces.status)
