@@ -9,7 +9,7 @@ presence        items of the joint, still in the system
 failures        messages of films that can't go on
 modal           bore by modes
 nodal           bore by nodes
-thrust          how an element comes to films on its end faces
+thrust          films on the end faces for an element
 outer_load      load on a film from everything else, also of functions of time
 side_by_side    films of one system on several threads
 sensors         Exudyn sensors

@@ -1,9 +1,12 @@
-"""The film element: force and exact Jacobian of a film between two marker frames, for an ObjectGenericODE2.
+"""The film element: force and exact Jacobian of a joint's films between two marker frames, for an ObjectGenericODE2.
 
 The element has no mass and shares the nodes of the two bodies. Its user functions get the coordinates q (without
 reference values) and q_t of those nodes, housing's first, and return the generalized force Q on the right-hand side and
 the derivative of -Q. The film is evaluated once per state. What was accepted is kept by `accepted_steps`, from the
 force user function alone; what can't be evaluated is explained by `failures`.
+
+Films on end faces are evaluated beside the journal's. They remember nothing and take the velocities as rates. Their
+wrench acts on journal and housing, also where a bush yields under the journal's film.
 """
 
 from __future__ import annotations

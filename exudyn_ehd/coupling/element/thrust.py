@@ -1,4 +1,4 @@
-"""The films on the end faces of a joint's element, whose start they have to survive."""
+"""Films on the end faces for the element of a joint, with a check of its start."""
 
 from __future__ import annotations
 
