@@ -366,21 +366,19 @@ def attach(
     turns = not all(item.kind in (rigid_nodes.GROUND, *rigid_nodes.POINTS) for item in (housing, journal))
     kept = {"axial": isinstance(axial, Held) and not flat, "tilt": isinstance(tilt, Held) and turns and not flat}
     element = FilmElement(model, *sides, name)
-    nodes = [node for side in sides for node in side.nodes]
     more: dict[str, object] = {}
     if hasattr(model, "bore"):
         # imported here: a rigid bearing needs no solid
         from exudyn_ehd.coupling.element.attach import attach_bush
 
         element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show, gravity)
-        nodes += element.bore_nodes
     elif gravity is not None:
         raise InputError(f"{_WHERE}.bushGravity: joint '{name}' has no bush with mass; leave it out.")
     display = FilmDisplay(element)
     number = mbs.AddObject(
         eii.ObjectGenericODE2(
             name=name,
-            nodeNumbers=nodes,
+            nodeNumbers=element.nodes,
             forceUserFunction=element.force,
             jacobianUserFunction=element.jacobian,
             visualization=eii.VObjectGenericODE2(
@@ -392,9 +390,9 @@ def attach(
     element.presence = Presence(mbs, name, element, number, sides)
     if getattr(model.bearing, "thrust", None) is not None:
         # imported here: a bearing without faces needs none of it
-        from exudyn_ehd.coupling.element.thrust import attach_faces
+        from exudyn_ehd.coupling.element.thrust import add_faces
 
-        element.faces = attach_faces(mbs, name, model.bearing, element.steps, (housing, journal), points, rotation)
+        add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
     constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
     register_joint(mbs, make)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, Protocol, SupportsInt, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, SupportsInt, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -13,6 +13,9 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError, Status
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.thrust import ThrustEvaluation
 
 # Exudyn's index types exist at run time, but not in its type stubs.
 _indices: Any = exu
@@ -56,12 +59,14 @@ class Evaluation(Protocol):
 
 
 class Trial:
-    """One state and the film's evaluation there; ``evaluation`` is None if the film was not evaluated.
+    """One state and the films' evaluation there; ``evaluation`` is None if the film was not evaluated.
 
-    ``motion`` is the film's input. It follows from the motion of the ``bodies`` in the step from ``begin``.
+    ``motion`` is the film's input. It follows from the motion of the ``bodies`` in the step from ``begin``. ``faces``
+    is the evaluation of films on end faces, whose motion is that of the bodies; None without them. ``derived`` are the
+    journal's film's derivatives, behind the factors that they are for, if they are known.
     """
 
-    __slots__ = ("begin", "bodies", "evaluation", "memory", "motion", "q", "q_t", "status", "step")
+    __slots__ = ("begin", "bodies", "derived", "evaluation", "faces", "memory", "motion", "q", "q_t", "status", "step")
 
     def __init__(
         self,
@@ -81,12 +86,19 @@ class Trial:
         self.bodies = bodies
         self.motion = motion
         self.evaluation: Evaluation | None = None
+        self.faces: ThrustEvaluation | None = None
+        self.derived: tuple[tuple[float, float], np.ndarray] | None = None
         # a sum is finite only if all its terms are
         self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
 
-    def take(self, evaluation: Evaluation) -> None:
-        """Store the film's evaluation."""
-        self.evaluation, self.status = evaluation, evaluation.status
+    def take(self, evaluation: Evaluation, faces: ThrustEvaluation | None = None) -> None:
+        """Store the evaluations of the journal's film and of the end faces."""
+        self.evaluation, self.faces = evaluation, faces
+        self.status = evaluation.status if faces is None else max(evaluation.status, faces.status)
+
+    def lacks(self, f_q: float, f_qt: float) -> bool:
+        """Return whether the film's derivatives for these factors are not known."""
+        return self.derived is None or self.derived[0] != (f_q, f_qt)
 
     @property
     def found(self) -> Evaluation:

@@ -1,7 +1,7 @@
-"""The films on both end faces of a joint as a pure function of its motion and of the journal's place along the axis.
+"""The films on both end faces of a joint as a pure function of the journal's motion.
 
-Motion (10,) as in `exudyn_ehd.joint.solved_film`; besides it the axial position z of the journal's centre, the point of
-its axis that lies at O in the reference configuration. The collars are planes across the journal's axis at fixed
+The motion (11,) is that of `exudyn_ehd.joint.solved_film` and the axial position z of the journal's centre, the point
+of its axis that lies at O in the reference configuration. The collars are planes across the journal's axis at fixed
 distances from the centre. With the axis at (x, y) in the mid-plane and e = (x, y) + (bx, by) z_f at a face, z_f =
 +-L/2, they cross the bearing's axis at ``zeta = z + bx x + by y`` from their middle places and slide with
 ``u = de/dt - omega e_z x e`` there. What is left out is of second order in the tilt, clearance squared over length.
@@ -23,25 +23,11 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
-from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
 from exudyn_ehd.status import Status
 
-NAMES = (
-    "axial_position",
-    "thrust_force",
-    "thrust_minimum_gap",
-    "thrust_peak_pressure",
-    "thrust_torque",
-    "thrust_power_loss",
-    "thrust_contact_load",
-)
-"""Quantities of the faces, as in histories."""
-ADVICE = (
-    "give the faces contact=RegularisedWall(onset=...), pads that carry (profile=TaperLand(...)), more clearance or "
-    "less load, or take smaller steps."
-)
-"""What helps where a face has no film."""
+SIZE, PLACE = 11, 10
+"""Entries of the motion, and the axial position's among them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +38,7 @@ class ThrustEvaluation:
     ----------
     status : Status
         The worst of the faces.
-    motion, position : (10,) array, float
+    motion : (11,) array
     wrench : (6,) array
         Force (N) and moment about O (Nm) on the journal, joint frame; nan unless converged.
     states : tuple of FaceState
@@ -61,19 +47,23 @@ class ThrustEvaluation:
 
     status: Status
     motion: np.ndarray
-    position: float
     wrench: np.ndarray
     states: tuple[FaceState, ...]
     model: ThrustModel
     serial: int
 
+    @property
+    def minimum_gap(self) -> float:
+        """Smallest gap of all faces, m."""
+        return min(state.minimum_gap for state in self.states)
+
     def tangent(self) -> np.ndarray:
-        """d wrench / d (motion, position) (6, 11), exact; only until the model's next evaluation."""
+        """d wrench / d motion (6, 11), exact; only until the model's next evaluation."""
         if self.serial != self.model.serial:
             raise RuntimeError("ThrustEvaluation.tangent: the model has evaluated another state since.")
         if self.status is not Status.CONVERGED:
-            return np.full((6, MOTION_SIZE + 1), np.nan)
-        out = np.zeros((6, MOTION_SIZE + 1))
+            return np.full((6, SIZE), np.nan)
+        out = np.zeros((6, SIZE))
         for face in self.model.faces:
             height, own = self.model.height(face), face.tangent()
             own += self.model.change_at_rest(face) if is_at_rest(face) else 0.0
@@ -87,22 +77,20 @@ class ThrustEvaluation:
         return math.nan if abs(uneven) > 2.0 * LARGEST_SPREAD * damping else damping
 
     def quantities(self) -> Mapping[str, float]:
-        """Scalars by the names of `NAMES`.
+        """Scalars by their names in histories, SI units.
 
-        Place (m), axial force on the journal (N), smallest gap (m), highest pressure (Pa), torque on the journal about
-        the bearing's axis (Nm), power that turns into heat or pumps oil (W), load carried by contact (N).
+        Force and torque are on the journal, along the bearing's axis and about it; the power turns into heat or pumps
+        oil.
         """
-        s = self.states
-        values = (
-            self.position,
-            float(self.wrench[2]),
-            min(f.minimum_gap for f in s),
-            max(f.peak_pressure for f in s),
-            float(self.wrench[5]),
-            sum(f.power_loss for f in s),
-            sum(f.contact_load for f in s),
-        )
-        return dict(zip(NAMES, values, strict=True))
+        return {
+            "axial_position": float(self.motion[PLACE]),
+            "thrust_force": float(self.wrench[2]),
+            "thrust_minimum_gap": self.minimum_gap,
+            "thrust_peak_pressure": max(face.peak_pressure for face in self.states),
+            "thrust_torque": float(self.wrench[5]),
+            "thrust_power_loss": sum(face.power_loss for face in self.states),
+            "thrust_contact_load": sum(face.contact_load for face in self.states),
+        }
 
 
 class ThrustModel:
@@ -138,19 +126,19 @@ class ThrustModel:
         """z of a face, m."""
         return 0.5 * face.side * self.bearing.length
 
-    def evaluate(self, motion: np.ndarray, position: float) -> ThrustEvaluation:
-        """The films at a motion (10,) and an axial position."""
+    def evaluate(self, motion: np.ndarray) -> ThrustEvaluation:
+        """The films at a motion (11,)."""
         self.serial += 1
-        motion = np.array(motion[:MOTION_SIZE], dtype=float)
-        if not np.isfinite(motion.sum() + position):
+        motion = np.array(motion, dtype=float)
+        if not np.isfinite(motion.sum()):
             state = FaceState(Status.NOT_FINITE, np.full(6, np.nan), np.nan)
-            return ThrustEvaluation(state.status, motion, position, state.wrench, (state,), self, self.serial)
-        states = tuple(face.evaluate(face_motion(motion, position, self.height(face))) for face in self.faces)
+            return ThrustEvaluation(state.status, motion, state.wrench, (state,), self, self.serial)
+        states = tuple(face.evaluate(face_motion(motion, self.height(face))) for face in self.faces)
         wrench = np.zeros(6)
         for face, state in zip(self.faces, states, strict=True):
             wrench += about_origin(state.wrench, self.height(face))
         status = max((state.status for state in states), key=lambda found: found.value)
-        return ThrustEvaluation(status, motion, position, wrench, states, self, self.serial)
+        return ThrustEvaluation(status, motion, wrench, states, self, self.serial)
 
     def change_at_rest(self, face: FaceFilm) -> np.ndarray:
         """Difference (6, 9) between the mean of one-sided derivatives and the tangent of the unbroken film.
@@ -181,26 +169,28 @@ def is_at_rest(face: FaceFilm) -> bool:
 
 def no_film(found: ThrustEvaluation, where: str) -> str:
     """Return the message for an evaluation without a film at a given position; it begins with ``where``."""
-    gap, (bx, by) = min(state.minimum_gap for state in found.states), found.motion[2:4]
+    _, _, bx, by, *_, place = found.motion
     return (
-        f"{where}: {found.status.name} on a thrust face at the axial position {found.position:.4g} m, tilt = "
-        f"({bx:.3g}, {by:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
+        f"{where}: {found.status.name} on a thrust face at the axial position {place:.4g} m, tilt = "
+        f"({bx:.3g}, {by:.3g}), smallest gap {found.minimum_gap:.3g} m: give the faces "
+        "contact=RegularisedWall(onset=...), pads that carry (profile=TaperLand(...)), more clearance or less load, or "
+        "take smaller steps."
     )
 
 
-def face_motion(motion: np.ndarray, position: float, height: float) -> np.ndarray:
+def face_motion(motion: np.ndarray, height: float) -> np.ndarray:
     """Motion (9,) of the collar at a face at z = ``height``, as in `exudyn_ehd.film.thrust.face`."""
-    x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w = motion.tolist()
-    zeta, zeta_t = position + bx * x + by * y, w + bx_t * x + bx * x_t + by_t * y + by * y_t
+    x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w, z = motion.tolist()
+    zeta, zeta_t = z + bx * x + by * y, w + bx_t * x + bx * x_t + by_t * y + by * y_t
     u_x, u_y = x_t + bx_t * height + omega * (y + by * height), y_t + by_t * height - omega * (x + bx * height)
     return np.array([zeta, bx, by, zeta_t, bx_t, by_t, omega, u_x, u_y])
 
 
 def face_motion_map(motion: np.ndarray, height: float) -> np.ndarray:
-    """Derivative (9, 11) of `face_motion` to motion and position."""
-    x, y, bx, by, x_t, y_t, bx_t, by_t, omega, _ = motion.tolist()
-    out = np.zeros((FACE_SIZE, MOTION_SIZE + 1))
-    out[0, :4], out[0, 10] = (bx, by, x, y), 1.0
+    """Derivative (9, 11) of `face_motion` to the motion."""
+    x, y, bx, by, x_t, y_t, bx_t, by_t, omega, _, _ = motion.tolist()
+    out = np.zeros((FACE_SIZE, SIZE))
+    out[0, :4], out[0, PLACE] = (bx, by, x, y), 1.0
     out[1, 2] = out[2, 3] = out[4, 6] = out[5, 7] = out[6, 8] = 1.0
     out[3, :10] = bx_t, by_t, x_t, y_t, bx, by, x, y, 0.0, 1.0
     out[7, [1, 3, 4, 6, 8]] = omega, omega * height, 1.0, height, y + by * height

@@ -250,7 +250,7 @@ def use(made):
         out += [evaluation.wrench, evaluation.tangent(), np.array(list(evaluation.quantities().values()))]
         history = evaluation.history()
     if made.thrust is not None:
-        faces = ThrustModel(made).evaluate(motion, 0.0)
+        faces = ThrustModel(made).evaluate(np.append(motion, 0.0))
         out += [faces.wrench, faces.tangent(), np.array(list(faces.quantities().values()))]
     return out
 

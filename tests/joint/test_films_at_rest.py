@@ -35,7 +35,7 @@ def one_sided(model, motion, place, entry, direction, size):
     """Wrench (6,) per ``size`` of a step from the motion in two entries."""
     moved = motion.copy()
     moved[entry : entry + 2] = size * direction
-    return (model.evaluate(moved, place).wrench - model.evaluate(motion, place).wrench) / size
+    return (model.evaluate(np.append(moved, place)).wrench - model.evaluate(np.append(motion, place)).wrench) / size
 
 
 def check_faces(seed, draws):
@@ -46,7 +46,7 @@ def check_faces(seed, draws):
         c, motion, angle = bearing.thrust.clearance, np.zeros(10), rng.uniform(0.0, 2.0 * math.pi)
         place, motion[8] = rng.choice([0.0, 1.0]) * rng.uniform(-0.6, 0.6) * c, spin
         model, direction = ThrustModel(bearing), np.array([math.cos(angle), math.sin(angle)])
-        found = model.evaluate(motion, place)
+        found = model.evaluate(np.append(motion, place))
         tangent, rate, tilt = found.tangent(), abs(spin) or 1.0, 1e-6 * c / bearing.thrust.outer_radius
         for entry, size in ((2, tilt), (6, rate * tilt)):
             moment = one_sided(model, motion, place, entry, direction, size)[3:5]
@@ -58,9 +58,9 @@ def check_faces(seed, draws):
         sides = []
         for way in (1.0, -1.0):
             motion[9] = way * rate * 1e-6 * c
-            sides.append(-model.evaluate(motion, place).wrench[2] / motion[9])
+            sides.append(-model.evaluate(np.append(motion, place)).wrench[2] / motion[9])
         motion[9] = 0.0
-        found = model.evaluate(motion, place)
+        found = model.evaluate(np.append(motion, place))
         damping, mean = found.axial_damping(), 0.5 * sum(sides)
         assert -found.tangent()[2, 9] == pytest.approx(mean, rel=1e-5, abs=1e-12)
         if abs(sides[0] - sides[1]) < 0.1 * mean or mean == 0.0:
@@ -96,7 +96,7 @@ def test_the_axial_damping_of_two_plane_faces_at_rest_is_that_of_the_face_that_c
 def test_faces_with_pressure_or_motion_keep_the_exact_tangent():
     bearing, _ = faces_of(np.random.default_rng(4), ehd.SwiftStieber(), inner_pressures=(1e5, 1e5))
     for motion in (np.zeros(10), np.eye(10)[9] * 1e-4):
-        found = ThrustModel(bearing).evaluate(motion, 0.0)
+        found = ThrustModel(bearing).evaluate(np.append(motion, 0.0))
         own = sum(face.tangent()[2, 3] for face in found.model.faces)
         assert found.tangent()[2, 9] == pytest.approx(own, rel=1e-12)
 

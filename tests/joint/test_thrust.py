@@ -35,18 +35,18 @@ def _bearing(faces=None, **options):
 @pytest.mark.parametrize("closure", [name for name in CLOSURES if not CLOSURES[name].conserves_mass])
 @pytest.mark.parametrize("profile", (None, PADS))
 def test_tangent(closure, profile):
-    """d wrench / d (motion, position) on random states, wall included."""
+    """d wrench / d motion on random states, wall included."""
     wall = ehd.RegularisedWall(onset=15e-6, pressure=1e7)
     faces = _faces(profile=profile, contact=wall, inner_pressures=(1e5, 2e5))
     model, rng = ThrustModel(_bearing(faces, cavitation=CLOSURES[closure])), np.random.default_rng(5)
     for _ in range(4):
         state = rng.uniform(-0.8, 0.8, 11) * SCALE
-        found = model.evaluate(state[:10], state[10])
+        found = model.evaluate(state)
         assert found.status is ehd.Status.CONVERGED
         tangent = found.tangent() * SCALE
         for d in rng.normal(size=(2, 11)):
             near = [state + k * 1e-6 * d * SCALE for k in (1, -1)]
-            plus, minus = (model.evaluate(s[:10], s[10]).wrench for s in near)
+            plus, minus = (model.evaluate(s).wrench for s in near)
             error = np.abs(tangent @ d - (plus - minus) / 2e-6)
             # central differences of smooth states, see tests/film/thrust
             assert np.all(error < 1e-6 * np.abs(tangent).max(axis=1))
@@ -63,7 +63,7 @@ def test_turn_of_the_journal_about_the_origin():
     turned[2] += turn[1]
     turned[3] -= turn[0]
     there = position + turn[0] * motion[1] - turn[1] * motion[0]
-    change = face_motion(turned, there, height)[:3] - face_motion(motion, position, height)[:3]
+    change = face_motion(np.append(turned, there), height)[:3] - face_motion(np.append(motion, position), height)[:3]
     # the plane's height on the bearing's axis stays
     assert abs(change[0]) < 1e-6 * np.abs(turn).max() * 25e-6
     assert change[1:] == pytest.approx([turn[1], -turn[0]])
@@ -73,7 +73,7 @@ def test_wrench_about_the_origin():
     """Forces in the plane of a face have the moment of their height."""
     model, motion = ThrustModel(_bearing(_faces(lower=False))), np.zeros(10)
     motion[4] = 0.1
-    found = model.evaluate(motion, 0.0)
+    found = model.evaluate(np.append(motion, 0.0))
     shear = 0.03 * 0.1 / C * np.pi * (0.05**2 - 0.026**2)
     assert found.wrench == pytest.approx([-shear, 0, 0, 0, -0.02 * shear, 0], rel=1e-3, abs=1e-9)
 
@@ -81,9 +81,9 @@ def test_wrench_about_the_origin():
 def test_both_faces_balance():
     """In the middle nothing pushes; pressure of one bearing end pushes its collar away."""
     still = np.zeros(10)
-    assert ThrustModel(_bearing()).evaluate(still, 0.0).wrench == pytest.approx(np.zeros(6), abs=1e-9)
-    lifted = ThrustModel(_bearing(end_pressures=(0.0, 1e5))).evaluate(still, 0.0).wrench
-    fed = ThrustModel(_bearing(_faces(inner_pressures=(0.0, 1e5)))).evaluate(still, 0.0).wrench
+    assert ThrustModel(_bearing()).evaluate(np.append(still, 0.0)).wrench == pytest.approx(np.zeros(6), abs=1e-9)
+    lifted = ThrustModel(_bearing(end_pressures=(0.0, 1e5))).evaluate(np.append(still, 0.0)).wrench
+    fed = ThrustModel(_bearing(_faces(inner_pressures=(0.0, 1e5)))).evaluate(np.append(still, 0.0)).wrench
     assert lifted[2] > 10.0
     assert np.array_equal(lifted, fed)
 
@@ -142,7 +142,8 @@ def test_effects_of_the_journal_s_film_leave_the_faces_theirs(options):
     motion = 0.4 * SCALE[:10]
     assert build_model(bearing).bearing.thrust is not None
     assert np.array_equal(
-        ThrustModel(bearing).evaluate(motion, 1e-5).wrench, ThrustModel(_bearing()).evaluate(motion, 1e-5).wrench
+        ThrustModel(bearing).evaluate(np.append(motion, 1e-5)).wrench,
+        ThrustModel(_bearing()).evaluate(np.append(motion, 1e-5)).wrench,
     )
 
 

@@ -29,10 +29,12 @@ HOLD = 1e9
 
 
 class BushEquations:
-    """Force, Jacobian and mass of a bush object.
+    """Force, Jacobian and mass of a bush object: user functions, which Exudyn calls.
 
     Parameters
     ----------
+    name : str
+        Name of the object, for messages.
     solid : TotalLagrange
         Mesh at its place in the model.
     held : ndarray of bool, shape (n, 3)
@@ -54,6 +56,7 @@ class BushEquations:
 
     def __init__(
         self,
+        name: str,
         *,
         solid: TotalLagrange,
         held: np.ndarray,
@@ -63,8 +66,10 @@ class BushEquations:
         mass_rate: float,
         contained: RigidPart | None,
     ) -> None:
-        self.solid, self.held, self.slaved, self.carrier = solid, held, slaved, carrier
+        self.name, self.solid, self.held, self.slaved, self.carrier = name, solid, held, slaved, carrier
         self.loads, self.mass_rate, self.contained = loads, mass_rate, contained
+        # start of the step at which elements were looked at last
+        self._watched, self._weighed = math.nan, False
         moving = ~slaved & ~held.all(axis=1)
         self._moving_rows, self._slaved_rows = (np.flatnonzero(np.repeat(nodes, 3)) for nodes in (moving, slaved))
         self.count = self._moving_rows.size
@@ -92,7 +97,15 @@ class BushEquations:
         values[self._moving_rows] = q[: self.count]
         return values.reshape(-1, 3)
 
-    def force(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
+        """Generalised force (n,), a list, which Exudyn reads fastest; raises if an element was inside out."""
+        start = mbs.systemData.GetTime(START_OF_STEP)
+        if start != self._watched:
+            self._watched = start
+            self.require_upright(mbs, np.array(mbs.systemData.GetObjectLTGODE2(item)), start)
+        return self.forces(t, np.array(q), np.array(q_t)).tolist()
+
+    def forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return the right-hand side of M q_tt = force, generalised forces [N], [Nm]."""
         u, v = self.motion(q, q_t)
         nodal = self._nodal_forces(t, u, v)
@@ -111,7 +124,14 @@ class BushEquations:
         return result
 
     def jacobian(
-        self, t: float, q: np.ndarray, q_t: np.ndarray, position_factor: float, velocity_factor: float
+        self,
+        mbs: exu.MainSystem | None,
+        t: float,
+        item: int,
+        coordinates: list[float],
+        rates: list[float],
+        position_factor: float,
+        velocity_factor: float,
     ) -> csr_matrix:
         """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t).
 
@@ -120,6 +140,7 @@ class BushEquations:
         velocities and inertia forces with its attitude, of the size of its angular velocity. Newton's method then
         takes more iterations; its result is the same.
         """
+        q, q_t = np.array(coordinates), np.array(rates)
         u, v = self.motion(q, q_t)
         whole = self.solid.tangent(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
         for pressure, (rows, columns) in zip(self._followers, self._follower_places, strict=True):
@@ -155,6 +176,13 @@ class BushEquations:
             own -= self.contained.matrix(self.carrier.side)
         return bmat([[self._moving_mass, coupling], [coupling.T, own]], format="csr")
 
+    def mass_at(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> csr_matrix:
+        """Return `mass` of a bush on a carrier."""
+        if not self._weighed:
+            self._weighed = True
+            self.warn_if_light(mbs, np.array(q))
+        return self.mass(np.array(q))
+
     def rounding(self, reach: np.ndarray) -> float:
         """Return the norm of the forces' round-off [N], at most, for coordinates up to a size (n,).
 
@@ -166,21 +194,22 @@ class BushEquations:
             return whole * size
         return math.hypot(whole * size, carried * float(np.abs(self.carrier.positions()).max(initial=0.0)))
 
-    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray, time: float, name: str) -> None:
+    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray, time: float) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
         start, data = START_OF_STEP, mbs.systemData
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
         turned = self.solid.inversion(self.motion(q, q_t, start)[0])
         if turned:
-            raise RunError(f"FlexibleBush '{name}' at t = {time:.9g} s: {turned}")
+            raise RunError(f"FlexibleBush '{self.name}' at t = {time:.9g} s: {turned}")
 
-    def warn_if_light(self, mbs: exu.MainSystem, name: str, q: np.ndarray) -> None:
+    def warn_if_light(self, mbs: exu.MainSystem, q: np.ndarray) -> None:
         """Warn if the carrier must contain the bush and has less mass than it, once the system is assembled."""
         if self.contained is None or self.carrier is None:
             return
         M, k = self.mass(q).tocsc(), self.count
         coupling = M[:k, k:].toarray()
         change = M[k:, k:].toarray() - coupling.T @ splu(M[:k, :k]).solve(coupling)
+        name = self.name.removesuffix(" bush")
         warn_if_indefinite(mbs, self.carrier.side.nodes, change, self.contained.describe(), name)
 
     def _nodal_forces(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -233,40 +262,3 @@ class BushEquations:
         K = self.solid.tangent(np.zeros(self.held.shape))
         highest = 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
         return self._spring / (100.0 * highest)
-
-
-class BushFunctions:
-    """User functions of a nodal bush, which Exudyn calls.
-
-    Parameters
-    ----------
-    equations : BushEquations
-    name : str
-        Name of the object, for messages.
-    """
-
-    def __init__(self, equations: BushEquations, name: str) -> None:
-        self.equations, self.name = equations, name
-        self._watched = np.nan
-        self._weighed = False
-
-    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
-        """Generalised force (n,), a list, which Exudyn reads fastest; raises if an element was inside out."""
-        start = mbs.systemData.GetTime(START_OF_STEP)
-        if start != self._watched:
-            self._watched = start
-            self.equations.require_upright(mbs, np.array(mbs.systemData.GetObjectLTGODE2(item)), start, self.name)
-        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
-
-    def jacobian(
-        self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
-    ) -> csr_matrix:
-        """Derivative (n, n) of minus the force, weighted for coordinates and rates."""
-        return self.equations.jacobian(t, np.array(q), np.array(q_t), f_q, f_qt)
-
-    def mass(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> csr_matrix:
-        """Mass (n, n) of a bush on a carrier."""
-        if not self._weighed:
-            self._weighed = True
-            self.equations.warn_if_light(mbs, self.name.removesuffix(" bush"), np.array(q))
-        return self.equations.mass(np.array(q))

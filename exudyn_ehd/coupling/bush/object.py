@@ -15,7 +15,7 @@ import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
 
-from exudyn_ehd.coupling.bush.equations import BushEquations, BushFunctions
+from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
 from exudyn_ehd.coupling.contract import CURRENT, Index, NodeIndex, Side, require_system
 from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
@@ -357,6 +357,7 @@ def add_bush(
             "the carrier; use stiffness_time."
         )
     equations = BushEquations(
+        name,
         solid=solid,
         held=held,
         slaved=slaved,
@@ -371,7 +372,7 @@ def add_bush(
     else:
         u, v = positions(mount.initial, local) - X, velocities(mount.initial, local)
     numbers = _add_nodes(mbs, equations, u, v)
-    return _add_object(mbs, name, mesh, equations, numbers, show, color)
+    return _add_object(mbs, mesh, equations, numbers, show, color)
 
 
 def _held_directions(mesh: BushMesh, supports: Sequence[Support]) -> np.ndarray:
@@ -407,28 +408,28 @@ def _add_nodes(mbs: exu.MainSystem, equations: BushEquations, u: np.ndarray, v: 
 
 def _add_object(
     mbs: exu.MainSystem,
-    name: str,
     mesh: BushMesh,
     equations: BushEquations,
     numbers: np.ndarray,
     show: bool,
     color: Sequence[float],
 ) -> FlexibleBush:
-    functions = BushFunctions(equations, name)
     nodes = [NodeIndex(int(i)) for i in numbers[numbers >= 0]]
     carrier = equations.carrier
-    arguments: dict = {"forceUserFunction": functions.force, "jacobianUserFunction": functions.jacobian}
+    arguments: dict = {"forceUserFunction": equations.force, "jacobianUserFunction": equations.jacobian}
     if carrier is None:
         container = exu.MatrixContainer()
         container.SetWithSparseMatrix(equations.mass(None), useDenseMatrix=False)
         arguments["massMatrix"] = container
     else:
         nodes += carrier.side.nodes
-        arguments["massMatrixUserFunction"] = functions.mass
+        arguments["massMatrixUserFunction"] = equations.mass_at
     picture = items.VObjectGenericODE2(
         show=show, color=list(color), triangleMesh=_triangles(mesh, numbers), showNodes=False
     )
-    number = mbs.AddObject(items.ObjectGenericODE2(name=name, nodeNumbers=nodes, visualization=picture, **arguments))
+    number = mbs.AddObject(
+        items.ObjectGenericODE2(name=equations.name, nodeNumbers=nodes, visualization=picture, **arguments)
+    )
     return FlexibleBush(
         mbs=mbs, mesh=mesh, solid=equations.solid, objectNumber=number, nodeNumbers=numbers, equations=equations
     )

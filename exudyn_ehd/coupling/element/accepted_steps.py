@@ -189,7 +189,7 @@ class AcceptedSteps:
         row = self.film.row(start, trial)
         if self.control is not None:
             film = trial.evaluation if row is not None and self._makes_room else None
-            self.control.start(trial.motion, None if film is None else film.quantities()["minimum_gap"])
+            self.control.start(trial, None if film is None else film.quantities()["minimum_gap"])
         if row is not None:
             # a resumed state was recorded at the end of its step; for the memory it is the beginning of the next
             if not resumed or start > self.record.last_time:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
-from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
+from exudyn_ehd.coupling.contract import Index, JointModel, NodeIndex, Side
 from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement, TurningFilmElement
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.bodies import Item
@@ -31,7 +31,6 @@ from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluati
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.solid.loads import Gravity
 from exudyn_ehd.status import InputError, Status
 
@@ -86,15 +85,13 @@ def attach_bush(
             f"CreateLubricatedJoint.bushGravity: mass and weight of the {type(model.bearing.yielding).__name__} of "
             f"joint '{name}' are its body's; leave it out, and let the body's mass and loads contain them."
         )
+    # finite-element bodies have nodes, mass and stiffness for the modes
     if isinstance(model, TurningModel):
-        settle_body(mbs, model, sides)
-        _equip_body(mbs, items[1], model.turning.surface)
-        return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name, model.turning), {}
+        nodes = _settle_body(mbs, model, sides, items[1], sides[1], model.turning.surface)
+        return TurningFilmElement(model, *sides, nodes, name, model.turning), {}
     if isinstance(sides[0], FloatingBoreSide):
-        # the body has nodes, mass and stiffness for the modes
-        settle_body(mbs, model, sides)
-        _equip_body(mbs, items[0], model.bore.modes)
-        return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore), {}
+        nodes = _settle_body(mbs, model, sides, items[0], sides[0], model.bore.modes)
+        return ModalFilmElement(model, *sides, nodes, name, model.bore), {}
     settled = initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(
@@ -114,13 +111,6 @@ def attach_bush(
     # the sides of markers find their size after Assemble only
     rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
     return element, {"massMatrix": block_diag(np.zeros((rigid, rigid)), mass)}
-
-
-def _equip_body(mbs: exu.MainSystem, item: Item, surface: object) -> None:
-    """Give a body under the film its exact Jacobian, unless it shall keep Exudyn's or has user functions."""
-    assert isinstance(surface, ReducedBore) and item.body is not None
-    if surface.exact_jacobian and mbs.GetObjectParameter(item.body, "computeFFRFterms"):
-        own_equations(mbs, item.body)
 
 
 def _attach_nodes(
@@ -167,20 +157,13 @@ class StartingFilm:
 class FilmsOnOneBody:
     """Films on bores of one body, whose modes they share, as `bore_equilibrium` takes them.
 
-    The first number of the motion is the part of all poses.
+    The first number of the motion is the part of all poses. ``bore`` is one of the bores, which have the same
+    coordinates, and ``elasticity`` that of the body, with growth by spin if the first film is on a journal.
     """
 
     films: list[StartingFilm]
-
-    @property
-    def bore(self) -> Bore:
-        """One of the bores; all have the same coordinates."""
-        return self.films[0].model.bore
-
-    @property
-    def elasticity(self) -> Elasticity:
-        """Elasticity of the body; with growth by spin if the first film is on a journal."""
-        return self.films[0].model.elasticity
+    bore: Bore
+    elasticity: Elasticity
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -190,24 +173,17 @@ class FilmsOnOneBody:
         scale[:4] = motion[0]
         motions = [scale * np.concatenate((film.motion, motion[MOTION_SIZE:])) for film in self.films]
         parts = [f.model.evaluate(own, f.memory, 0.0, f.spin) for f, own in zip(self.films, motions, strict=True)]
-        return FilmsTogether(parts)
+        bore = parts[0].bore._replace(load=np.sum([part.bore.load for part in parts], axis=0))
+        return FilmsTogether(parts, max(part.status for part in parts), bore)
 
 
 @dataclasses.dataclass(frozen=True)
 class FilmsTogether:
-    """Evaluations of films on one body."""
+    """Evaluations of films on one body, the worst status, and the body's coordinates with the sum of the loads."""
 
     parts: list[ElasticEvaluation]
-
-    @property
-    def status(self) -> Status:
-        """The first that is not `Status.CONVERGED`."""
-        return next((part.status for part in self.parts if part.status is not Status.CONVERGED), Status.CONVERGED)
-
-    @property
-    def bore(self) -> BoreState:
-        """Coordinates, and the sum of the loads."""
-        return self.parts[0].bore._replace(load=np.sum([part.bore.load for part in self.parts], axis=0))
+    status: Status
+    bore: BoreState
 
     def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
         """Sum of the films' tangents to the bores' coordinates."""
@@ -219,7 +195,7 @@ def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) ->
 
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
     flooded film's first instant is Swift-Stieber's; with a heat balance it has the temperature that the run starts at.
-    The modes of a finite-element journal are those of its body, see `settle_body`.
+    The modes of a finite-element journal are those of its body, see `_settle_body`.
     """
     if isinstance(model, TurningModel):
         return None
@@ -238,20 +214,33 @@ def undeformed(mbs: exu.MainSystem, housing: Item, side: FloatingBoreSide) -> It
     return dataclasses.replace(housing, initial_coordinates=initial, initial_velocities=velocities)
 
 
-def settle_body(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Side, Side]) -> None:
+def _settle_body(
+    mbs: exu.MainSystem,
+    model: ElasticBearingModel,
+    sides: tuple[Side, Side],
+    item: Item,
+    side: Side,
+    surface: object,
+) -> list[Index]:
     """Let the modes of a reduced body start in equilibrium with all of its films, unless the scene has set them.
 
     The body's frame is held; the sides' frames are those of the undeformed body. A journal that turns starts with what
-    centrifugal forces make it grow by, and with its shape at rest in the joint's frame.
+    centrifugal forces make it grow by, and with its shape at rest in the joint's frame. The body has its exact Jacobian
+    unless it shall keep Exudyn's or has user functions.
+
+    Returns
+    -------
+    list
+        The node of the modes.
     """
-    pin = model.bearing.journal
-    surface, side = (pin.surface, sides[1]) if isinstance(pin, TurningJournal) else (model.bearing.bush, sides[0])
-    assert isinstance(surface, ReducedBore) and isinstance(side, FloatingBoreSide)
+    assert isinstance(surface, ReducedBore) and isinstance(side, FloatingBoreSide) and item.body is not None
+    if surface.exact_jacobian and mbs.GetObjectParameter(item.body, "computeFFRFterms"):
+        own_equations(mbs, item.body)
     node, known = side.nodes[-1], _known(mbs, side)
     present = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
     others = known[0] if known and np.array_equal(present, known[1]) else []
     if not surface.settled or (present.any() and not others):
-        return
+        return [node]
     films = [*others, _starting_film(model, sides, surface.held())]
     # the body grows by its spin whatever joint comes first
     films.sort(key=lambda film: not isinstance(film.model, TurningModel))
@@ -261,6 +250,7 @@ def settle_body(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Si
         mbs.SetNodeParameter(node, "initialCoordinates_t", _standing_rates(films, start).tolist())
         put = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
         mbs.variables.setdefault(_BODIES, {})[int(node)] = films, put
+    return [node]
 
 
 def _known(mbs: exu.MainSystem, side: FloatingBoreSide) -> tuple[list[StartingFilm], np.ndarray] | None:
@@ -297,7 +287,7 @@ def _equilibrium(films: list[StartingFilm]) -> np.ndarray | None:
     if len(films) == 1:
         settled = first.model.evaluate_steady(first.motion, first.memory, 0.0, first.spin)
         return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None
-    together = FilmsOnOneBody(films)
+    together = FilmsOnOneBody(films, first.model.bore, first.model.elasticity)
     found = bore_equilibrium(together, np.ones(MOTION_SIZE), (None, 0.0, 0.0), np.zeros(first.model.size))[0]
     return None if found is None else found.bore.coordinates.copy()
 

@@ -21,7 +21,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics.sides import detached, read_state
+from exudyn_ehd.coupling.kinematics.sides import detached
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.status import Status
 
@@ -73,7 +73,8 @@ class FilmDisplay:
         self.bore = (film.bore.displacement - film.bore.of_journal) * clearance
         self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
         modes = getattr(model.bore, "modes", None)
-        if modes is not None:
+        # finite-element bodies show themselves
+        if hasattr(modes, "mesh"):
             self.bush = np.tensordot(film.bore.coordinates[: modes.count], modes.displacements, 1)
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:
@@ -135,8 +136,8 @@ class FilmDisplay:
         """Joint frame (3, 6) of the housing in the shown state; the element's own arrays belong to the solver."""
         if self._housing is None:
             self._housing = detached(self.element.sides[0])
-        q, q_t = read_state(mbs, [self._housing], _VISUALIZATION)
-        self._housing.update(mbs, np.array(q), np.array(q_t), _VISUALIZATION)
+        q, q_t = (np.array(values[: self._housing.size]) for values in self.element.read(mbs, _VISUALIZATION))
+        self._housing.update(mbs, q, q_t, _VISUALIZATION)
         return self._housing.frame
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
-from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, THRUST, eccentricity_ratios
+from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
 from exudyn_ehd.joint.balance.limits import (
     DEEPEST,
     HIGHEST_MEAN,
@@ -26,6 +26,7 @@ from exudyn_ehd.joint.balance.limits import (
     seized,
 )
 from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.thrust import ThrustEvaluation, no_film
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 
 # Mean over peak pressure below which no film is.
@@ -61,6 +62,9 @@ class Failures:
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
         """The film can't be evaluated, and the solver can't repeat the step."""
+        if trial.faces is not None and trial.faces.status is not Status.CONVERGED:
+            where = f"LubricatedJoint '{self.name}' can't be evaluated at t = {time:.9g} s"
+            return FilmError(no_film(trial.faces, where))
         if np.all(np.isfinite(trial.motion)):
             state = self.place(trial.motion)
         elif trial.status == Status.NOT_FINITE:
@@ -106,25 +110,25 @@ class Failures:
         pressure = self._pressure(row)
         if pressure > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
-        on_faces = None if getattr(self.bearing, "thrust", None) is None else self._absurd_faces(time, row)
+        on_faces = None if trial.faces is None else self._absurd_faces(time, trial.faces)
         return on_faces or self._beyond_limit(time, row, trial, pressure) or self._pressed_through(time, trial)
 
-    def _absurd_faces(self, time: float, row: np.ndarray) -> FilmError | None:
+    def _absurd_faces(self, time: float, faces: ThrustEvaluation) -> FilmError | None:
         """A collar pressed through its contact by more than any explains, or with what no steel bears."""
-        gap, peak, force = (float(row[column]) for column in THRUST)
+        gap, peak = faces.minimum_gap, faces.quantities()["thrust_peak_pressure"]
         assert self.bearing.thrust is not None
         if gap < -DEEPEST * self.bearing.thrust.clearance:
-            return FilmError(
-                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: a collar is pressed through its thrust face, "
-                f"smallest gap {gap:.4g} m; check load, mass and units, give ThrustFaces.contact more stiffness "
-                "(RegularisedWall.pressure), or take smaller steps."
+            return self._at(
+                time,
+                f"a collar is pressed through its thrust face, smallest gap {gap:.4g} m; check load, mass and units, "
+                "give ThrustFaces.contact more stiffness (RegularisedWall.pressure), or take smaller steps.",
             )
         if peak > self.largest_pressure:
-            return FilmError(
-                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: its thrust faces have a film that neither oil nor "
-                f"steel bears: peak pressure {peak:.4g} Pa, axial force {force:.4g} N, smallest gap {gap:.4g} m; check "
-                "masses, loads and units, take more steps, or name ThrustFaces.contact; joint.stop_at(pressure=...) "
-                "allows more."
+            return self._at(
+                time,
+                f"its thrust faces have a film that neither oil nor steel bears: peak pressure {peak:.4g} Pa, axial "
+                f"force {faces.wrench[2]:.4g} N, smallest gap {gap:.4g} m; check masses, loads and units, take more "
+                "steps, or name ThrustFaces.contact; joint.stop_at(pressure=...) allows more.",
             )
         return None
 

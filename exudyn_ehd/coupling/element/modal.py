@@ -27,57 +27,14 @@ EXPLICIT_STEPS = 2
 
 
 class BoreFilmElement(FilmElement):
-    """Film between two sides on a bore with nodes of its own.
-
-    Parameters
-    ----------
-    model : ElasticBearingModel
-        The film.
-    housing, journal : NodeSide or MarkerSide
-        As in `FilmElement`.
-    nodes : list
-        Nodes of the bore; their coordinates follow those of housing and journal.
-    name : str
-        For messages.
-    """
+    """Film between two sides on a bore with nodes of its own."""
 
     model: ElasticBearingModel
-
-    def __init__(self, model: ElasticBearingModel, housing: Side, journal: Side, nodes: list[Index], name: str) -> None:
-        super().__init__(model, housing, journal, name)
-        self.bore_nodes = nodes
-        self._places: np.ndarray | None = None
-
-    def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
-        q, q_t = super().read(mbs, configuration)
-        if self._places is None:
-            self._places = np.concatenate([mbs.systemData.GetNodeLTGODE2(int(node)) for node in self.bore_nodes])
-        data = mbs.systemData
-        q += np.asarray(data.GetODE2Coordinates(configuration))[self._places].tolist()
-        q_t += np.asarray(data.GetODE2Coordinates_t(configuration))[self._places].tolist()
-        return q, q_t
-
-    def _move(
-        self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
-    ) -> np.ndarray:
-        """Motion (10 + 2 k,): that of the rigid surfaces, then the bore's coordinates and rates."""
-        rigid, n = super()._move(mbs, q, q_t, configuration), self.rigid_size
-        return np.concatenate((rigid, *self._bore_motion(np.array(q[n:]), np.array(q_t[n:]))))
 
     @staticmethod
     def _evaluation(trial: Trial) -> ElasticEvaluation:
         assert isinstance(trial.evaluation, ElasticEvaluation)
         return trial.evaluation
-
-    def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
-        return q, q_t
-
-    def _wrench_map(self) -> np.ndarray:
-        """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
-        housing, journal = self.sides
-        found: np.ndarray = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
-        return found
 
 
 class ModalFilmElement(BoreFilmElement):
@@ -105,7 +62,7 @@ class ModalFilmElement(BoreFilmElement):
         name: str,
         bore: ModalBore | TurningJournal,
     ) -> None:
-        super().__init__(model, housing, journal, nodes, name)
+        super().__init__(model, housing, journal, name, nodes)
         self.bore, self.modes = bore, bore.modes
         self.stiffness = bore.stiffness
         # of a solver unknown: its step, how often it has asked there, whether at its start, and how many steps in a row

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import dataclasses
 import weakref
+from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
@@ -48,7 +49,7 @@ class NodalFilmElement(BoreFilmElement):
         name: str,
         bush: FlexibleBush,
     ) -> None:
-        super().__init__(model, housing, journal, nodes, name)
+        super().__init__(model, housing, journal, name, nodes)
         # the system holds this element: it must not keep the system alive
         self.bush = dataclasses.replace(bush, mbs=weakref.proxy(bush.mbs))
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
@@ -100,12 +101,20 @@ class NodalFilmElement(BoreFilmElement):
 
     def operator(
         self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
-    ) -> NodalJacobian | None:
+    ) -> Callable[[np.ndarray], np.ndarray] | None:
         """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
         trial = self._try(mbs, q, q_t, CURRENT, t)
         if trial.status != Status.CONVERGED:
             return None
-        return NodalJacobian(self, mbs, trial, f_q, f_qt)
+        film, n = NodalJacobian(self, mbs, trial, f_q, f_qt), self.rigid_size
+        of_faces = self.faces_jacobian(mbs, trial, f_q, f_qt)
+
+        def product(change: np.ndarray) -> np.ndarray:
+            out = film(change)
+            out[:n] += of_faces @ change[:n]
+            return out
+
+        return product
 
     def _turning_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Derivative (3 count, n_h) of the forces on the bore's nodes as the housing turns them."""

@@ -1,29 +1,33 @@
-"""The film element: force and exact Jacobian of a film between two marker frames, for an ObjectGenericODE2.
+"""The film element: force and exact Jacobian of a joint's films between two marker frames, for an ObjectGenericODE2.
 
 The element has no mass and shares the nodes of the two bodies. Its user functions get the coordinates q (without
 reference values) and q_t of those nodes, housing's first, and return the generalized force Q on the right-hand side and
 the derivative of -Q. The film is evaluated once per state. What was accepted is kept by `accepted_steps`, from the
 force user function alone; what can't be evaluated is explained by `failures`.
+
+Films on end faces are evaluated beside the journal's. They remember nothing and take the velocities as rates. Their
+wrench acts on journal and housing, also where a bush yields under the journal's film.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, Index, JointModel, Side, Trial
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between, read_state
+from exudyn_ehd.coupling.kinematics.axial import axial_variation, centre_of
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
@@ -31,7 +35,7 @@ from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
 from exudyn_ehd.status import Status
 
 if TYPE_CHECKING:
-    from exudyn_ehd.coupling.element.thrust import ThrustElement
+    from exudyn_ehd.joint.thrust import ThrustModel
 
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
@@ -58,14 +62,18 @@ class FilmElement:
         Carriers of the joint frame and of the journal's frame (z = its axis).
     name : str
         For messages.
+    bore_nodes : sequence
+        Nodes of a flexible bore, whose coordinates follow those of housing and journal.
 
     Attributes
     ----------
     steps : AcceptedSteps
     presence : Presence
         Set once the element is in a system.
-    faces : ThrustElement or None
-        Films on the end faces, an element of their own.
+    faces : ThrustModel or None
+        Films on the end faces.
+    offset : float
+        Distance of the joint points along the axis in the reference configuration, m, which the faces need.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own whose mass is a numerical one.
@@ -81,21 +89,24 @@ class FilmElement:
 
     kinematics: ModuleType = relative
 
-    def __init__(self, model: JointModel, housing: Side, journal: Side, name: str) -> None:
+    def __init__(
+        self, model: JointModel, housing: Side, journal: Side, name: str, bore_nodes: Sequence[Index] = ()
+    ) -> None:
         self.model = model
-        self.sides = (housing, journal)
+        self.sides, self.bore_nodes = (housing, journal), bore_nodes
         self.failures = Failures(name, model.bearing)
         self.is_massless = False
         self.evaluations = 0
         self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
-        self._derived: tuple[Trial, tuple[float, float], np.ndarray] | None = None
         self.crew: Crew | None = None
         self.steps = AcceptedSteps(self)
         self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
         self.presence: Presence
-        self.faces: ThrustElement | None = None
-        self._bound = False
+        self.faces: ThrustModel | None = None
+        self.offset = 0.0
+        # places of the coordinates in the system's, known once it is assembled
+        self._places: np.ndarray | None = None
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
@@ -108,24 +119,27 @@ class FilmElement:
             self.evaluate(trial)
         if self._refuses(t, trial):
             return np.full(len(q), np.nan)
-        if steps.control is not None and t > steps.start and steps.control.rejects(trial.motion, steps.solver):
+        if steps.control is not None and t > steps.start and steps.control.rejects(trial, steps.solver):
             return np.full(len(q), np.nan)
-        return self._generalized_force(trial)
+        force = self._generalized_force(trial)
+        if trial.faces is not None:
+            force[: self.rigid_size] += self._wrench_map() @ trial.faces.wrench
+        return force
 
     def jacobian(
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        trial = self.at(mbs, t, q, q_t)
+        trial = self._try(mbs, q, q_t, CURRENT, t, stepping=not self.steps.is_idle)
         if self._refuses(t, trial):
             return np.full((len(q), len(q)), np.nan)
         if self.crew is not None:
             self.crew.derive(self, f_q, f_qt)
-        return self._jacobian(mbs, trial, f_q, f_qt)
-
-    def at(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
-        """The film at a state for which Exudyn asks."""
-        return self._try(mbs, q, q_t, CURRENT, t, stepping=not self.steps.is_idle)
+        jacobian = self._jacobian(mbs, trial, f_q, f_qt)
+        if trial.faces is not None:
+            n = self.rigid_size
+            jacobian[:n, :n] += self.faces_jacobian(mbs, trial, f_q, f_qt)
+        return jacobian
 
     def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
         """Take the last step as accepted if the solver has moved on; return the trial at a state, the last one or new.
@@ -188,7 +202,7 @@ class FilmElement:
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own
-        self.last = self._derived = None
+        self.last = None
         return Trial(q, q_t, memory, step, begin, bodies, motion)
 
     def evaluate(self, trial: Trial) -> None:
@@ -196,20 +210,25 @@ class FilmElement:
         # a sum is finite only if all its terms are
         if math.isfinite(trial.motion.dot(trial.motion)):
             spin = relative.angle_of(self.sides[0].frame, self.sides[1].frame) if self.model.needs_spin else 0.0
-            trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
+            found = self.model.evaluate(trial.motion, trial.memory, trial.step, spin)
+            trial.take(found, None if self.faces is None else self.faces.evaluate(self.faces_motion(trial.bodies)))
             self.evaluations += 1
         self.last = trial
 
+    def faces_motion(self, motion: np.ndarray) -> np.ndarray:
+        """Motion (11,) of the end faces' films at the state to which the sides' arrays and a motion (10,) belong."""
+        return np.append(motion[:10], centre_of(self.sides[0].frame, self.sides[1].frame, self.offset)[2])
+
     def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
-        """Keep the derivatives of the film at the last trial for `jacobian`."""
-        self._derived = trial, (f_q, f_qt), self._film_tangent(trial, f_q, f_qt)
+        """Keep the derivatives of the film at the last trial, as its kind has them, for `jacobian`."""
+        trial.derived = (f_q, f_qt), self._film_tangent(trial, f_q, f_qt)
 
     def _tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivatives of the film at the last trial, as its kind has them."""
-        known, self._derived = self._derived, None
-        if known is not None and known[0] is trial and known[1] == (f_q, f_qt):
-            return known[2]
-        return self._film_tangent(trial, f_q, f_qt)
+        """Derivatives of the film at the last trial, see `derive`."""
+        if trial.lacks(f_q, f_qt):
+            self.derive(trial, f_q, f_qt)
+        assert trial.derived is not None
+        return trial.derived[1]
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion."""
@@ -218,13 +237,29 @@ class FilmElement:
     def _move(
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
     ) -> np.ndarray:
-        """Motion (10,) at a state, to which the sides' frames and Jp, Jr are brought."""
-        if not self._bound:
-            self.require_items(mbs)
-            bind(mbs, *self.sides)
-            self._bound = True
+        """Motion at a state, to which the sides' frames and Jp, Jr are brought.
+
+        That of the rigid surfaces (10,), and behind it the coordinates and rates of a flexible bore (2 k,).
+        """
+        if self._places is None:
+            self._find_places(mbs)
         n = self.rigid_size
-        return motion_between(mbs, self.sides, np.array(q[:n]), np.array(q_t[:n]), configuration, self.kinematics)
+        rigid = motion_between(mbs, self.sides, np.array(q[:n]), np.array(q_t[:n]), configuration, self.kinematics)
+        if not self.bore_nodes:
+            return rigid
+        return np.concatenate((rigid, *self._bore_motion(np.array(q[n:]), np.array(q_t[n:]))))
+
+    def _find_places(self, mbs: exu.MainSystem) -> np.ndarray:
+        """Bind the sides to a system, once it is assembled; the places of the element's coordinates."""
+        self.require_items(mbs)
+        bind(mbs, *self.sides)
+        places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
+        self._places = np.array(places, dtype=int)
+        return self._places
+
+    def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
+        return q, q_t
 
     def require_items(self, mbs: exu.MainSystem) -> None:
         """Refuse a system of which items were deleted that the joint was made on."""
@@ -241,9 +276,27 @@ class FilmElement:
         housing, journal = self.sides
         relative.wrench_force(housing.frame, journal.frame, housing.jac, journal.jac, wrench, force_out)
 
+    def _wrench_map(self) -> np.ndarray:
+        """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
+        housing, journal = self.sides
+        found: np.ndarray = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
+        return found
+
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
+        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) of the journal's film at the trial."""
         stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, self._tangent(trial, f_q, f_qt))
+        return -(f_q * stiffness + f_qt * damping)
+
+    def faces_jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) of the films on the end faces at the trial; zero without them."""
+        n, (housing, journal) = self.rigid_size, self.sides
+        if trial.faces is None:
+            return np.zeros((n, n))
+        tangent, state = trial.faces.tangent(), (np.array(trial.q[:n]), np.array(trial.q_t[:n]))
+        own = np.ascontiguousarray(tangent[:, :10])
+        stiffness, damping, _, _ = derivatives_between(mbs, self.sides, state, trial.faces.wrench, own)
+        by_wrench, centre = self._wrench_map(), centre_of(housing.frame, journal.frame, self.offset)
+        stiffness += np.outer(by_wrench @ tangent[:, 10], axial_variation(by_wrench, centre))
         return -(f_q * stiffness + f_qt * damping)
 
     def _rigid_derivatives(
@@ -255,6 +308,11 @@ class FilmElement:
         n = self.rigid_size
         state = np.array(trial.q[:n]), np.array(trial.q_t[:n])
         return derivatives_between(mbs, self.sides, state, trial.found.wrench, tangent, self.kinematics)
+
+    @property
+    def nodes(self) -> list[Index]:
+        """Nodes of housing, journal and bore."""
+        return [*self.sides[0].nodes, *self.sides[1].nodes, *self.bore_nodes]
 
     @property
     def rigid_size(self) -> int:
@@ -277,7 +335,9 @@ class FilmElement:
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""
-        return read_state(mbs, self.sides, configuration)
+        data, places = mbs.systemData, self._find_places(mbs) if self._places is None else self._places
+        q, q_t = data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration)
+        return np.asarray(q)[places].tolist(), np.asarray(q_t)[places].tolist()
 
     def look(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> Trial:
         """Evaluate the film at the state that Exudyn holds in ``configuration``."""
@@ -290,21 +350,17 @@ class FilmElement:
 
     def motion(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray:
         """Motion at the state that Exudyn holds in ``configuration``, without asking the film."""
-        motion = self._move(mbs, *self.read(mbs, configuration), configuration)
+        q, q_t = self.read(mbs, configuration)
+        motion = self._move(mbs, q, q_t, configuration)
         self.forget()
-        return motion
-
-    def peek(self, mbs: exu.MainSystem) -> np.ndarray:
-        """Motion at Exudyn's current state, for which the film will be asked next."""
-        q, q_t = self.read(mbs, CURRENT)
-        motion = self._move(mbs, q, q_t, CURRENT)
-        self.forget()
-        self._peeked = q, q_t, motion
+        if configuration == CURRENT:
+            # the film will be asked there next
+            self._peeked = q, q_t, motion
         return motion
 
     def forget(self) -> None:
         """Evaluate the film anew at the next state, whichever it is."""
-        self.last = self._peeked = self._derived = None
+        self.last = self._peeked = None
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film."""
@@ -313,8 +369,8 @@ class FilmElement:
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
         quantities = self._quantities(trial.evaluation)
-        if self.faces is not None:
-            quantities = {**quantities, **self.faces.quantities(self.sides, trial)}
+        if trial.faces is not None:
+            quantities = {**quantities, **trial.faces.quantities()}
         tangent, load = self.steps.tangent, self.outer.load
         return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, tangent, load)
 
@@ -333,7 +389,7 @@ class FilmElement:
         """Scalars of an evaluation, to which the sides' arrays belong."""
         return evaluation.quantities()
 
-    def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
-        """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
+    def current(self, mbs: exu.MainSystem) -> tuple[float, Trial]:
+        """Time of Exudyn's current state, and the film there."""
         time = mbs.systemData.GetTime(CURRENT)
-        return self.row(time, self.look(mbs, time, CURRENT))
+        return time, self.look(mbs, time, CURRENT)

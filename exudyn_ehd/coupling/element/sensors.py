@@ -19,8 +19,8 @@ from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record.history import COLUMNS, FORCE, WIDTH, Quantity
-from exudyn_ehd.status import InputError
+from exudyn_ehd.coupling.record.history import COLUMNS, WIDTH, Quantity
+from exudyn_ehd.status import InputError, Status
 
 _NO_ROW = np.full(WIDTH, np.nan)
 
@@ -91,7 +91,7 @@ def reader(
     asked = Quantity(quantity)
 
     def read(mbs: exu.MainSystem) -> np.ndarray:
-        row = element.current_row(mbs)
+        row = element.row(*element.current(mbs))
         return np.atleast_1d((_NO_ROW if row is None else row)[COLUMNS[asked.value]])
 
     return asked.value, read
@@ -99,10 +99,10 @@ def reader(
 
 def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) -> _State:
     """State of the joint; its sides are there once the film was asked."""
-    row = element.current_row(mbs)
-    load = -(_NO_ROW if row is None else row)[FORCE.start : FORCE.start + 6]
-    if element.faces is not None:
-        load -= element.faces.wrench(element.sides)
+    trial = element.current(mbs)[1]
+    load = np.full(6, np.nan) if trial.status is not Status.CONVERGED else -trial.found.wrench
+    if trial.faces is not None:
+        load -= trial.faces.wrench
     if constraint is not None:
         output = exu.OutputVariableType
         load[:3] += mbs.GetObjectOutput(constraint, output.ForceLocal)

@@ -57,8 +57,8 @@ class SideBySide:
         self._pool = ThreadPoolExecutor(self.helpers, thread_name_prefix="exudyn_ehd film")
         self._agreed = 0
         self._expected: dict[FilmElement, tuple[list[float], list[float]]] = {}
-        self._derived: list[FilmElement] = []
-        self._deriving: list[FilmElement] = []
+        # those that are asked for Jacobians
+        self._derived: set[FilmElement] = set()
 
     def close(self) -> None:
         """End the threads."""
@@ -80,16 +80,12 @@ class SideBySide:
         self._share([(film.evaluate, (new,)) for film, new in trials if new is not film.last])
 
     def derive(self, asked: FilmElement, f_q: float, f_qt: float) -> None:
-        """``asked`` is asked for its Jacobian: derive the films that were asked in the round before it."""
-        first = not self._deriving or asked in self._deriving
-        if first:
-            self._derived, self._deriving = self._deriving, []
-        self._deriving.append(asked)
-        if first and self._agreed >= ENOUGH and asked in self._derived:
+        """``asked`` is asked for its Jacobian: derive it with all that were asked before and have none yet."""
+        self._derived.add(asked)
+        if self._agreed >= ENOUGH:
             known = [(film, film.last) for film in self._derived]
-            self._share(
-                [(film.derive, (last, f_q, f_qt)) for film, last in known if last and last.status is Status.CONVERGED]
-            )
+            found = [(film, last) for film, last in known if last and last.status is Status.CONVERGED]
+            self._share([(film.derive, (last, f_q, f_qt)) for film, last in found if last.lacks(f_q, f_qt)])
 
     def _share(self, calls: Sequence[tuple[Callable[..., object], tuple[object, ...]]]) -> None:
         """Make all calls, the next one on whichever thread is free."""

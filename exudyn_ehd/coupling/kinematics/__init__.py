@@ -10,4 +10,5 @@ fitted_sides   best rigid fit of the nodes of finite elements
 relative       motion of the journal in the housing's frame
 spherical      motion of a ball in the frame of its socket
 bore_gap       smallest gap of the rigid surfaces
+axial          place of the journal along its bearing's axis
 """

@@ -8,7 +8,6 @@ A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid 
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
 from types import ModuleType
 from typing import TypeVar
 
@@ -247,24 +246,6 @@ def bind(mbs: exu.MainSystem, *sides: Side) -> None:
     for side in sides:
         if isinstance(side, MarkerSide):
             side.bind(mbs)
-
-
-def read_state(
-    mbs: exu.MainSystem, sides: Sequence[Side], configuration: exu.ConfigurationType
-) -> tuple[list[float], list[float]]:
-    """Coordinates (without reference values) and rates of sides, in the film element's order."""
-    q: list[float] = []
-    q_t: list[float] = []
-    for side in sides:
-        for node in side.nodes:
-            q += _listed(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates, configuration))
-            q_t += _listed(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates_t, configuration))
-    return q, q_t
-
-
-def _listed(values: list[float] | float) -> list[float]:
-    """Output of a node, of which Exudyn gives a single one as a number."""
-    return [values] if isinstance(values, float) else np.asarray(values).tolist()
 
 
 def motion_between(

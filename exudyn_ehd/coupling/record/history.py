@@ -87,8 +87,6 @@ _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
 FORCE = slice(_WRENCH, _WRENCH + 3)
-# gap, pressure and force of the end faces
-THRUST = [_FIRST_SCALAR + _SCALARS.index(f"thrust_{name}") for name in ("minimum_gap", "peak_pressure", "force")]
 COLUMNS: dict[str, int | slice] = {
     "time": TIME,
     "motion": slice(_MOTION, _MOTION + 10),

@@ -10,6 +10,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.axial import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
@@ -107,7 +108,7 @@ class RotorFilm:
             )
         self.places = np.concatenate((housing.places, journal.places))
         self.motion = np.zeros(10)
-        self.faces = joint.element.faces
+        self.faces, self.offset, self.centre = joint.element.faces, joint.element.offset, np.zeros(3)
         self._on_faces: ThrustEvaluation | None = None
         self._told = False
 
@@ -116,7 +117,9 @@ class RotorFilm:
         for side in (self.housing, self.journal):
             side.update(q, u)
         self.motion = relative.motion_of(*self.frames)
-        self._on_faces = None if self.faces is None else self.faces.at(self.frames, self.motion)
+        if self.faces is not None:
+            self.centre = centre_of(*self.frames, self.offset)
+            self._on_faces = self.faces.evaluate(np.append(self.motion, self.centre[2]))
 
     def evaluate(self) -> Evaluation | None:
         """The film at the motion; None if there is none, or none on an end face."""
@@ -127,7 +130,14 @@ class RotorFilm:
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
-        """Return the generalized force of a wrench (6,) with tangent (6, 10) in the directions, and its derivatives."""
+        """Return the generalized force in the directions, and its derivatives, of all films of the joint.
+
+        Of a wrench (6,) with tangent (6, 10), and of the films on the end faces at the state of the last `update`.
+        """
+        on_faces = None
+        if self._on_faces is not None:
+            on_faces = self._on_faces.tangent()
+            wrench, tangent = wrench + self._on_faces.wrench, tangent[:, :10] + on_faces[:, :10]
         frames, jacobians, h, n = self.frames, self.jacobians, self.housing.places.size, self.places.size
         loads, force = np.empty((4, 3)), np.empty(n)
         relative.global_loads(*frames, wrench, loads)
@@ -137,28 +147,17 @@ class RotorFilm:
         by_place[:h, :h], by_place[h:, h:] = self.housing.geometric(loads[0]), self.journal.geometric(loads[2])
         tangent = np.ascontiguousarray(tangent)
         relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_x, motion_u, by_place, by_rate)
+        if on_faces is not None:
+            by_wrench = relative.wrench_map(*frames, *jacobians)
+            by_place += np.outer(by_wrench @ on_faces[:, 10], axial_variation(by_wrench, self.centre))
         return FilmLoads(force, by_place, by_rate, motion_x)
-
-    def all_loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
-        """`loads`, and what the films on the end faces do at the state of the last `update`."""
-        film, found = self.loads(wrench, tangent), self._on_faces
-        if self.faces is None or found is None:
-            return film
-        by_motion = found.tangent()
-        faces = self.loads(found.wrench, by_motion[:, :10])
-        turned = relative.wrench_map(*self.frames, *self.jacobians)
-        along = self.faces.position_change(self.frames, self.jacobians, self.motion, film.motion_by_place)
-        by_place = faces.by_place + np.outer(turned @ by_motion[:, 10], along)
-        return FilmLoads(
-            film.force + faces.force, film.by_place + by_place, film.by_rate + faces.by_rate, film.motion_by_place
-        )
 
     def by_spin(self, tangent: np.ndarray) -> np.ndarray:
         """Derivative (n,) of the generalized force of all films to the speed of the first rotor."""
         change = tangent[:, 8].copy()
         if self._on_faces is not None:
             change += self._on_faces.tangent()[:, 8]
-        return self.loads(self.ratio * change, np.ascontiguousarray(tangent[:, :10])).force
+        return np.asarray(relative.wrench_map(*self.frames, *self.jacobians) @ (self.ratio * change))
 
     @property
     def support_stiffness(self) -> float:
@@ -187,14 +186,12 @@ class RotorFilm:
     def room_of_faces(self, x: np.ndarray) -> float:
         """Largest part of a step x (size,) that uses up at most 60 % of the gaps of the end faces; `update` has run."""
         thrust = self.bearing.thrust
-        if self.faces is None or self._on_faces is None or thrust is None:
+        if self._on_faces is None or thrust is None:
             return 1.0
-        by_place = relative.variation_of(*self.frames, *self.jacobians)[0]
-        along = self.faces.position_change(self.frames, self.jacobians, self.motion, by_place) @ x[self.places]
-        turn = by_place[2:4] @ x[self.places]
+        along = axial_variation(relative.wrench_map(*self.frames, *self.jacobians), self.centre) @ x[self.places]
+        turn = relative.variation_of(*self.frames, *self.jacobians)[0][2:4] @ x[self.places]
         closed = abs(float(along)) + thrust.outer_radius * float(np.hypot(*turn))
-        gap = min(state.minimum_gap for state in self._on_faces.states)
-        allowed = 0.6 * gap if thrust.contact is None else 0.3 * thrust.clearance
+        allowed = 0.6 * self._on_faces.minimum_gap if thrust.contact is None else 0.3 * thrust.clearance
         return min(1.0, allowed / max(closed, 1e-300))
 
     def found(self, evaluation: Evaluation, tangent: np.ndarray) -> dict[str, np.ndarray | float]:

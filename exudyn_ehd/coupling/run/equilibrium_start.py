@@ -11,10 +11,10 @@ import numpy as np
 from exudyn_ehd.coupling.contract import INITIAL, JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.sides import NodeSide, motion_between, read_state
+from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.joint.balance.film import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
@@ -40,8 +40,7 @@ def place(
             "starts in equilibrium with its film."
         )
     force = require_vector(f"{_WHERE}: load", load, 2, "N")
-    q, q_t = (np.array(v) for v in read_state(mbs, element.sides, INITIAL))
-    motion = motion_between(mbs, element.sides, q, q_t, INITIAL)
+    motion = element.motion(mbs, INITIAL)[:MOTION_SIZE]
     if speed is not None:
         motion[8] = require_number(f"{_WHERE}: speed", speed, "rad/s")
     if motion[8] == 0.0:
@@ -55,7 +54,7 @@ def place(
         speed=float(motion[8]),
         load=(force[0], force[1]),
         tilt=(motion[2], motion[3]),
-        axial_position=0.0 if element.faces is None else element.faces.place(element.sides, motion),
+        axial_position=0.0 if element.faces is None else float(element.faces_motion(motion)[-1]),
     )
     housing = element.sides[0].frame[:, :3]
     coordinates = np.array(mbs.systemData.GetODE2Coordinates(INITIAL), dtype=float)
@@ -66,7 +65,7 @@ def place(
     # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
     rates[places[:size]] -= (housing[:, :2] @ motion[4:6])[:size]
     bore = np.zeros(0) if result.film.bore_coordinates is None else result.film.bore_coordinates
-    for node in getattr(element, "bore_nodes", ()):
+    for node in element.bore_nodes:
         where = np.array(mbs.systemData.GetNodeLTGODE2(int(node)), dtype=int)
         coordinates[where], bore = bore[: where.size], bore[where.size :]
         rates[where] = 0.0

@@ -43,7 +43,7 @@ import exudyn as exu
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.coupling.bush.equations import BushFunctions
+from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, ObjectIndex, Trial
 from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.element.rigid import FilmElement
@@ -97,7 +97,7 @@ class GapLimit:
             last = film.last
             if last is not None:
                 bearing = film.model.bearing
-                bore, after = self.bores[film], film.peek(mbs)
+                bore, after = self.bores[film], film.motion(mbs, CURRENT)
                 if bore.depth.size:
                     allowed = _allowed_in_profile(bore, last.bodies, after)
                 else:
@@ -197,7 +197,7 @@ class ForceTolerance:
 
     def __init__(self, films: Sequence[FilmElement]) -> None:
         self.films = films
-        self.bushes: list[tuple[BushFunctions, np.ndarray]] = []
+        self.bushes: list[tuple[BushEquations, np.ndarray]] = []
         self.given: float | None = None
         self.relative, self.first, self.level = 0.0, 0.0, 0.0
 
@@ -217,7 +217,7 @@ class ForceTolerance:
             if self.bushes:
                 state = mbs.systemData.GetSystemStateDict(START_OF_STEP, True)
                 reach = abs(state["ODE2Coords"]) + solver.it.currentStepSize * abs(state["ODE2Coords_t"])
-                level = max(level, math.hypot(*(bush.equations.rounding(reach[at]) for bush, at in self.bushes)))
+                level = max(level, math.hypot(*(bush.rounding(reach[at]) for bush, at in self.bushes)))
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
 
     def limit(self, solver: _Solver, iteration: int) -> None:
@@ -236,15 +236,15 @@ class ForceTolerance:
         return math.hypot(*(force for film in self.films for force in _force(film.last)))
 
 
-def free_bushes(mbs: exu.MainSystem) -> list[BushFunctions]:
+def free_bushes(mbs: exu.MainSystem) -> list[BushEquations]:
     """Nodal bushes of a system that neither supports nor a carrier hold."""
-    return [bush for bush, _ in _bushes(mbs) if bush.equations.carrier is None and not bush.equations.held.any()]
+    return [bush for bush, _ in _bushes(mbs) if bush.carrier is None and not bush.held.any()]
 
 
-def _bushes(mbs: exu.MainSystem) -> list[tuple[BushFunctions, np.ndarray]]:
+def _bushes(mbs: exu.MainSystem) -> list[tuple[BushEquations, np.ndarray]]:
     owners = ((force_owner(mbs, number), number) for number in range(mbs.systemData.NumberOfObjects()))
     data = mbs.systemData
-    return [(o, np.array(data.GetObjectLTGODE2(ObjectIndex(n)))) for o, n in owners if isinstance(o, BushFunctions)]
+    return [(o, np.array(data.GetObjectLTGODE2(ObjectIndex(n)))) for o, n in owners if isinstance(o, BushEquations)]
 
 
 def _force(trial: Trial | None) -> list[float]:

@@ -339,7 +339,7 @@ def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> Star
     """The start of Newton's method for a system with joints, before the run; ``before`` is the user's own function."""
     elements = [joint.element for joint in joints_of(mbs)]
     bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
-    bushes = {int(node) for element in elements for node in getattr(element, "bore_nodes", ())} - bodies
+    bushes = {int(node) for element in elements for node in element.bore_nodes} - bodies
     return StartGuess(mbs, GapLimit(elements), ForceTolerance(elements), before, bushes)
 
 

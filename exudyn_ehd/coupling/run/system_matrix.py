@@ -9,7 +9,7 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 
-from exudyn_ehd.coupling.bush.equations import BushFunctions
+from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.element.presence import force_owner
@@ -114,9 +114,9 @@ class SystemMatrix:
         owner = force_owner(mbs, int(item))
         if isinstance(owner, NodalFilmElement):
             self.films.append((owner, places))
-        elif isinstance(owner, BushFunctions):
+        elif isinstance(owner, BushEquations):
             self.meshes.append(_generic(mbs, item, places))
-            self.mesh[places[: owner.equations.count]] = True
+            self.mesh[places[: owner.count]] = True
         elif mbs.GetObject(item)["objectType"] == "GenericODE2":
             self.parts.append(_generic(mbs, item, places))
         else:

@@ -11,6 +11,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import InputError, require_number, require_type
@@ -109,22 +110,27 @@ class GapWatch:
         if bearing.asperity is not None:
             ranges.append(ROUGHNESSES * bearing.asperity.composite_roughness)
         self.range = max(ranges)
-        self.gap = self.film = np.nan
+        faces, self.range_of_faces = getattr(bearing, "thrust", None), 0.0
+        if faces is not None:
+            least = SMALLEST_GAP_SHARE * faces.clearance
+            self.range_of_faces = least if faces.contact is None else faces.contact.onset
+        self.gap = self.film = self.face = np.nan
         self.rejections = 0
 
-    def start(self, motion: np.ndarray, film: float | None) -> None:
-        """Remember the gap at the start of a step; ``film`` is that of a film in a worn or soft bore."""
-        self.gap = self.bore.smallest(motion)
+    def start(self, trial: Trial, film: float | None) -> None:
+        """Remember the gaps at the start of a step; ``film`` is that of a film in a worn or soft bore."""
+        self.gap = self.bore.smallest(trial.motion)
         self.film = self.gap if film is None else film
+        self.face = np.nan if trial.faces is None else trial.faces.minimum_gap
 
-    def rejects(self, motion: np.ndarray, solver: solver_state.Solver | None) -> bool:
-        """Return whether the step to this motion is too coarse and can be repeated."""
-        return self.refuses(self.bore.smallest(motion) - self.gap, max(self.film, self.range), solver)
-
-    def refuses(self, change: float, gap: float, solver: solver_state.Solver | None) -> bool:
-        """Return whether a step that changes a gap (m) by ``change`` is too coarse and can be repeated."""
+    def rejects(self, trial: Trial, solver: solver_state.Solver | None) -> bool:
+        """Return whether the step to this state is too coarse and can be repeated."""
         # not true for a gap that is not finite: the film itself reports that
-        too_far = abs(change) > self.share * gap
+        change = abs(self.bore.smallest(trial.motion) - self.gap)
+        too_far = change > self.share * max(self.film, self.range)
+        if trial.faces is not None:
+            change = abs(trial.faces.minimum_gap - self.face)
+            too_far = too_far or change > self.share * max(self.face, self.range_of_faces)
         if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
             return False
         if not solver_state.can_reject_step(solver):

@@ -61,9 +61,8 @@ class FaceState:
     status : Status
     wrench : (6,) array
         On the journal, moment about the face's centre, N and Nm; nan without a film.
-    minimum_gap, peak_pressure, power_loss, inflow, outflow, contact_load : float
-        m; Pa; W that film and contact turn into heat, or work on the oil that they press out; m3/s in at the inner
-        radius and out at the outer one; N.
+    minimum_gap, peak_pressure, power_loss, contact_load : float
+        m; Pa; W that film and contact turn into heat, or work on the oil that they press out; N.
     """
 
     status: Status
@@ -71,8 +70,6 @@ class FaceState:
     minimum_gap: float
     peak_pressure: float = np.nan
     power_loss: float = np.nan
-    inflow: float = np.nan
-    outflow: float = np.nan
     contact_load: float = np.nan
 
 
@@ -127,9 +124,6 @@ class FaceFilm:
         # derivatives of the scaled gap to (zeta / c, bx R / c, by R / c)
         sign = side * np.array([1.0, -1.0, -1.0])[:, None, None]
         self.shape, self.link_shape = sign * a.moments, sign * a.link_moments[:3]
-        self.slope, self.bend, self.face_slope = np.ones(shape), np.zeros(shape), np.ones(shape)
-        self.contact, self.contact_slope = np.zeros(shape), np.zeros(shape)
-        self.limited = False
 
     def evaluate(self, motion: np.ndarray) -> FaceState:
         """The film at a motion (9,), SI units."""
@@ -142,18 +136,15 @@ class FaceFilm:
         if status is not Status.CONVERGED:
             return FaceState(status, np.full(6, np.nan), smallest)
         self._integrate(motion)
-        (fx, fz, rate), (P, full), grid = s.couette_flows(), s.flow_pressures(), self.annulus.grid
+        peak, contact = float(s.pressure.max()) * k.pressure, float((self.annulus.weight * self.contact).sum())
+        return FaceState(status, self._wrench(), smallest, peak, self._power(), contact * k.R**2)
+
+    def flows(self) -> tuple[float, float]:
+        """Flows of the last solution in at the inner radius and out at the outer one, m3/s."""
+        s, grid, unit = self.solver, self.annulus.grid, self.scales.c * self.scales.R**2
+        (fx, fz, rate), (P, full) = s.couette_flows(), s.flow_pressures()
         inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
-        return FaceState(
-            status,
-            self._wrench(),
-            smallest,
-            float(s.pressure.max()) * k.pressure,
-            self._power(),
-            -k.c * k.R**2 * inner,
-            k.c * k.R**2 * outer,
-            float((self.annulus.weight * self.contact).sum()) * k.R**2,
-        )
+        return -unit * inner, unit * outer
 
     @property
     def pressure(self) -> np.ndarray:
@@ -177,20 +168,24 @@ class FaceFilm:
         self.true_rate = s.H_t.copy()
         s.H_t += np.tensordot(self.shift, self.shifted, 1) - 0.5 * self.side * float(self.shift @ self.pose[1:])
         smallest = min(float((s.H + self.steps.min(axis=0)).min()), float(s.HF.min()))
-        self.limited = self.wall is not None and smallest < self.wall.onset
-        if self.wall is not None:
-            self.contact[:] = self.contact_slope[:] = self.bend[:] = 0.0
-            self.slope[:] = self.face_slope[:] = 1.0
-        if self.wall is not None and self.limited:
-            pressure, slope = np.empty((2, *s.H.shape))
-            for share, step in zip(a.sides, self.steps, strict=True):
-                self.wall.pressure(s.H + step, pressure, slope)
-                self.contact += share * pressure
-                self.contact_slope += share * slope
-            self.wall.limit(s.H, s.HF, s.H_t, self.slope, self.bend, self.face_slope)
-            self.true_rate *= self.slope
+        self.slope, self.bend, self.face_slope = s.ones, s.nothing, s.ones
+        self.contact = self.contact_slope = s.nothing
+        if self.wall is not None and smallest < self.wall.onset:
+            self._press(self.wall)
         s.H_t *= a.square
         return smallest
+
+    def _press(self, wall: WallContact) -> None:
+        """Pressure of a wall that touches, and the film's gap and rate there in place of the surfaces'."""
+        s, shape = self.solver, self.solver.H.shape
+        self.contact, self.contact_slope, self.bend = np.zeros((3, *shape))
+        self.slope, self.face_slope, pressure, slope = np.ones((4, *shape))
+        for share, step in zip(self.annulus.sides, self.steps, strict=True):
+            wall.pressure(s.H + step, pressure, slope)
+            self.contact += share * pressure
+            self.contact_slope += share * slope
+        wall.limit(s.H, s.HF, s.H_t, self.slope, self.bend, self.face_slope)
+        self.true_rate *= self.slope
 
     def _integrate(self, motion: np.ndarray) -> None:
         """Integrals of the last solution: N, X, Y (3,) and E (3,), scaled; shear matrix (3, 3) in SI units."""
@@ -260,9 +255,12 @@ class FaceFilm:
         cell, face = a.link_gradients(self.solver.pressure)
         sens.cell[3:] += cell
         sens.face[3:] += face
-        self._to_true_gap(sens)
-        if self.limited:
-            sens.cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
+        # from the film's gap and weighed rate to the surfaces' gap and rate
+        sens.rate *= a.square
+        sens.cell[:] = sens.cell * self.slope + sens.rate * self.bend
+        sens.face[:] *= self.face_slope
+        sens.rate *= self.slope
+        sens.cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
         return self._by_motion(sens)
 
     def _adjoint(self, fields: np.ndarray) -> np.ndarray:
@@ -274,14 +272,6 @@ class FaceFilm:
         if y.continued is not None:
             rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
         return s.adjoint(rows)
-
-    def _to_true_gap(self, sens: Sensitivities) -> None:
-        """Convert sensitivities to the film's gap and weighed rate to those to the surfaces' gap and rate, in place."""
-        sens.rate *= self.annulus.square
-        if self.limited:
-            sens.cell[:] = sens.cell * self.slope + sens.rate * self.bend
-            sens.face[:] *= self.face_slope
-            sens.rate *= self.slope
 
     def _by_motion(self, sens: Sensitivities) -> np.ndarray:
         """Gradients (k, 9) to the motion, SI units."""

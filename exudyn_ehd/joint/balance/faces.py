@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
+from exudyn_ehd.joint.thrust import PLACE, ThrustEvaluation, ThrustModel, no_film
 from exudyn_ehd.status import FilmError, Status
 
 LARGEST_PLACE_STEPS = 100
@@ -37,7 +37,7 @@ class FacesShare:
     ----------
     evaluation : ThrustEvaluation
     tangent : (6, 11) array
-        d wrench / d (motion, axial position).
+        d wrench / d motion.
     slope : (2, 2) array
         Contribution to dF/d(x, y) of the journal's film; under an axial load the axial position follows (x, y).
     """
@@ -80,8 +80,8 @@ class FacesUnderLoad:
         found = self._found(motion, float(wrench[2]))
         own = found.tangent()
         slope = own[:2, :2]
-        if self.load is not None and own[2, 10] != 0.0:
-            slope = slope - np.outer(own[:2, 10], own[2, :2] + tangent[2, :2]) / own[2, 10]
+        if self.load is not None and own[2, PLACE] != 0.0:
+            slope = slope - np.outer(own[:2, PLACE], own[2, :2] + tangent[2, :2]) / own[2, PLACE]
         return FacesShare(found, own, slope)
 
     def _found(self, motion: np.ndarray, film: float) -> ThrustEvaluation:
@@ -96,7 +96,7 @@ class FacesUnderLoad:
             if abs(force + rest) <= AXIAL_TOLERANCE * self.size or same:
                 self.position = place
                 return found
-            gap = min(state.minimum_gap for state in found.states) / self.options.clearance
+            gap = found.minimum_gap / self.options.clearance
             closed = self.options.contact is None and gap < CLOSED
             if (closed or gap > FARTHEST) and math.isinf(above - below):
                 break
@@ -106,14 +106,14 @@ class FacesUnderLoad:
             place = place if below < place < above else 0.5 * (below + above)
         raise FilmError(
             f"{self.where}: no axial position found in which the thrust faces carry {rest:.4g} N; at "
-            f"{found.position:.4g} m their force is {found.wrench[2]:.4g} N. One face carries in one direction, plane "
-            "faces no steady load: give them pads that carry (profile=TaperLand(...)), "
+            f"{found.motion[PLACE]:.4g} m their force is {found.wrench[2]:.4g} N. One face carries in one direction, "
+            "plane faces no steady load: give them pads that carry (profile=TaperLand(...)), "
             "contact=RegularisedWall(onset=...), or less load."
         )
 
     def _at(self, motion: np.ndarray, place: float) -> tuple[ThrustEvaluation, float, float]:
         """The films at a place, their axial force, N, and its derivative to the place."""
-        found = self.model.evaluate(motion, place)
+        found = self.model.evaluate(np.append(motion[:PLACE], place))
         if found.status is not Status.CONVERGED:
             raise FilmError(no_film(found, self.where))
-        return found, float(found.wrench[2]), float(found.tangent()[2, 10])
+        return found, float(found.wrench[2]), float(found.tangent()[2, PLACE])

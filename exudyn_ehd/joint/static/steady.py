@@ -239,7 +239,7 @@ def steady(
     from exudyn_ehd.joint.static.thrust import faces_at, require_faces
 
     require_faces(bearing, "steady", axial_position=place)
-    faces = faces_at(bearing, motion, place, "steady")
+    faces = faces_at(bearing, np.append(motion, place), "steady")
     return replace(result_at(model, motion, "steady"), faces=faces)
 
 

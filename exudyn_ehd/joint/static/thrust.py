@@ -78,9 +78,9 @@ class ThrustResult:
         return f"<ThrustResult: axial force {force}, {film}>"
 
 
-def faces_at(bearing: JournalBearing, motion: np.ndarray, position: float, where: str) -> ThrustResult:
-    """Films on the faces of a bearing with ``thrust`` at a motion (10,); `FilmError` if there are none."""
-    found = ThrustModel(bearing).evaluate(motion, position)
+def faces_at(bearing: JournalBearing, motion: np.ndarray, where: str) -> ThrustResult:
+    """Films on the faces of a bearing with ``thrust`` at a motion (11,); `FilmError` if there are none."""
+    found = ThrustModel(bearing).evaluate(motion)
     if found.status is not Status.CONVERGED:
         raise FilmError(no_film(found, where))
     return result_of(found, found.tangent())
@@ -100,8 +100,9 @@ def require_faces(bearing: JournalBearing, where: str, **arguments: float | None
 def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
     """Result of the last evaluation of its model, with its tangent (6, 11)."""
     model, values, first = found.model, found.quantities(), found.model.faces[0]
+    inflow, outflow = np.array([face.flows() for face in model.faces]).T
     return ThrustResult(
-        axial_position=found.position,
+        axial_position=values["axial_position"],
         force=found.wrench[:3],
         moment=found.wrench[3:],
         axial_force=float(found.wrench[2]),
@@ -113,8 +114,8 @@ def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
         power_loss=values["thrust_power_loss"],
         contact_load=values["thrust_contact_load"],
         edge_pressures=np.array([face.known[0] * face.scales.pressure for face in model.faces]),
-        inflow=np.array([state.inflow for state in found.states]),
-        outflow=np.array([state.outflow for state in found.states]),
+        inflow=inflow,
+        outflow=outflow,
         theta=first.annulus.grid.x,
         r=first.annulus.scale * first.annulus.r,
         pressure=np.array([face.pressure for face in model.faces]),

@@ -102,7 +102,7 @@ def random_state(bush, seed, size=0.005):
 def jacobian_error(bush, q, q_t, position, velocity):
     """Largest error of the Jacobian's products against extrapolated differences."""
     equations = bush.equations
-    J = equations.jacobian(0.7, q, q_t, position, velocity)
+    J = equations.jacobian(None, 0.7, 0, q, q_t, position, velocity)
     random = np.random.default_rng(16)
     worst = 0.0
     for _ in range(4):
@@ -111,7 +111,7 @@ def jacobian_error(bush, q, q_t, position, velocity):
 
         def slope(step, d=d):
             def force(s):
-                return equations.force(0.7, q + s * position * d, q_t + s * velocity * d)
+                return equations.forces(0.7, q + s * position * d, q_t + s * velocity * d)
 
             return -(force(step) - force(-step)) / (2 * step)
 
@@ -147,7 +147,7 @@ def test_exudyn_receives_this_jacobian_and_mass():
     model.mbs.Assemble()
     M, K, _ = model.mbs.ComputeLinearizedSystem()
     zero = np.zeros(len(M))
-    assert np.allclose(K, bush.equations.jacobian(0.0, zero, zero, 1.0, 0.0).toarray(), rtol=1e-12)
+    assert np.allclose(K, bush.equations.jacobian(None, 0.0, 0, zero, zero, 1.0, 0.0).toarray(), rtol=1e-12)
     assert np.allclose(M, bush.equations.mass(None).toarray(), rtol=1e-12)
 
 

@@ -90,7 +90,7 @@ def test_jacobian_of_a_bush_at_rest_is_the_derivative_of_its_force(kind, measure
     equations, places = bush.equations, mbs.systemData.GetObjectLTGODE2(bush.objectNumber)
     q = np.array(mbs.systemData.GetODE2Coordinates())
     zero = np.zeros_like(q)
-    exact = equations.jacobian(0.0, q[places], zero[places], 1.0, 0.0).toarray()
+    exact = equations.jacobian(None, 0.0, 0, q[places], zero[places], 1.0, 0.0).toarray()
     rng = np.random.default_rng(5)
     size, count = len(places), equations.count
     for part in (slice(0, count), slice(count, size)):
@@ -104,7 +104,7 @@ def test_jacobian_of_a_bush_at_rest_is_the_derivative_of_its_force(kind, measure
             moved = q.copy()
             moved[places] += s * 1e-6 * d
             put(mbs, moved, zero)
-            ends.append(equations.force(0.0, moved[places], zero[places]))
+            ends.append(equations.forces(0.0, moved[places], zero[places]))
         numeric = (ends[1] - ends[0]) / 2e-6
         limit = LOOSE.get(kind, 1e-6) if part.start else 1e-6
         measured(f"part {part}", np.abs(exact @ d - numeric).max() / np.abs(numeric).max(), limit)

@@ -236,6 +236,8 @@ def test_reduced_body_and_journal_fall_with_g(measured):
     # and the film pushes one away from the other
     assert np.abs(own / (mass * end) - gravity).max() > 9.81
     assert np.abs(joint.history.force).max() > 100.0
+    # the renderer draws the film, and leaves the body to itself
+    assert joint.display.graphics(mbs, 0)
 
 
 @pytest.mark.slow

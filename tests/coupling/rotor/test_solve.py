@@ -250,8 +250,7 @@ def test_thrust_faces_take_part_with_their_exact_tangent():
     assert along @ found.stiffness_matrix[0] @ along == pytest.approx(known.faces.axial_stiffness, rel=1e-4)
     assert along @ found.damping_matrix[0] @ along == pytest.approx(known.faces.axial_damping, rel=1e-4)
     # Exudyn sees the faces again
-    number = joint.element.faces.objectNumber
-    assert mbs.GetObjectParameter(number, "forceUserFunction")["function"] == joint.element.faces.force
+    assert mbs.GetObjectParameter(joint.objectNumber, "forceUserFunction")["function"] == joint.element.force
 
 
 def test_a_light_rotor_far_from_the_origin_is_found():

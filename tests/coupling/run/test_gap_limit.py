@@ -51,14 +51,14 @@ class Axis:
     )
 
     def __init__(self, old, new):
-        self.last = SimpleNamespace(bodies=self.motion(old), status=None)
+        self.last = SimpleNamespace(bodies=self.of(old), status=None)
         self.new = new
 
-    def peek(self, mbs):
-        return self.motion(self.new)
+    def motion(self, mbs, configuration):
+        return self.of(self.new)
 
     @staticmethod
-    def motion(state):
+    def of(state):
         return np.r_[state[0][:2], np.zeros(8)]
 
 
@@ -75,7 +75,7 @@ def test_a_step_of_any_size_leaves_the_integrators_formulas(monkeypatch):
         limit.start(None)
         monkeypatch.setattr(newton_limits, "_state", lambda _, states=states: states[1])
         limit.shorten(None, np.array([1.0, 1.0, 1.0]))
-        gaps = [smallest_gap(Axis.motion(values)) for values in (old, new)]
+        gaps = [smallest_gap(Axis.of(values)) for values in (old, new)]
         assert gaps[1] == pytest.approx((1.0 - SHARE) * gaps[0], rel=1e-6)
         moved = [after - before for after, before in zip(new, old, strict=True)]
         for rate, factor in ((1, 2.0 / h), (2, 4.0 / h**2), (3, 1e9)):

@@ -40,8 +40,7 @@ def _found(faces, motion):
     film = FaceFilm(faces, 1, ehd.SwiftStieber(line_in_cells=True), MU, (0.0, 0.0))
     state = film.evaluate(motion)
     tangent = film.tangent()
-    flows = state.inflow, state.outflow
-    return np.array([state.wrench[2], -tangent[2, 0], -tangent[2, 3], state.wrench[5], state.power_loss, *flows])
+    return np.array([state.wrench[2], -tangent[2, 0], -tangent[2, 3], state.wrench[5], state.power_loss, *film.flows()])
 
 
 def _errors(faces, motion):

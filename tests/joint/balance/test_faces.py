@@ -31,7 +31,7 @@ def _whole_force(bearing, motion, position):
     """Force (3,) of all films."""
     plain = dataclasses.replace(bearing, thrust=None)
     own = build_model(plain).evaluate(motion).wrench[:3]
-    return own + ThrustModel(bearing).evaluate(motion, position).wrench[:3]
+    return own + ThrustModel(bearing).evaluate(np.append(motion, position)).wrench[:3]
 
 
 @pytest.mark.parametrize("given", ({"axial_position": -12e-6}, {"axial_load": 2500.0}, {"axial_load": -400.0}))
