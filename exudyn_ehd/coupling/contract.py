@@ -143,10 +143,5 @@ class Side(Protocol):
     def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
 
-    def vary(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-
-    def geometric(
-        self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
+    def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""

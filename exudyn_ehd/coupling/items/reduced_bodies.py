@@ -189,17 +189,9 @@ class FloatingBoreSide:
         self.frame[:, 4] = floating.frame[:, 4] - S @ omega + self.jac[0, :, n:] @ q_t[n:]
         self.frame[:, 5] = omega + self.jac[1, :, n:] @ q_t[n:]
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-        n = self.floating.size
-        self.change = floating_change(self.floating, q[:n], self.arm, self.jac)
-        self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
-
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global loads into ``out``, after `vary` at the same state."""
-        out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        return floating_change(self.floating, q[: self.floating.size], self.arm, self.jac)
 
 
 def _rotation(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

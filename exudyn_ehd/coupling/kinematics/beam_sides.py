@@ -20,7 +20,7 @@ from numba import njit
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.kinematics.rigid_nodes import cross, dot
+from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever, cross, dot
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
 LARGEST_TURN = 0.9
@@ -118,34 +118,17 @@ def _map_change(t, length, d0, ds):
 
 
 @njit(cache=True)
-def slope_variation(Sx, q, q_t, d0, rho, jac_out):
-    """Fill Vq, Wq at the state for which ``jac_out`` holds Jr."""
-    s, s_t = Sx @ q, Sx @ q_t
-    length = np.sqrt(dot(s, s))
-    t = s / length
-    w = slope_rotation(s, d0) @ rho
-    omega = jac_out[1] @ q_t
-    for k in range(q.size):
-        turn = jac_out[1, :, k].copy()
-        dw = _map_change(t, length, d0, Sx[:, k].copy()) @ s_t
-        turned, moved = cross(dw, w), cross(omega, cross(turn, w))
-        for i in range(3):
-            jac_out[2, i, k], jac_out[3, i, k] = turned[i] + moved[i], dw[i]
-
-
-@njit(cache=True)
-def slope_geometric(Sx, q, d0, rho, jac, force, moment, out):
-    """d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment; ``jac`` holds Jr."""
+def slope_change(Sx, q, d0, rho, jac, change_out):
+    """Fill the derivatives (6, n, n) of Jp and Jr to q at the state for which ``jac`` holds Jr."""
     s = Sx @ q
     length = np.sqrt(dot(s, s))
-    t = s / length
-    w = slope_rotation(s, d0) @ rho
-    total = moment + np.array(cross(w, force))
+    change_out[:3] = 0.0
     for b in range(q.size):
-        change = _map_change(t, length, d0, Sx[:, b].copy()).T @ total
-        arm = cross(cross(jac[1, :, b].copy(), w), force)
-        for a in range(q.size):
-            out[a, b] = dot(Sx[:, a], change) + dot(jac[1, :, a], arm)
+        turned = _map_change(s / length, length, d0, Sx[:, b].copy()) @ Sx
+        for i in range(3):
+            for a in range(q.size):
+                change_out[3 + i, a, b] = turned[i, a]
+    add_lever(jac[1], slope_rotation(s, d0) @ rho, change_out)
 
 
 class BeamSide:
@@ -221,22 +204,13 @@ class BeamSide:
             self.jac[:2, :, place] = weight * end.jac[:2]
         self.jac[0] += np.cross(self.jac[1].T, self.arm).T
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        out = np.zeros((6, self.size, self.size))
         for end, weight, place in self._parts():
-            end.vary(mbs, q[place], q_t[place])
-            self.jac[2:, :, place] = weight * end.jac[2:]
-        moved = np.cross(self.jac[1].T, self.arm)
-        self.jac[2] += (np.cross(self.jac[3].T, self.arm) + np.cross(self.frame[:, 5], moved)).T
-
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        total = moment + np.cross(self.arm, force)
-        for end, weight, place in self._parts():
-            end.geometric(mbs, q[place], weight * force, weight * total, out[place, place])
-        out += self.jac[1].T @ np.cross(np.cross(self.jac[1].T, self.arm), force).T
+            out[:, place, place] = weight * end.change(mbs, q[place])
+        add_lever(self.jac[1], self.arm, out)
+        return out
 
 
 class SlopeSide:
@@ -295,12 +269,8 @@ class SlopeSide:
             self.jac,
         )
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-        slope_variation(self.slope, self.reference + q, q_t, self.director, self.rho, self.jac)
-
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        slope_geometric(self.slope, self.reference + q, self.director, self.rho, self.jac, force, moment, out)
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        out = np.empty((6, self.size, self.size))
+        slope_change(self.slope, self.reference + q, self.director, self.rho, self.jac, out)
+        return out

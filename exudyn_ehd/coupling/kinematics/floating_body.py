@@ -31,8 +31,6 @@ from numba import njit
 from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, column, cross, dot, in_frame, times
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
-_SPIN_CHANGE = np.int64(3)
-
 
 class BodyIntegrals(NamedTuple):
     """Integrals of a body with k modes, in its frame; see the module's docstring.
@@ -95,7 +93,6 @@ class FloatingBody:
         self.rigid, self.size = n, n + k
         shapes = (3, n), (3,), (3, 3), (k, 3, 3), (3, k), (3, 3), (3, n)
         self._at = _Place(*(np.zeros(shape) for shape in shapes))
-        self._arms, self._none = np.zeros((n, n)), np.zeros(3)
 
     def mass(self, q: np.ndarray) -> np.ndarray:
         """Mass matrix (n + k, n + k) at q."""
@@ -114,11 +111,8 @@ class FloatingBody:
     def derivative(self, q: np.ndarray, q_t: np.ndarray, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (n + k, n + k) of `left_hand_side`: f_q times that to q plus f_qt times that to q_t."""
         self._move(q, q_t)
-        frame, out, moment = self.frame, np.empty((self.size, self.size)), np.empty(3)
-        frame.vary(None, q[: self.rigid], q_t[: self.rigid])
-        _derivative(self.of, frame.frame, frame.jac, self._at, self.bryan, q, q_t, f_q, f_qt, moment, out)
-        frame.geometric(None, q[: self.rigid], self._none, moment, self._arms)
-        out[: self.rigid, : self.rigid] += f_q * self._arms
+        change, out = self.frame.change(None, q[: self.rigid]), np.empty((self.size, self.size))
+        _derivative(self.of, self.frame.frame, change, self._at, self.bryan, q, q_t, f_q, f_qt, out)
         return out
 
     def _move(self, q: np.ndarray, q_t: np.ndarray) -> None:
@@ -256,24 +250,22 @@ def _alpha_changes(at, bryan, q_t, f_q, f_qt):
 
 
 @njit(cache=True)
-def _derivative(of, frame, jac, at, bryan, q, q_t, f_q, f_qt, moment_out, out):
-    """Fill the derivative, without that of G^T at a fixed moment, and that moment m, global (3,)."""
+def _derivative(of, frame, change, at, bryan, q, q_t, f_q, f_qt, out):
+    """Fill the derivative; ``change`` (6, n, n) is that of the node's Jacobians."""
     n = at.G.shape[1]
     w, alpha, flow = _motion(of.S, at, bryan, q_t)
     f, m = _force_and_moment(at, w, alpha, flow)
-    moment_out[0], moment_out[1], moment_out[2] = times(frame, m)
+    moment = times(frame, m)
     _by_modes(of, frame, at, w, alpha, q_t, f_q, f_qt, out)
     _alpha_changes(at, bryan, q_t, f_q, f_qt)
     s = at.s[0], at.s[1], at.s[2]
     ws, Jw = cross(w, s), times(at.J, w)
     for c in range(n):
         g = column(at.G, c)
-        spin = _sum(
-            in_frame(frame, (jac[_SPIN_CHANGE, 0, c], jac[_SPIN_CHANGE, 1, c], jac[_SPIN_CHANGE, 2, c])),
-            1.0,
-            cross(w, g),
-            1.0,
-        )
+        dw = (0.0, 0.0, 0.0)
+        for d in range(3, n):
+            dw = _sum(dw, 1.0, (change[3, d, c], change[4, d, c], change[5, d, c]), q_t[d])
+        spin = _sum(in_frame(frame, dw), 1.0, cross(w, g), 1.0)
         dw, da = _sum(spin, f_q, g, f_qt), column(at.alphas, c)
         # f and m turn with the frame
         df = _sum(cross(g, f), f_q, cross(da, s), 1.0)
@@ -284,7 +276,8 @@ def _derivative(of, frame, jac, at, bryan, q, q_t, f_q, f_qt, moment_out, out):
         for i in range(3):
             out[i, c] = df[i]
         for d in range(3, n):
-            out[d, c] = dot(column(at.G, d), dm)
+            turned = dot((change[3, d, c], change[4, d, c], change[5, d, c]), moment)
+            out[d, c] = dot(column(at.G, d), dm) + f_q * turned
         _modes_by_motion(of.C, at, w, q_t, dw, da, c, out)
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -32,17 +33,18 @@ _LOADS, _SIGNS = [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 class Carrier:
     """One side of a joint: its node in the system, None for ground, its frame and its Jacobians.
 
-    Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t.
+    Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t: dp = Jp dx and
+    v = Jp u.
     """
 
     def __init__(self, side: NodeSide, node: TurningNode | None) -> None:
         self.side, self.node = side, node
-        size = 0 if node is None else 6
-        self.frame, self.jac = side.frame.copy(), np.zeros((4, 3, size))
-        self.places = np.arange(size) + (0 if node is None else node.own.start)
-        self._arm = np.zeros((3, 3))
+        self.size, self.nodes = (0 if node is None else 6), side.nodes
+        self.frame, self.jac = side.frame.copy(), np.zeros((4, 3, self.size))
+        self.places = np.arange(self.size) + (0 if node is None else node.own.start)
+        self._arm = np.zeros(3)
 
-    def update(self, q: np.ndarray, u: np.ndarray) -> None:
+    def move(self, q: np.ndarray, u: np.ndarray) -> None:
         """Bring frame and Jacobians to a state."""
         if self.node is None:
             return
@@ -51,16 +53,15 @@ class Carrier:
         self.frame[:, :3] = turn @ self.side.rotation
         self.frame[:, 3] = self.node.position(q) + arm
         self.frame[:, 4], self.frame[:, 5] = v + np.cross(omega, arm), omega
-        self._arm = relative.skew(arm)
         self.jac[0, :, :3] = self.jac[1, :, 3:] = np.eye(3)
-        self.jac[0, :, 3:], self.jac[2, :, 3:] = -self._arm, -relative.skew(omega) @ self._arm
+        self.jac[0, :, 3:] = -relative.skew(arm)
+        self._arm = arm
 
-    def geometric(self, force: np.ndarray) -> np.ndarray:
-        """d(Jp^T F + Jr^T M) / dx (n, n) at fixed loads in space: the force's arm turns."""
-        change = np.zeros((self.places.size, self.places.size))
-        if self.node is not None:
-            change[3:, 3:] = relative.skew(force) @ self._arm
-        return change
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr by x: the arm turns."""
+        out = np.zeros((6, self.size, self.size))
+        rigid_nodes.add_lever(self.jac[1], self._arm, out)
+        return out
 
 
 class FilmLoads(NamedTuple):
@@ -95,8 +96,7 @@ class RotorFilm:
         self.name, self.size = joint.name, system.size
         self.model = plain_model(joint)
         self.bearing = self.model.bearing
-        housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
-        self.housing, self.journal = housing, journal
+        housing, journal = self.sides = tuple(_carrier(joint, side, system) for side in joint.element.sides)
         self.frames, self.jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
         turning = [system.ratios.get(int(side.nodes[0]), 0.0) if side.nodes else 0.0 for side in joint.element.sides]
         self.ratio = turning[1]
@@ -106,15 +106,16 @@ class RotorFilm:
                 "spinning bodies by rotors=..., and give them as second entry of the joint's itemNumbers."
             )
         self.places = np.concatenate((housing.places, journal.places))
-        self.motion = np.zeros(10)
+        self.motion, self.rates = np.zeros(10), np.zeros(self.places.size)
         self.faces = joint.element.faces
         self._on_faces: ThrustEvaluation | None = None
         self._told = False
 
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
         """Bring the journal's motion to a state."""
-        for side in (self.housing, self.journal):
-            side.update(q, u)
+        for side in self.sides:
+            side.move(q, u)
+        self.rates = u[self.places]
         self.motion = relative.motion_of(*self.frames)
         self._on_faces = None if self.faces is None else self.faces.at(self.frames, self.motion)
 
@@ -128,15 +129,9 @@ class RotorFilm:
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
         """Return the generalized force of a wrench (6,) with tangent (6, 10) in the directions, and its derivatives."""
-        frames, jacobians, h, n = self.frames, self.jacobians, self.housing.places.size, self.places.size
-        loads, force = np.empty((4, 3)), np.empty(n)
-        relative.global_loads(*frames, wrench, loads)
-        relative.generalized_force(*jacobians, loads, force)
-        motion_x, motion_u = relative.variation_of(*frames, *jacobians)
-        by_place, by_rate = np.zeros((n, n)), np.empty((n, n))
-        by_place[:h, :h], by_place[h:, h:] = self.housing.geometric(loads[0]), self.journal.geometric(loads[2])
+        force, state = relative.wrench_map(*self.frames, *self.jacobians) @ wrench, (self.rates, self.rates)
         tangent = np.ascontiguousarray(tangent)
-        relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_x, motion_u, by_place, by_rate)
+        by_place, by_rate, motion_x, _ = derivatives_between(None, self.sides, state, wrench, tangent)
         return FilmLoads(force, by_place, by_rate, motion_x)
 
     def all_loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
@@ -158,7 +153,7 @@ class RotorFilm:
         change = tangent[:, 8].copy()
         if self._on_faces is not None:
             change += self._on_faces.tangent()[:, 8]
-        return self.loads(self.ratio * change, np.ascontiguousarray(tangent[:, :10])).force
+        return np.asarray(relative.wrench_map(*self.frames, *self.jacobians) @ (self.ratio * change))
 
     @property
     def support_stiffness(self) -> float:

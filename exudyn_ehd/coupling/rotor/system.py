@@ -62,7 +62,8 @@ class TurningNode:
     def __init__(self, kind: int, places: np.ndarray, reference: np.ndarray, first: int) -> None:
         self.kind, self.places, self.reference = kind, places, reference
         self.own = slice(first, first + 6)
-        self._frame, self._jac = np.zeros((3, 6)), np.zeros((4, 3, places.size))
+        n = places.size
+        self._frame, self._jac, self._change = np.zeros((3, 6)), np.zeros((4, 3, n)), np.empty((6, n, n))
 
     def turn(self, q: np.ndarray) -> np.ndarray:
         """Rotation (3, 3), node to space, at the system's coordinates."""
@@ -84,10 +85,10 @@ class TurningNode:
             # columns or rows are orthogonal and of one length; Euler parameters keep theirs
             inverse = turns.T / (turns[0] @ turns[0])
         rates[3:] = inverse @ omega
-        rigid_nodes.node_variation(self.kind, own, rates, self.reference, zero, self._jac)
+        rigid_nodes.node_change(self.kind, own, self.reference, zero, self._change)
         B = np.zeros((own.size, 6))
         B[:3, :3], B[3:, 3:] = UNIT, inverse
-        return B, rates[3:], -inverse @ (self._jac[3, :, 3:] @ rates[3:])
+        return B, rates[3:], -inverse @ (self._change[3:] @ rates @ rates)
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
         """Change the coordinates of the system by a displacement and a rotation (6,), exact to the second order."""
