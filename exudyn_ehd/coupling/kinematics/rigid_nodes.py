@@ -208,7 +208,7 @@ def _turn_change(kind, theta, jr, w_out):
             for i in range(3):
                 for k in range(4):
                     w_out[i, k, j] = (g[i, k] - 2.0 * jr[i, k] * theta[j]) / norm2
-    elif kind == TAIT_BRYAN or kind == ROTATION_VECTOR:
+    else:
         for k in range(3):
             # axes turn with every angle before them, those of local increments with all
             for j in range(k if kind == TAIT_BRYAN else 3):

@@ -44,11 +44,13 @@ class Carrier:
         self.places = np.arange(self.size) + (0 if node is None else node.own.start)
         self._arm = np.zeros(3)
 
-    def move(self, q: np.ndarray, u: np.ndarray) -> None:
-        """Bring frame and Jacobians to a state."""
+    def update(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
+    ) -> None:
+        """Fill the frame and Jp, Jr at the system's coordinates ``q`` (n,) and rates u, ``q_t`` (size,)."""
         if self.node is None:
             return
-        turn, v, omega = self.node.turn(q), u[self.node.own][:3], u[self.node.own][3:]
+        turn, v, omega = self.node.turn(q), q_t[self.node.own][:3], q_t[self.node.own][3:]
         arm = turn @ self.side.rho
         self.frame[:, :3] = turn @ self.side.rotation
         self.frame[:, 3] = self.node.position(q) + arm
@@ -96,7 +98,8 @@ class RotorFilm:
         self.name, self.size = joint.name, system.size
         self.model = plain_model(joint)
         self.bearing = self.model.bearing
-        housing, journal = self.sides = tuple(_carrier(joint, side, system) for side in joint.element.sides)
+        housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
+        self.mbs, self.sides = system.mbs, (housing, journal)
         self.frames, self.jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
         turning = [system.ratios.get(int(side.nodes[0]), 0.0) if side.nodes else 0.0 for side in joint.element.sides]
         self.ratio = turning[1]
@@ -114,7 +117,7 @@ class RotorFilm:
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
         """Bring the journal's motion to a state."""
         for side in self.sides:
-            side.move(q, u)
+            side.update(self.mbs, q, u, None)
         self.rates = u[self.places]
         self.motion = relative.motion_of(*self.frames)
         self._on_faces = None if self.faces is None else self.faces.at(self.frames, self.motion)
@@ -131,7 +134,7 @@ class RotorFilm:
         """Return the generalized force of a wrench (6,) with tangent (6, 10) in the directions, and its derivatives."""
         force, state = relative.wrench_map(*self.frames, *self.jacobians) @ wrench, (self.rates, self.rates)
         tangent = np.ascontiguousarray(tangent)
-        by_place, by_rate, motion_x, _ = derivatives_between(None, self.sides, state, wrench, tangent)
+        by_place, by_rate, motion_x, _ = derivatives_between(self.mbs, self.sides, state, wrench, tangent)
         return FilmLoads(force, by_place, by_rate, motion_x)
 
     def all_loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
