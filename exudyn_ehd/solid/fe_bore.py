@@ -15,7 +15,7 @@ as in `exudyn_ehd.solid.modes.static`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -24,10 +24,11 @@ from scipy.sparse import csr_matrix
 
 from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
-from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
-from exudyn_ehd.solid.linear.solvers import sparse_factor
+from exudyn_ehd.solid.fe_faces import BodyMesh, bore_faces, find_bore
+from exudyn_ehd.solid.linear.solvers import held_solution
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points
+from exudyn_ehd.solid.unrolled import Surface
 from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
 
 # Vertices around and along of the quadrature over a bore, for its mean rigid motion.
@@ -104,7 +105,7 @@ class ReducedBore:
 
     Parameters
     ----------
-    faces : BoreFaces
+    faces : Surface
     displacements : ndarray, shape (n, 3, k)
         Their displacements per unit of the modes.
     stiffness_matrix : ndarray, shape (k, k)
@@ -115,7 +116,7 @@ class ReducedBore:
         As in `FEBore`.
     """
 
-    faces: BoreFaces
+    faces: Surface
     displacements: np.ndarray
     stiffness_matrix: np.ndarray
     radius: float
@@ -288,12 +289,17 @@ def add_bore_modes(
             f"{int(np.isin(fixed, bore).sum())} of them on the bore; give the nodes of the first interface of your "
             "mode basis."
         )
-    faces, bore = bore_faces(where, fem, place, bore)
+    faces = bore_faces(where, fem, place, bore)
     surface = FilmSurface(faces, film_points(faces, length), length, rotation)
-    coordinates = (3 * bore[:, None] + np.arange(3)).ravel()
+    coordinates = (3 * faces.nodes[:, None] + np.arange(3)).ravel()
     K = csr_matrix(fem.stiffnessMatrix)
     with announced("exudyn_ehd: computing the modes of a bore ..."):
-        solve = _held_solution(K, fixed)
+        try:
+            solve = held_solution(K, fixed)
+        except RuntimeError as singular:
+            raise InputError(
+                f"{where} fixed_nodes don't hold the body: its stiffness is singular ({singular})."
+            ) from None
         solutions, loads, shapes, tilted = answers(surface, coordinates, solve, K.shape[0], tilted, without_rigid=True)
     count = solutions.shape[1]
     exact, scale = shapes[:, count:], surface.scale(shapes[:, count:], tilted)
@@ -321,25 +327,6 @@ def _any_frame(axis: np.ndarray) -> np.ndarray:
         raise InputError("add_bore_modes axis must be a direction, got a zero vector.")
     z = axis / size
     return frame_of(z, np.eye(3)[int(np.argmin(np.abs(z)))])
-
-
-def _held_solution(K: csr_matrix, fixed: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Displacements of the held body under nodal forces, both (n, k)."""
-    free = np.ones(K.shape[0], dtype=bool)
-    free[(3 * fixed[:, None] + np.arange(3)).ravel()] = False
-    try:
-        factor = sparse_factor(K[free][:, free])
-    except RuntimeError as error:
-        raise InputError(
-            f"add_bore_modes fixed_nodes don't hold the body: its stiffness is singular ({error})."
-        ) from None
-
-    def solve(loads: np.ndarray) -> np.ndarray:
-        out = np.zeros_like(loads)
-        out[free] = factor.solve(np.ascontiguousarray(loads[free]))
-        return out
-
-    return solve
 
 
 def _beyond(K: csr_matrix, old: np.ndarray, new: np.ndarray) -> np.ndarray:

@@ -115,8 +115,8 @@ def _find_surface(
             f"{where}: fem must be the FEMinterface that the body was made of, with {len(places)} nodes, got one with "
             f"{len(surface.fem.nodes['Position'])}."
         )
-    faces, chosen = bore_faces(where, surface.fem, places, chosen)
-    shapes = basis.reshape(len(places), 3, -1)[chosen]
+    faces = bore_faces(where, surface.fem, places, chosen)
+    shapes = basis.reshape(len(places), 3, -1)[faces.nodes]
     reduced = ReducedBore(
         faces=faces,
         displacements=np.einsum("nik,ij->njk", shapes, local),

@@ -53,8 +53,7 @@ from numpy.polynomial.legendre import legval
 from scipy.linalg import block_diag, eigh
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.fe_faces import BoreFaces
-from exudyn_ehd.solid.mesh import Surface, directed
+from exudyn_ehd.solid.unrolled import Surface, directed
 from exudyn_ehd.status import InputError
 
 # Version of the choice of modes: raise it with every change of what follows, so that files of older modes are not used.
@@ -104,7 +103,7 @@ class FilmSurface:
 
     Parameters
     ----------
-    faces : Surface or BoreFaces
+    faces : Surface
     points : (p,) arrays
         Angle [rad], z [m] and weight, as `film_points` returns them.
     length : float
@@ -123,7 +122,7 @@ class FilmSurface:
 
     def __init__(
         self,
-        faces: Surface | BoreFaces,
+        faces: Surface,
         points: tuple[np.ndarray, np.ndarray, np.ndarray],
         length: float,
         frame: np.ndarray,
@@ -237,19 +236,13 @@ def answers(
     return Answers(solutions[:, first : 1 + count], loads[:, first:], seen[:, first:], tilted)
 
 
-def film_points(faces: Surface | BoreFaces, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Angles [rad], z [m] and weights of sum one (p,) of points on the surface of a film, parted where faces meet.
-
-    Points of a `Surface` that lie in its holes are left out.
-    """
+def film_points(faces: Surface, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Angles [rad], z [m] and weights of sum one (p,) of points on the surface of a film, parted where faces meet."""
     cuts, half = faces.cuts, 0.5 * length
     around, width = _points(0.0, 2.0 * np.pi, cuts[0], AROUND)
     along, height = _points(-half, half, cuts[1], ALONG)
     T, Z = (x.ravel() for x in np.meshgrid(around, along, indexing="ij"))
     weight = np.multiply.outer(width, height).ravel() / (2.0 * np.pi * length)
-    if isinstance(faces, Surface):
-        covered = faces.covers(T, Z)
-        T, Z, weight = T[covered], Z[covered], weight[covered]
     return T, Z, weight
 
 
