@@ -152,9 +152,7 @@ class ReducedBore:
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Radial displacement against the averaged rigid motion on the grid theta x z, (len(theta), len(z), k)."""
-        T, Z = np.meshgrid(theta, z, indexing="ij")
-        values = self.faces.interpolation(T.ravel(), Z.ravel())
-        return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
+        return self.faces.on_grid(self.radial_of, theta, z)
 
     def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return `radial` (p, k) at points (p,), where ``values`` (p, n) maps nodal displacements to the points."""

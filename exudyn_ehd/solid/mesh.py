@@ -73,6 +73,11 @@ class BushMesh:
         """All faces that belong to one element only, shape (f, a), mesh nodes."""
         return boundary_faces(self.elements)
 
+    @cached_property
+    def sample_gradients(self) -> np.ndarray:
+        """Gradients dN_a/dX (m, q, a, 3) [1/m] at the points of the elements at which stresses are most accurate."""
+        return self.element.reference_gradients(self.nodes[self.elements], self.element.sampling)[0]
+
     def surface(self, nodes: np.ndarray) -> Surface:
         """Return the boundary faces all of whose nodes are in ``nodes`` (mesh node numbers)."""
         return surface_of(self.nodes, self.boundary, np.isin(np.arange(len(self.nodes)), nodes))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -61,7 +60,7 @@ class StressRecovery:
         accurate than elsewhere, extrapolated trilinearly to the nodes, and averaged over the elements that share a
         node; of tetrahedra at four points, linearly.
         """
-        elements, gradient = self.mesh.elements, self._gradients
+        elements, gradient = self.mesh.elements, self.mesh.sample_gradients
         samples = _cauchy(np.einsum("eai,eqaj->eqij", np.asarray(u)[elements], gradient), self.material)
         at_nodes = np.einsum("aq,eqij->eaij", self.mesh.element.extrapolation, samples)
         total = np.zeros((len(self.mesh.nodes), 3, 3))
@@ -93,11 +92,6 @@ class StressRecovery:
         jacobian = np.einsum("nar,nai->nir", along, corners[element])
         gradient = np.einsum("nar,nri->nai", along, np.linalg.inv(jacobian))
         return MaterialPoints(element=element, natural=natural, gradient=gradient)
-
-    @cached_property
-    def _gradients(self) -> np.ndarray:
-        element = self.mesh.element
-        return element.reference_gradients(self.mesh.nodes[self.mesh.elements], element.sampling)[0]
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -144,6 +145,14 @@ class Surface:
         weights, _ = self.kind.shapes(natural)
         rows = np.repeat(np.arange(len(face)), weights.shape[1])
         return csr_matrix((weights.ravel(), (rows, self.local_faces[face].ravel())), shape=(len(face), len(self.nodes)))
+
+    def on_grid(self, field: Callable[..., np.ndarray], theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Values (len(theta), len(z), k) of a field on the grid theta x z.
+
+        ``field`` takes the map (p, nodes) to points, their angles and places (p,), and returns its values (p, k).
+        """
+        T, Z = (x.ravel() for x in np.meshgrid(theta, z, indexing="ij"))
+        return field(self.interpolation(T, Z), T, Z).reshape(len(theta), len(z), -1)
 
     def radial_interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
         """Return H, shape (n, 3 k), so that H @ displacements is the radial displacement at the points (theta, z).

@@ -22,7 +22,6 @@ a bore.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -74,19 +73,12 @@ class BoreModes:
     def largest_strain(self, coordinates: np.ndarray) -> float:
         """Return the largest linear strain of the bush at coordinates (k,) [m]."""
         u = np.tensordot(coordinates, self.displacements, 1)[self.mesh.elements]
-        gradient = np.einsum("eai,eqaj->eqij", u, self._gradients)
+        gradient = np.einsum("eai,eqaj->eqij", u, self.mesh.sample_gradients)
         return float(np.abs(np.linalg.eigvalsh(0.5 * (gradient + gradient.swapaxes(-1, -2)))).max())
-
-    @cached_property
-    def _gradients(self) -> np.ndarray:
-        element = self.mesh.element
-        return element.reference_gradients(self.mesh.nodes[self.mesh.elements], element.sampling)[0]
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Radial displacement of the bore at the grid theta x z for unit coordinates, shape (len(theta), len(z), k)."""
-        T, Z = np.meshgrid(theta, z, indexing="ij")
-        values = self.faces.interpolation(T.ravel(), Z.ravel())
-        return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
+        return self.faces.on_grid(self.radial_of, theta, z)
 
     def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return `radial` (p, k) at points (p,), where ``values`` (p, nodes) maps nodal displacements to the points."""
