@@ -81,15 +81,27 @@ class ThrustElement:
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        found, n, (housing, journal) = self._evaluate(mbs, q, q_t), len(q), self.sides
+        found, n = self._evaluate(mbs, q, q_t), len(q)
         if not self._has_film(t, found):
             return np.full((n, n), np.nan)
-        frames, jacobians, tangent = (housing.frame, journal.frame), (housing.jac, journal.jac), found.tangent()
-        own, state = np.ascontiguousarray(tangent[:, :MOTION_SIZE]), (np.array(q), np.array(q_t))
-        stiffness, damping, by_q, _ = derivatives_between(mbs, self.sides, state, found.wrench, own)
+        stiffness, damping = self.derivatives(mbs, self.sides, (np.array(q), np.array(q_t)), found)
+        return -(f_q * stiffness + f_qt * damping)
+
+    def derivatives(
+        self,
+        mbs: exu.MainSystem,
+        sides: tuple[Side, Side],
+        state: tuple[np.ndarray, np.ndarray],
+        found: ThrustEvaluation,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """dQ/dq and dQ/dq_t (n, n) of the films at a state (q, q_t), to which the sides are brought."""
+        frames, jacobians = (sides[0].frame, sides[1].frame), (sides[0].jac, sides[1].jac)
+        tangent = found.tangent()
+        own = np.ascontiguousarray(tangent[:, :MOTION_SIZE])
+        stiffness, damping, by_q, _ = derivatives_between(mbs, sides, state, found.wrench, own)
         turned = relative.wrench_map(*frames, *jacobians) @ tangent[:, MOTION_SIZE]
         stiffness += np.outer(turned, self.position_change(frames, jacobians, found.motion, by_q))
-        return np.asarray(-(f_q * stiffness + f_qt * damping))
+        return stiffness, damping
 
     def at(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> ThrustEvaluation:
         """The films at frames (3, 6) of housing and journal, of the motion (10,)."""

@@ -17,7 +17,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.kinematics.relative import skew
-from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore
 from exudyn_ehd.solid.fe_faces import bore_faces, find_bore
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
@@ -128,11 +128,7 @@ def _find_surface(
     )
 
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
-        assert item.node_kind is not None
-        frame = NodeSide(
-            item.node_kind, item.node, item.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
-        )
-        return FloatingBoreSide(frame, item.nodes[1], origin, local, reduced.rigid)
+        return FloatingBoreSide(node_side(mbs, item.nodes[0]), item.nodes[1], origin, local, reduced.rigid)
 
     return reduced, dataclasses.replace(item, build=build)
 

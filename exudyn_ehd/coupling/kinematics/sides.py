@@ -18,6 +18,13 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import node_pair, relative, rigid_nodes
 
+NODE_KINDS = {
+    "RigidBodyEP": rigid_nodes.EULER_PARAMETERS,
+    "RigidBodyRxyz": rigid_nodes.TAIT_BRYAN,
+    "RigidBodyRotVecLG": rigid_nodes.ROTATION_VECTOR,
+    "RigidBody2D": rigid_nodes.PLANAR,
+}
+"""How the nodes of rigid bodies turn, by Exudyn's names."""
 SideType = TypeVar("SideType", bound=Side)
 
 
@@ -70,6 +77,14 @@ class NodeSide:
         if self.size:
             rigid_nodes.node_change(self.kind, q, self.reference, self.rho, out)
         return out
+
+
+def node_side(mbs: exu.MainSystem, node: Index) -> NodeSide:
+    """Frame of a node of a rigid body itself, in the reference configuration."""
+    data = mbs.GetNode(node)
+    side = NodeSide(NODE_KINDS[data["nodeType"]], node, data["referenceCoordinates"], np.zeros(3), np.eye(3))
+    side.update(mbs, np.zeros(side.size), np.zeros(side.size), None)
+    return side
 
 
 class MarkerSide:

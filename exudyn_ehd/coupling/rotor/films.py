@@ -75,14 +75,11 @@ class FilmLoads(NamedTuple):
         Generalized force.
     by_place, by_rate : (n, n) arrays
         Its derivatives by x and u.
-    motion_by_place : (10, n) array
-        Derivative of the journal's motion in the joint frame.
     """
 
     force: np.ndarray
     by_place: np.ndarray
     by_rate: np.ndarray
-    motion_by_place: np.ndarray
 
 
 class RotorFilm:
@@ -131,32 +128,24 @@ class RotorFilm:
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
-        """Return the generalized force of a wrench (6,) with tangent (6, 10) in the directions, and its derivatives."""
-        force, state = relative.wrench_map(*self.frames, *self.jacobians) @ wrench, (self.rates, self.rates)
-        tangent = np.ascontiguousarray(tangent)
-        by_place, by_rate, motion_x, _ = derivatives_between(self.mbs, self.sides, state, wrench, tangent)
-        return FilmLoads(force, by_place, by_rate, motion_x)
+        """Loads of a wrench (6,) with tangent (6, 10), and of the films on the end faces, after `update`."""
+        found, state, tangent = self._on_faces, (self.rates, self.rates), np.ascontiguousarray(tangent)
+        by_place, by_rate, _, _ = derivatives_between(self.mbs, self.sides, state, wrench, tangent)
+        if self.faces is not None and found is not None:
+            of_faces = self.faces.derivatives(self.mbs, self.sides, state, found)
+            by_place, by_rate, wrench = by_place + of_faces[0], by_rate + of_faces[1], wrench + found.wrench
+        return FilmLoads(self._wrench_map() @ wrench, by_place, by_rate)
 
-    def all_loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
-        """`loads`, and what the films on the end faces do at the state of the last `update`."""
-        film, found = self.loads(wrench, tangent), self._on_faces
-        if self.faces is None or found is None:
-            return film
-        by_motion = found.tangent()
-        faces = self.loads(found.wrench, by_motion[:, :10])
-        turned = relative.wrench_map(*self.frames, *self.jacobians)
-        along = self.faces.position_change(self.frames, self.jacobians, self.motion, film.motion_by_place)
-        by_place = faces.by_place + np.outer(turned @ by_motion[:, 10], along)
-        return FilmLoads(
-            film.force + faces.force, film.by_place + by_place, film.by_rate + faces.by_rate, film.motion_by_place
-        )
+    def _wrench_map(self) -> np.ndarray:
+        """Map (n, 6) from a wrench on the journal to generalized forces."""
+        return np.asarray(relative.wrench_map(*self.frames, *self.jacobians))
 
     def by_spin(self, tangent: np.ndarray) -> np.ndarray:
         """Derivative (n,) of the generalized force of all films to the speed of the first rotor."""
         change = tangent[:, 8].copy()
         if self._on_faces is not None:
             change += self._on_faces.tangent()[:, 8]
-        return np.asarray(relative.wrench_map(*self.frames, *self.jacobians) @ (self.ratio * change))
+        return self._wrench_map() @ (self.ratio * change)
 
     @property
     def support_stiffness(self) -> float:

@@ -118,7 +118,7 @@ class EquilibriumSearch:
             raise self._lost(speed)
         evaluations, tangents = found
         self.rest = system.derivatives()
-        balance = self._balance([f.all_loads(e.wrench, t) for f, e, t in zip(self.films, *found, strict=True)])
+        balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *found, strict=True)])
         load = max(float(np.abs(e.wrench[:3]).max()) for e in evaluations)
         require_steady_load(system, self.weights, balance.free, load)
         changed = np.zeros(system.size)
@@ -151,7 +151,7 @@ class EquilibriumSearch:
         for _ in range(3):
             self._update()
             springs = [film.support(*part) for film, part in zip(self.films, supports, strict=True)]
-            balance = self._balance([f.all_loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
+            balance = self._balance([f.loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
             require_held(self.system, self.weights, balance.K, balance.free)
             step = self._step(balance)
             self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
@@ -226,7 +226,7 @@ class EquilibriumSearch:
             films = self._films()
             if films is None:
                 return None
-            balance = self._balance([f.all_loads(e.wrench, t) for f, e, t in zip(self.films, *films, strict=True)])
+            balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *films, strict=True)])
             settled = balance.residual < max(TOLERANCE, balance.rounding)
             if settled and np.abs(balance.mend).max() < TOLERANCE * self.length:
                 return films

@@ -10,9 +10,8 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, NodeIndex, ObjectIndex
-from exudyn_ehd.coupling.items.bodies import NODE_KINDS
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.status import InputError
 
