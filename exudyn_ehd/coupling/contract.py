@@ -25,13 +25,18 @@ Index: TypeAlias = SupportsInt
 """Number of an item as Exudyn gives it: a NodeIndex, ObjectIndex, MarkerIndex or SensorIndex."""
 
 
-def require_system(where: str, mbs: exu.MainSystem) -> None:
-    """Refuse what is no system of Exudyn."""
+def require_system(where: str, mbs: exu.MainSystem, *, assembled: bool | None = None, of: str = "") -> None:
+    """Refuse what is no system of Exudyn, and one that is not ``assembled`` as told; ``of`` tells whose it is."""
     if not isinstance(mbs, exu.MainSystem):
         raise InputError(
             f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
             "SystemContainer().AddSystem() returns."
         )
+    if assembled is not None and mbs.systemIsConsistent != assembled:
+        state = (
+            "not assembled; call mbs.Assemble() first" if assembled else "assembled already; do it before Assemble()"
+        )
+        raise InputError(f"{where}: the system{of} is {state}.")
 
 
 class Evaluation(Protocol):
