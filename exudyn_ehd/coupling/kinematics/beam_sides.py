@@ -20,7 +20,7 @@ from numba import njit
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever, cross, dot
+from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever, column, combined, cross, dot
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
 LARGEST_TURN = 0.9
@@ -28,38 +28,27 @@ LARGEST_TURN = 0.9
 
 
 @njit(cache=True)
-def _outer_add(a, b, factor, out):
-    for i in range(3):
-        for j in range(3):
-            out[i, j] += factor * a[i] * b[j]
-
-
-@njit(cache=True)
-def _skew_add(a, out):
-    out[0, 1] -= a[2]
-    out[0, 2] += a[1]
-    out[1, 0] += a[2]
-    out[1, 2] -= a[0]
-    out[2, 0] -= a[1]
-    out[2, 1] += a[0]
-
-
-@njit(cache=True)
-def _roll_map(t, d0):
-    """U (3, 3) = skew(t) - tau / (1 - tau^2) t c^T with omega = U dt/dt."""
+def _turn(t, length, d0, ds):
+    """Rotation G ds (3-tuple) of the frame for a change ds of the slope; t and ds are 3-tuples."""
+    dt = combined(ds, 1.0 / length, t, -dot(t, ds) / length)
     tau = dot(t, d0)
-    u = np.zeros((3, 3))
-    _skew_add(t, u)
-    _outer_add(t, cross(t, d0), -tau / (1.0 - tau * tau), u)
-    return u
+    return combined(cross(t, dt), 1.0, t, -tau / (1.0 - tau * tau) * dot(cross(t, d0), dt))
 
 
 @njit(cache=True)
-def _direction_map(t, length):
-    """P (3, 3) = (I - t t^T) / |s| with dt = P ds."""
-    p = np.eye(3) / length
-    _outer_add(t, t, -1.0 / length, p)
-    return p
+def _turn_change(t, length, d0, ds, es):
+    """Change of `_turn` at fixed ds for a change es of the slope."""
+    along, tau, c = dot(t, es), dot(t, d0), cross(t, d0)
+    r = 1.0 - tau * tau
+    dt = combined(ds, 1.0 / length, t, -dot(t, ds) / length)
+    et = combined(es, 1.0 / length, t, -along / length)
+    changed = combined(et, dot(t, ds), t, dot(et, ds))
+    changed = combined(changed, -1.0 / length, dt, -along / length)
+    twist = tau / r * dot(c, dt)
+    twisted = (1.0 + tau * tau) / (r * r) * dot(et, d0) * dot(c, dt)
+    twisted += tau / r * (dot(cross(et, d0), dt) + dot(c, changed))
+    turned = combined(cross(et, dt), 1.0, cross(t, changed), 1.0)
+    return combined(turned, 1.0, combined(t, twisted, et, twist), -1.0)
 
 
 @njit(cache=True)
@@ -78,43 +67,24 @@ def slope_rotation(s, d0):
 @njit(cache=True)
 def slope_frame(S, Sx, q, q_t, d0, rho, a_loc, frame_out, jac_out):
     """Fill frame (3, 6) and Jp, Jr at total coordinates ``q`` (n,) and rates; nan where the roll is undefined."""
-    s, s_t = Sx @ q, Sx @ q_t
+    s = Sx @ q
     length = np.sqrt(dot(s, s))
     if not (length > 0.0 and abs(dot(s, d0)) < LARGEST_TURN * length):
         frame_out[:] = np.nan
         return
-    t = s / length
+    t = s[0] / length, s[1] / length, s[2] / length
     a = slope_rotation(s, d0)
-    G = _roll_map(t, d0) @ _direction_map(t, length)
-    w = a @ rho
-    omega = G @ s_t
-    axes, place, speed, turn = a @ a_loc, S @ q, S @ q_t, G @ Sx
-    spun = cross(omega, w)
+    w, omega = a @ rho, (0.0, 0.0, 0.0)
+    for k in range(q.size):
+        turn = _turn(t, length, d0, column(Sx, k))
+        arm, omega = cross(turn, w), combined(omega, 1.0, turn, q_t[k])
+        for i in range(3):
+            jac_out[0, i, k], jac_out[1, i, k] = S[i, k] + arm[i], turn[i]
+    axes, place, speed, spun = a @ a_loc, S @ q, S @ q_t, cross(omega, w)
     for i in range(3):
         for j in range(3):
             frame_out[i, j] = axes[i, j]
         frame_out[i, 3], frame_out[i, 4], frame_out[i, 5] = place[i] + w[i], speed[i] + spun[i], omega[i]
-    for k in range(q.size):
-        arm = cross(turn[:, k].copy(), w)
-        for i in range(3):
-            jac_out[0, i, k], jac_out[1, i, k] = S[i, k] + arm[i], turn[i, k]
-
-
-@njit(cache=True)
-def _map_change(t, length, d0, ds):
-    """Change (3, 3) of G for a change ds of the slope."""
-    U, P = _roll_map(t, d0), _direction_map(t, length)
-    dt = P @ ds
-    tau, c = dot(t, d0), cross(t, d0)
-    r = 1.0 - tau * tau
-    dU, dP = np.zeros((3, 3)), np.zeros((3, 3))
-    _skew_add(dt, dU)
-    _outer_add(t, c, -(1.0 + tau * tau) / (r * r) * dot(dt, d0), dU)
-    _outer_add(dt, c, -tau / r, dU)
-    _outer_add(t, cross(dt, d0), -tau / r, dU)
-    _outer_add(dt, t, -1.0 / length, dP)
-    _outer_add(t, dt, -1.0 / length, dP)
-    return dU @ P + U @ (dP - P * (dot(t, ds) / length))
 
 
 @njit(cache=True)
@@ -122,12 +92,12 @@ def slope_change(Sx, q, d0, rho, jac, change_out):
     """Fill the derivatives (6, n, n) of Jp and Jr to q at the state for which ``jac`` holds Jr."""
     s = Sx @ q
     length = np.sqrt(dot(s, s))
-    change_out[:3] = 0.0
-    for b in range(q.size):
-        turned = _map_change(s / length, length, d0, Sx[:, b].copy()) @ Sx
-        for i in range(3):
-            for a in range(q.size):
-                change_out[3 + i, a, b] = turned[i, a]
+    t = s[0] / length, s[1] / length, s[2] / length
+    for a in range(q.size):
+        for b in range(q.size):
+            turned = _turn_change(t, length, d0, column(Sx, a), column(Sx, b))
+            for i in range(3):
+                change_out[i, a, b], change_out[3 + i, a, b] = 0.0, turned[i]
     add_lever(jac[1], slope_rotation(s, d0) @ rho, change_out)
 
 

@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, column, cross, dot, in_frame, times
+from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, column, combined, cross, dot, in_frame, times
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
 
@@ -121,12 +121,6 @@ class FloatingBody:
 
 
 @njit(cache=True)
-def _sum(a, fa, b, fb):
-    """Combination fa a + fb b of 3-tuples."""
-    return fa * a[0] + fb * b[0], fa * a[1] + fb * b[1], fa * a[2] + fb * b[2]
-
-
-@njit(cache=True)
 def _settle(of, frame, jac, q, at_out):
     """Fill what coordinates ``q`` make of a body."""
     n, k = at_out.G.shape[1], at_out.R.shape[0]
@@ -190,14 +184,16 @@ def _motion(S, at, bryan, q_t):
             at.growth[i, j] = 0.0
     w = alpha = flow = (0.0, 0.0, 0.0)
     for c in range(3, n):
-        w = _sum(w, 1.0, column(at.G, c), q_t[c])
+        w = combined(w, 1.0, column(at.G, c), q_t[c])
     if bryan:
         first, second, third = column(at.G, 3), column(at.G, 4), column(at.G, 5)
         # sum over i < j of theta_t,i theta_t,j h_i x h_j
-        alpha = _sum(cross(first, _sum(second, q_t[4], third, q_t[5])), q_t[3], cross(second, third), q_t[4] * q_t[5])
+        alpha = combined(
+            cross(first, combined(second, q_t[4], third, q_t[5])), q_t[3], cross(second, third), q_t[4] * q_t[5]
+        )
     for a in range(k):
         rate = q_t[n + a]
-        flow = _sum(flow, 1.0, column(S, a), rate)
+        flow = combined(flow, 1.0, column(S, a), rate)
         for i in range(3):
             for j in range(3):
                 at.growth[i, j] += rate * at.R[a, j, i]
@@ -208,8 +204,8 @@ def _motion(S, at, bryan, q_t):
 def _force_and_moment(at, w, alpha, flow):
     """Tuples f and m."""
     s = at.s[0], at.s[1], at.s[2]
-    f = _sum(cross(alpha, s), 1.0, cross(w, _sum(cross(w, s), 1.0, flow, 2.0)), 1.0)
-    m = _sum(_sum(times(at.J, alpha), 1.0, cross(w, times(at.J, w)), 1.0), 1.0, times(at.growth, w), 2.0)
+    f = combined(cross(alpha, s), 1.0, cross(w, combined(cross(w, s), 1.0, flow, 2.0)), 1.0)
+    m = combined(combined(times(at.J, alpha), 1.0, cross(w, times(at.J, w)), 1.0), 1.0, times(at.growth, w), 2.0)
     return f, m
 
 
@@ -239,9 +235,9 @@ def _alpha_changes(at, bryan, q_t, f_q, f_qt):
     h1, h2, h3 = column(at.G, 3), column(at.G, 4), column(at.G, 5)
     a, b, c = q_t[3], q_t[4], q_t[5]
     h12, h13, h23 = cross(h1, h2), cross(h1, h3), cross(h2, h3)
-    by_second = cross(h12, _sum(h2, a * b, h3, a * c))
-    by_third = _sum(
-        _sum(cross(h13, _sum(h2, a * b, h3, a * c)), 1.0, cross(h1, h23), a * b), 1.0, cross(h23, h3), b * c
+    by_second = cross(h12, combined(h2, a * b, h3, a * c))
+    by_third = combined(
+        combined(cross(h13, combined(h2, a * b, h3, a * c)), 1.0, cross(h1, h23), a * b), 1.0, cross(h23, h3), b * c
     )
     for i in range(3):
         out[i, 3] = f_qt * (b * h12[i] + c * h13[i])
@@ -264,15 +260,15 @@ def _derivative(of, frame, change, at, bryan, q, q_t, f_q, f_qt, out):
         g = column(at.G, c)
         dw = (0.0, 0.0, 0.0)
         for d in range(3, n):
-            dw = _sum(dw, 1.0, (change[3, d, c], change[4, d, c], change[5, d, c]), q_t[d])
-        spin = _sum(in_frame(frame, dw), 1.0, cross(w, g), 1.0)
-        dw, da = _sum(spin, f_q, g, f_qt), column(at.alphas, c)
+            dw = combined(dw, 1.0, (change[3, d, c], change[4, d, c], change[5, d, c]), q_t[d])
+        spin = combined(in_frame(frame, dw), 1.0, cross(w, g), 1.0)
+        dw, da = combined(spin, f_q, g, f_qt), column(at.alphas, c)
         # f and m turn with the frame
-        df = _sum(cross(g, f), f_q, cross(da, s), 1.0)
-        df = _sum(df, 1.0, cross(dw, _sum(ws, 1.0, flow, 2.0)), 1.0)
-        df = times(frame, _sum(df, 1.0, cross(w, cross(dw, s)), 1.0))
-        dm = _sum(_sum(cross(g, m), f_q, times(at.J, da), 1.0), 1.0, times(at.growth, dw), 2.0)
-        dm = _sum(_sum(dm, 1.0, cross(dw, Jw), 1.0), 1.0, cross(w, times(at.J, dw)), 1.0)
+        df = combined(cross(g, f), f_q, cross(da, s), 1.0)
+        df = combined(df, 1.0, cross(dw, combined(ws, 1.0, flow, 2.0)), 1.0)
+        df = times(frame, combined(df, 1.0, cross(w, cross(dw, s)), 1.0))
+        dm = combined(combined(cross(g, m), f_q, times(at.J, da), 1.0), 1.0, times(at.growth, dw), 2.0)
+        dm = combined(combined(dm, 1.0, cross(dw, Jw), 1.0), 1.0, cross(w, times(at.J, dw)), 1.0)
         for i in range(3):
             out[i, c] = df[i]
         for d in range(3, n):
@@ -297,21 +293,21 @@ def _modes_by_motion(C, at, w, q_t, dw, da, c, out):
 def _by_modes(of, frame, at, w, alpha, q_t, f_q, f_qt, out):
     """Fill the columns of the modes."""
     n, k = at.G.shape[1], at.R.shape[0]
-    axis = _sum(alpha, f_q, w, 2.0 * f_qt)
+    axis = combined(alpha, f_q, w, 2.0 * f_qt)
     for a in range(k):
         S, R = column(of.S, a), at.R[a]
         df = cross(axis, S)
-        df = times(frame, _sum(df, 1.0, cross(w, cross(w, S)), f_q))
+        df = times(frame, combined(df, 1.0, cross(w, cross(w, S)), f_q))
         grown = (0.0, 0.0, 0.0)
         for b in range(k):
             Pw = times(of.P[a, b], w)
-            grown = _sum(grown, 1.0, Pw, q_t[n + b])
+            grown = combined(grown, 1.0, Pw, q_t[n + b])
             turned = axis[0] * of.C[b, a, 0] + axis[1] * of.C[b, a, 1] + axis[2] * of.C[b, a, 2]
             out[n + a, n + b] = f_q * (of.stiffness[a, b] - dot(w, Pw)) + f_qt * of.damping[a, b] - turned
         back = in_frame(R, w)
-        both = _sum(times(R, w), 1.0, back, 1.0)
-        dm = _sum(_sum(times(R, alpha), 1.0, in_frame(R, alpha), 1.0), 1.0, cross(w, both), 1.0)
-        dm = _sum(_sum(dm, 1.0, grown, 2.0), f_q, back, 2.0 * f_qt)
+        both = combined(times(R, w), 1.0, back, 1.0)
+        dm = combined(combined(times(R, alpha), 1.0, in_frame(R, alpha), 1.0), 1.0, cross(w, both), 1.0)
+        dm = combined(combined(dm, 1.0, grown, 2.0), f_q, back, 2.0 * f_qt)
         for i in range(3):
             out[i, n + a] = df[i]
         for c in range(3, n):

@@ -93,6 +93,12 @@ def dot(a, b):
 
 
 @njit(cache=True)
+def combined(a, fa, b, fb):
+    """Combination fa a + fb b of 3-tuples."""
+    return fa * a[0] + fb * b[0], fa * a[1] + fb * b[1], fa * a[2] + fb * b[2]
+
+
+@njit(cache=True)
 def _euler_g(e0, e1, e2, e3, g_out):
     """Matrix G (3, 4), bilinear: omega = G(e) e_t for unit e, global components."""
     g_out[0, 0], g_out[0, 1], g_out[0, 2], g_out[0, 3] = -2.0 * e1, 2.0 * e0, -2.0 * e3, 2.0 * e2
