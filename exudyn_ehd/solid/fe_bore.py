@@ -27,7 +27,7 @@ from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.fe_faces import BodyMesh, bore_faces, find_bore
 from exudyn_ehd.solid.linear.solvers import held_solution
 from exudyn_ehd.solid.mesh import frame_of
-from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points
+from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points
 from exudyn_ehd.solid.unrolled import Surface
 from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
 
@@ -289,7 +289,6 @@ def add_bore_modes(
         )
     faces = bore_faces(where, fem, place, bore)
     surface = FilmSurface(faces, film_points(faces, length), length, rotation)
-    coordinates = (3 * faces.nodes[:, None] + np.arange(3)).ravel()
     K = csr_matrix(fem.stiffnessMatrix)
     with announced("exudyn_ehd: computing the modes of a bore ..."):
         try:
@@ -298,20 +297,16 @@ def add_bore_modes(
             raise InputError(
                 f"{where} fixed_nodes don't hold the body: its stiffness is singular ({singular})."
             ) from None
-        solutions, loads, shapes, tilted = answers(surface, coordinates, solve, K.shape[0], tilted, without_rigid=True)
-    count = solutions.shape[1]
-    exact, scale = shapes[:, count:], surface.scale(shapes[:, count:], tilted)
-    coefficients, _ = film_modes(solutions.T @ loads, shapes, scale, tilted, tolerance)
-    modes = solutions @ coefficients.T
-    modes /= np.abs(surface.radial @ modes[coordinates]).max(axis=0)
+        found = film_modes(surface, solve, K.shape[0], tilted, tolerance, without_rigid=True)
+    modes = found.modes / np.abs(surface.radial @ found.modes[surface.places]).max(axis=0)
     old = np.asarray(fem.modeBasis["matrix"], dtype=float) if len(fem.modeBasis) else np.zeros((K.shape[0], 0))
     modes = _beyond(K, old, modes)
     basis = np.hstack([old, modes])
 
     def error_of(basis: np.ndarray) -> float:
-        q = np.linalg.lstsq(basis.T @ (K @ basis), basis.T @ loads[:, count:], rcond=None)[0]
-        reduced = surface.without_rigid(surface.weighted(basis[coordinates] @ q))
-        return float((np.linalg.norm(reduced - exact, axis=0) / scale).max())
+        q = np.linalg.lstsq(basis.T @ (K @ basis), basis.T @ found.loads, rcond=None)[0]
+        reduced = surface.without_rigid(surface.weighted(basis[surface.places] @ q))
+        return float((np.linalg.norm(reduced - found.exact, axis=0) / found.scale).max())
 
     error_before, error = error_of(old), error_of(basis)
     fem.modeBasis = {"matrix": basis, "type": fem.modeBasis.get("type", "HCBmodes")}

@@ -30,7 +30,7 @@ from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.linear.solvers import held_solution
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.modes import films
-from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points, orthogonal_on
+from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points, orthogonal_on
 from exudyn_ehd.solid.unrolled import Surface, directed
 from exudyn_ehd.status import PlausibilityWarning, warn_user
 from exudyn_ehd.storage import Shapes, cached_arrays
@@ -151,17 +151,13 @@ def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
     """Compute the modes of a bush on its mesh under a film: one factorisation, one solution per pressure."""
     solve = held_solution(bush.solid(mesh).tangent(np.zeros_like(mesh.nodes)), mesh.outer.nodes)
     surface = film_surface(mesh.bore, length)
-    places = (3 * mesh.bore.nodes[:, None] + np.arange(3)).ravel()
-    solutions, loads, seen, tilted = answers(surface, places, solve, mesh.nodes.size, bush.tilted)
-    scale = surface.scale(seen[:, solutions.shape[1] :], tilted)
-    coefficients, error = film_modes(solutions.T @ loads, seen, scale, tilted, bush.tolerance)
-    coefficients = orthogonal_on(mesh.bore.radial((solutions @ coefficients.T).T)) @ coefficients
-    modes = (solutions @ coefficients.T).T
+    found = film_modes(surface, solve, mesh.nodes.size, bush.tilted, bush.tolerance)
+    modes = orthogonal_on(mesh.bore.radial(found.modes.T)) @ found.modes.T
     shape = mesh.bore.radial(modes)
     peak = shape[np.arange(len(shape)), np.argmax(np.abs(shape), axis=1)]
     return BoreModes(
         mesh=mesh,
         displacements=(modes / peak[:, None]).reshape(len(peak), -1, 3),
         stiffness=1.0 / peak**2,
-        error=error,
+        error=found.error,
     )
