@@ -220,7 +220,7 @@ def CreateLubricatedJoint(
     >>> shaft = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.5, 0.025, 2), initialAngularVelocity=[0, 0, 314])
     >>> joint = ehd.CreateLubricatedJoint(mbs, "main", [mbs.CreateGround(), shaft], [0, 0, 0], [0, 0, 1], bearing)
     """
-    require_system(_WHERE, mbs)
+    require_system(_WHERE, mbs, assembled=False)
     for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show), ("returnDict", returnDict)):
         require_bool(f"{_WHERE}.{argument}", value)
     for argument, motion in (("axial", axial), ("tilt", tilt)):
@@ -302,8 +302,6 @@ def _on_its_bodies(
 
 
 def _require_new(mbs: exu.MainSystem, name: str) -> None:
-    if mbs.systemIsConsistent:
-        raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
     if name in {joint.name for joint in joints_of(mbs)}:

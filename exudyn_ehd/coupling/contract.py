@@ -28,13 +28,18 @@ Index: TypeAlias = SupportsInt
 """Number of an item as Exudyn gives it: a NodeIndex, ObjectIndex, MarkerIndex or SensorIndex."""
 
 
-def require_system(where: str, mbs: exu.MainSystem) -> None:
-    """Refuse what is no system of Exudyn."""
+def require_system(where: str, mbs: exu.MainSystem, *, assembled: bool | None = None, of: str = "") -> None:
+    """Refuse what is no system of Exudyn, and one that is not ``assembled`` as told; ``of`` tells whose it is."""
     if not isinstance(mbs, exu.MainSystem):
         raise InputError(
             f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
             "SystemContainer().AddSystem() returns."
         )
+    if assembled is not None and mbs.systemIsConsistent != assembled:
+        state = (
+            "not assembled; call mbs.Assemble() first" if assembled else "assembled already; do it before Assemble()"
+        )
+        raise InputError(f"{where}: the system{of} is {state}.")
 
 
 class Evaluation(Protocol):
@@ -155,10 +160,5 @@ class Side(Protocol):
     def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
 
-    def vary(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-
-    def geometric(
-        self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
+    def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""

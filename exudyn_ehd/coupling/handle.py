@@ -19,7 +19,6 @@ from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
@@ -220,12 +219,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         FilmError
             If there is no film at that state.
         """
-        if not self.mbs.systemIsConsistent:
-            raise InputError(
-                f"LubricatedJoint.film: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
-            )
-        self.element.require_items(self.mbs)
-        require_end("LubricatedJoint.film", self.mbs, self.element.steps.solver)
+        self._require_end("film")
         time, trial, configuration = self.element.steps.look_at_accepted(self.mbs)
         if trial.evaluation is None or trial.status is not Status.CONVERGED:
             raise FilmError(

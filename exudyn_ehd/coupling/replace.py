@@ -83,7 +83,7 @@ def ReplaceJoint(
     >>> mbs.GetObject(ideal)["activeConnector"]
     False
     """
-    require_system("ReplaceJoint", mbs)
+    require_system("ReplaceJoint", mbs, assembled=False)
     joint, where = _joint(mbs, objectNumber)
     if journal not in (0, 1):
         raise InputError(f"ReplaceJoint.journal must be 0 or 1, the place of its marker in the joint, got {journal!r}.")
@@ -223,10 +223,8 @@ def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
     >>> parts = ObjectFFRFreducedOrderInterface(fem).AddObjectFFRFreducedOrder(mbs)
     >>> equations = ehd.ReplaceReducedBody(mbs, parts["oFFRFreducedOrder"])
     """
-    require_system("ReplaceReducedBody", mbs)
+    require_system("ReplaceReducedBody", mbs, assembled=False)
     require_type("ReplaceReducedBody.objectNumber", objectNumber, ObjectIndex)
-    if mbs.systemIsConsistent:
-        raise InputError("ReplaceReducedBody: the system is assembled already; call it before mbs.Assemble().")
     body = mbs.GetObject(objectNumber)
     where = f"ReplaceReducedBody: object {int(objectNumber)} '{body['name']}' ({body['objectType']})"
     if body["objectType"] != "FFRFreducedOrder":
@@ -241,8 +239,6 @@ def _joint(mbs: exu.MainSystem, number: Index) -> tuple[Data, str]:
     require_type("ReplaceJoint.objectNumber", number, ObjectIndex)
     if not 0 <= int(number) < mbs.systemData.NumberOfObjects():
         raise InputError(f"ReplaceJoint.objectNumber: the system has no object {int(number)}.")
-    if mbs.systemIsConsistent:
-        raise InputError("ReplaceJoint: the system is assembled already; replace joints before mbs.Assemble().")
     joint = mbs.GetObject(number)
     kind = joint["objectType"]
     where = f"ReplaceJoint: object {int(number)} '{joint['name']}' ({kind})"

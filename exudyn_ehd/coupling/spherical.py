@@ -29,7 +29,6 @@ from exudyn_ehd.coupling.record.history import FIRST_BLOCK, LOAD, JointHistory, 
 from exudyn_ehd.coupling.record.record import Record, history_of
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
-from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
@@ -248,10 +247,7 @@ class LubricatedSphericalJoint(Joint):
         FilmError
             If there is no film at that state.
         """
-        if not self.mbs.systemIsConsistent:
-            raise InputError(f"LubricatedSphericalJoint.film: call mbs.Assemble() first, for joint '{self.name}' too.")
-        self.element.require_items(self.mbs)
-        require_end("LubricatedSphericalJoint.film", self.mbs, self.element.steps.solver)
+        self._require_end("film")
         motion = self.element.steps.look_at_accepted(self.mbs)[1].motion
         parts = {"place": motion[PLACE], "velocity": motion[VELOCITY], "angular_velocity": motion[SPIN]}
         return steady_spherical(self.bearing, **parts)
@@ -381,15 +377,13 @@ def CreateLubricatedSphericalJoint(
     >>> arm = mbs.CreateRigidBody(inertia=InertiaCuboid(7800, [0.2, 0.02, 0.02]), gravity=[0, 0, -9.81])
     >>> joint = ehd.CreateLubricatedSphericalJoint(mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], ball)
     """
-    require_system(_WHERE, mbs)
+    require_system(_WHERE, mbs, assembled=False)
     for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):
         require_bool(f"{_WHERE}.{argument}", value)
     require_type(f"{_WHERE}.bearing", bearing, SphericalBearing)
     assert bearing is not None
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_vector(f"{_WHERE}.color", color, 4)
-    if mbs.systemIsConsistent:
-        raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
     if not isinstance(name, str) or name in {joint.name for joint in joints_of(mbs)}:
         raise InputError(f"{_WHERE}.name must be a str that no other lubricated joint of the system has, got {name!r}.")
     name = name or f"lubricated ball joint {mbs.systemData.NumberOfObjects()}"

@@ -15,7 +15,7 @@ as in `exudyn_ehd.solid.modes.static`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -24,10 +24,11 @@ from scipy.sparse import csr_matrix
 
 from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
-from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
-from exudyn_ehd.solid.linear.solvers import sparse_factor
+from exudyn_ehd.solid.fe_faces import BodyMesh, bore_faces, find_bore
+from exudyn_ehd.solid.linear.solvers import held_solution
 from exudyn_ehd.solid.mesh import frame_of
-from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points
+from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points
+from exudyn_ehd.solid.unrolled import Surface
 from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
 
 # Vertices around and along of the quadrature over a bore, for its mean rigid motion.
@@ -104,7 +105,7 @@ class ReducedBore:
 
     Parameters
     ----------
-    faces : BoreFaces
+    faces : Surface
     displacements : ndarray, shape (n, 3, k)
         Their displacements per unit of the modes.
     stiffness_matrix : ndarray, shape (k, k)
@@ -115,7 +116,7 @@ class ReducedBore:
         As in `FEBore`.
     """
 
-    faces: BoreFaces
+    faces: Surface
     displacements: np.ndarray
     stiffness_matrix: np.ndarray
     radius: float
@@ -151,9 +152,7 @@ class ReducedBore:
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Radial displacement against the averaged rigid motion on the grid theta x z, (len(theta), len(z), k)."""
-        T, Z = np.meshgrid(theta, z, indexing="ij")
-        values = self.faces.interpolation(T.ravel(), Z.ravel())
-        return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
+        return self.faces.on_grid(self.radial_of, theta, z)
 
     def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return `radial` (p, k) at points (p,), where ``values`` (p, n) maps nodal displacements to the points."""
@@ -288,26 +287,26 @@ def add_bore_modes(
             f"{int(np.isin(fixed, bore).sum())} of them on the bore; give the nodes of the first interface of your "
             "mode basis."
         )
-    faces, bore = bore_faces(where, fem, place, bore)
+    faces = bore_faces(where, fem, place, bore)
     surface = FilmSurface(faces, film_points(faces, length), length, rotation)
-    coordinates = (3 * bore[:, None] + np.arange(3)).ravel()
     K = csr_matrix(fem.stiffnessMatrix)
     with announced("exudyn_ehd: computing the modes of a bore ..."):
-        solve = _held_solution(K, fixed)
-        solutions, loads, shapes, tilted = answers(surface, coordinates, solve, K.shape[0], tilted, without_rigid=True)
-    count = solutions.shape[1]
-    exact, scale = shapes[:, count:], surface.scale(shapes[:, count:], tilted)
-    coefficients, _ = film_modes(solutions.T @ loads, shapes, scale, tilted, tolerance)
-    modes = solutions @ coefficients.T
-    modes /= np.abs(surface.radial @ modes[coordinates]).max(axis=0)
+        try:
+            solve = held_solution(K, fixed)
+        except RuntimeError as singular:
+            raise InputError(
+                f"{where} fixed_nodes don't hold the body: its stiffness is singular ({singular})."
+            ) from None
+        found = film_modes(surface, solve, K.shape[0], tilted, tolerance, without_rigid=True)
+    modes = found.modes / np.abs(surface.radial @ found.modes[surface.places]).max(axis=0)
     old = np.asarray(fem.modeBasis["matrix"], dtype=float) if len(fem.modeBasis) else np.zeros((K.shape[0], 0))
     modes = _beyond(K, old, modes)
     basis = np.hstack([old, modes])
 
     def error_of(basis: np.ndarray) -> float:
-        q = np.linalg.lstsq(basis.T @ (K @ basis), basis.T @ loads[:, count:], rcond=None)[0]
-        reduced = surface.without_rigid(surface.weighted(basis[coordinates] @ q))
-        return float((np.linalg.norm(reduced - exact, axis=0) / scale).max())
+        q = np.linalg.lstsq(basis.T @ (K @ basis), basis.T @ found.loads, rcond=None)[0]
+        reduced = surface.without_rigid(surface.weighted(basis[surface.places] @ q))
+        return float((np.linalg.norm(reduced - found.exact, axis=0) / found.scale).max())
 
     error_before, error = error_of(old), error_of(basis)
     fem.modeBasis = {"matrix": basis, "type": fem.modeBasis.get("type", "HCBmodes")}
@@ -321,25 +320,6 @@ def _any_frame(axis: np.ndarray) -> np.ndarray:
         raise InputError("add_bore_modes axis must be a direction, got a zero vector.")
     z = axis / size
     return frame_of(z, np.eye(3)[int(np.argmin(np.abs(z)))])
-
-
-def _held_solution(K: csr_matrix, fixed: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Displacements of the held body under nodal forces, both (n, k)."""
-    free = np.ones(K.shape[0], dtype=bool)
-    free[(3 * fixed[:, None] + np.arange(3)).ravel()] = False
-    try:
-        factor = sparse_factor(K[free][:, free])
-    except RuntimeError as error:
-        raise InputError(
-            f"add_bore_modes fixed_nodes don't hold the body: its stiffness is singular ({error})."
-        ) from None
-
-    def solve(loads: np.ndarray) -> np.ndarray:
-        out = np.zeros_like(loads)
-        out[free] = factor.solve(np.ascontiguousarray(loads[free]))
-        return out
-
-    return solve
 
 
 def _beyond(K: csr_matrix, old: np.ndarray, new: np.ndarray) -> np.ndarray:

@@ -5,14 +5,14 @@ Faces are those of hexahedra, or triangles of three or six nodes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.sparse import csr_matrix, spmatrix
+from scipy.sparse import spmatrix
 
 from exudyn_ehd.solid.elements.kinds import boundary_faces
-from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces
+from exudyn_ehd.solid.unrolled import Surface, patch
 from exudyn_ehd.status import InputError
 
 # Largest angle between neighbouring nodes of a bore, rad.
@@ -45,59 +45,8 @@ class BodyMesh(Protocol):
         """Triangles of six nodes."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BoreFaces(Unrolled):
-    """Faces on a bore.
-
-    Parameters
-    ----------
-    positions : ndarray, shape (n, 3)
-        Nodes of the bore, bore frame (z = axis) [m].
-    faces : ndarray of int, shape (f, a)
-        Their numbers face by face; a = 8 (serendipity quadrilateral, corners first), 6 (triangle: corners, then the
-        nodes on the edges 0-1, 1-2, 2-0) or 3.
-    """
-
-    positions: np.ndarray
-    faces: np.ndarray
-
-    @property
-    def local(self) -> np.ndarray:
-        """Indices of the faces into ``positions``: `faces`."""
-        return self.faces
-
-    def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
-        """S, shape (p, n): values at points of the bore from values at the nodes.
-
-        Raises
-        ------
-        InputError
-            Points off the faces.
-        """
-        theta, z = np.asarray(theta, dtype=float).ravel(), np.asarray(z, dtype=float).ravel()
-        corner = self.positions[self.faces]
-        point, face = np.nonzero(near_faces(corner, theta, z))
-        natural = invert_faces(self.kind, corner[face], theta[point], z[point])
-        outside = self.kind.outside(natural)
-        order = np.lexsort((outside, point))
-        first = order[np.unique(point[order], return_index=True)[1]]
-        lost = np.setdiff1d(np.arange(theta.size), point)
-        if lost.size or outside[first].max() > OUTSIDE:
-            bad = lost[0] if lost.size else point[first[np.argmax(outside[first])]]
-            raise InputError(
-                f"FEBore: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m of the film lies on no face of the "
-                f"bore, whose nodes span z = {self.positions[:, 2].min():g} to {self.positions[:, 2].max():g} m; holes "
-                "in the bore are not supported: check position, axis, length and radius_tolerance."
-            )
-        values, _ = self.kind.shapes(natural[first])
-        rows = np.repeat(point[first], self.faces.shape[1])
-        return csr_matrix(
-            (values.ravel(), (rows, self.faces[face[first]].ravel())), shape=(theta.size, len(self.positions))
-        )
-
-
 def surface_faces(fem: BodyMesh) -> np.ndarray:
-    """Boundary faces (f, a) of a ``FEMinterface``, mesh node numbers, as `BoreFaces` takes them.
+    """Boundary faces (f, a) of a ``FEMinterface``, mesh node numbers, counter-clockwise from outside.
 
     20-node hexahedra give their 8-node faces; any other mesh the triangles of ``VolumeToSurfaceElements``, which is
     called if there are none: six-node ones for 10-node tetrahedra.
@@ -121,8 +70,8 @@ def surface_faces(fem: BodyMesh) -> np.ndarray:
     return np.asarray(triangles, dtype=int)
 
 
-def bore_faces(where: str, fem: BodyMesh, positions: np.ndarray, chosen: np.ndarray) -> tuple[BoreFaces, np.ndarray]:
-    """Faces of a mesh all of whose nodes are among ``chosen``, and the mesh nodes that they use.
+def bore_faces(where: str, fem: BodyMesh, positions: np.ndarray, chosen: np.ndarray) -> Surface:
+    """Faces of a mesh all of whose nodes are among ``chosen``.
 
     Parameters
     ----------
@@ -141,8 +90,7 @@ def bore_faces(where: str, fem: BodyMesh, positions: np.ndarray, chosen: np.ndar
             f"{where}: none of the mesh's surface faces has all of its nodes among the {len(chosen)} on the bore; "
             "check radius_tolerance, and that the FEMinterface is the body's own."
         )
-    used, local = np.unique(faces, return_inverse=True)
-    return BoreFaces(positions=positions[used], faces=local.reshape(faces.shape)), used
+    return replace(patch(positions, faces), tolerance=OUTSIDE)
 
 
 def find_bore(

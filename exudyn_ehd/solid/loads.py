@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.solid.mesh import BushMesh, Line, Surface
+from exudyn_ehd.solid.mesh import BushMesh, Line
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.solid.unrolled import Surface
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 History = Callable[[float], float]

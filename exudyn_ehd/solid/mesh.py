@@ -11,16 +11,12 @@ from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.elements.element import Element
 from exudyn_ehd.solid.elements.hex20 import NODES
 from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
-from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces, wrapped
+from exudyn_ehd.solid.unrolled import Surface, patch, wrapped
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer, require_number
-
-# Largest distance of a surface's point beyond its faces, in natural coordinates: round-off.
-OUTSIDE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,127 +33,6 @@ class Line:
 
     nodes: np.ndarray
     edges: np.ndarray
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Surface(Unrolled):
-    """A patch of element faces with a nodes each.
-
-    Parameters
-    ----------
-    positions : ndarray, shape (k, 3)
-        Reference positions of the nodes [m], bush frame.
-    nodes : ndarray of int, shape (k,)
-        Mesh nodes of the surface, each once, ascending.
-    faces : ndarray of int, shape (f, a)
-        Mesh nodes of each face, outward normal x_,r × x_,s, order of `exudyn_ehd.solid.elements.faces`.
-    local_faces : ndarray of int, shape (f, a)
-        The same faces as indices into ``nodes``.
-    """
-
-    positions: np.ndarray
-    nodes: np.ndarray
-    faces: np.ndarray
-    local_faces: np.ndarray
-
-    @property
-    def local(self) -> np.ndarray:
-        """Indices of the faces into ``positions``: `local_faces`."""
-        return self.local_faces
-
-    @cached_property
-    def theta(self) -> np.ndarray:
-        """Angle of every node about z, shape (k,) [rad], in (-pi, pi]."""
-        return np.arctan2(self.positions[:, 1], self.positions[:, 0])
-
-    @cached_property
-    def z(self) -> np.ndarray:
-        """Axial coordinate of every node, shape (k,) [m]."""
-        return np.ascontiguousarray(self.positions[:, 2])
-
-    def locate(self, theta: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Find the face and its natural coordinates at angles and axial positions on a cylindrical surface.
-
-        Parameters
-        ----------
-        theta, z : ndarray, shape (n,)
-            Angle [rad] and axial position [m].
-
-        Returns
-        -------
-        face : ndarray of int, shape (n,)
-        natural : ndarray, shape (n, 2)
-            (r, s), found by Newton's method on theta(r, s) and z(r, s).
-
-        Raises
-        ------
-        InputError
-            A point lies off the surface.
-        """
-        theta = np.asarray(theta, dtype=float).ravel()
-        z = np.asarray(z, dtype=float).ravel()
-        face, natural, best = self._nearest(theta, z)
-        if np.any(best > OUTSIDE):
-            bad = int(np.argmax(best))
-            raise InputError(
-                f"Surface.locate: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m must lie on the surface, "
-                f"which spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush, lengthen "
-                "the bush, or close the hole there."
-            )
-        return face, natural
-
-    def covers(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Return which points (n,) lie on the surface."""
-        return self._nearest(theta, z)[2] <= OUTSIDE
-
-    def _nearest(self, theta: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return face and natural coordinates of points (n,), and how far they lie beyond the face."""
-        corner = self.positions[self.local_faces]
-        close = near_faces(corner, theta, z)
-        # a point off the surface is tried on any face
-        close[~close.any(axis=1), 0] = True
-        point, face = np.nonzero(close)
-        natural = invert_faces(self.kind, corner[face], theta[point], z[point])
-        inside = self.kind.outside(natural)
-        best = np.full(len(theta), np.inf)
-        np.minimum.at(best, point, inside)
-        chosen = np.full(len(theta), -1)
-        hits = np.flatnonzero(inside <= best[point])
-        chosen[point[hits[::-1]]] = hits[::-1]
-        return face[chosen], natural[chosen], best
-
-    def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
-        """Return S, shape (n, k), so that S @ nodal values are the values at the points (theta, z) of the surface."""
-        face, natural = self.locate(theta, z)
-        weights, _ = self.kind.shapes(natural)
-        rows = np.repeat(np.arange(len(face)), weights.shape[1])
-        return csr_matrix((weights.ravel(), (rows, self.local_faces[face].ravel())), shape=(len(face), len(self.nodes)))
-
-    def radial_interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
-        """Return H, shape (n, 3 k), so that H @ displacements is the radial displacement at the points (theta, z).
-
-        Displacements are ordered node by node as x, y, z in the bush frame [m]; positive is outward, which opens a gap.
-        The direction (cos theta, sin theta, 0) is that of the point. Loads are carried back by H.T @ (pressure * area).
-        """
-        theta = np.asarray(theta, dtype=float).ravel()
-        return directed(self.interpolation(theta, z), np.stack([np.cos(theta), np.sin(theta)], axis=1))
-
-    def radial(self, displacements: np.ndarray) -> np.ndarray:
-        """Radial part (m, k) on the surface's nodes of displacements (m, 3 n) of all nodes of the mesh."""
-        direction = self.positions[:, :2] / np.linalg.norm(self.positions[:, :2], axis=1)[:, None]
-        moved = displacements.reshape(len(displacements), -1, 3)[:, self.nodes, :2]
-        return np.asarray(np.einsum("kai,ai->ka", moved, direction))
-
-
-def directed(interpolation: csr_matrix, direction: np.ndarray, parts: int = 3) -> csr_matrix:
-    """Map (p, parts n) from vectors at nodes, node by node, to their share along ``direction`` (p, d) at points (p,).
-
-    ``interpolation`` (p, n); d = 2 leaves z out, vectors of two parts have none.
-    """
-    S, size = interpolation.tocoo(), direction.shape[1]
-    values = S.data[:, None] * direction[S.row]
-    rows, columns = np.repeat(S.row, size), (parts * S.col[:, None] + np.arange(size)).ravel()
-    return csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], parts * S.shape[1]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -198,6 +73,11 @@ class BushMesh:
     def boundary(self) -> np.ndarray:
         """All faces that belong to one element only, shape (f, a), mesh nodes."""
         return boundary_faces(self.elements)
+
+    @cached_property
+    def sample_gradients(self) -> np.ndarray:
+        """Gradients dN_a/dX (m, q, a, 3) [1/m] at the points of the elements at which stresses are most accurate."""
+        return self.element.reference_gradients(self.nodes[self.elements], self.element.sampling)[0]
 
     def surface(self, nodes: np.ndarray) -> Surface:
         """Return the boundary faces all of whose nodes are in ``nodes`` (mesh node numbers)."""
@@ -240,12 +120,6 @@ class BushMesh:
 def surface_of(nodes: np.ndarray, boundary: np.ndarray, member: np.ndarray) -> Surface:
     """Patch of the faces ``boundary`` (f, a) all of whose nodes are flagged by ``member`` (n,)."""
     return patch(nodes, boundary[member[boundary].all(axis=1)])
-
-
-def patch(nodes: np.ndarray, faces: np.ndarray) -> Surface:
-    """Patch of faces (f, a) on nodes (n, 3)."""
-    used = np.unique(faces)
-    return Surface(positions=nodes[used], nodes=used, faces=faces, local_faces=np.searchsorted(used, faces))
 
 
 @dataclass(frozen=True, kw_only=True)

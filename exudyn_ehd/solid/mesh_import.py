@@ -11,7 +11,8 @@ import numpy as np
 
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.elements.kinds import ELEMENTS, boundary_faces, element_of
-from exudyn_ehd.solid.mesh import BushMesh, frame_of, patch, surface_of
+from exudyn_ehd.solid.mesh import BushMesh, frame_of, surface_of
+from exudyn_ehd.solid.unrolled import patch
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number, require_vector
 
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from exudyn_ehd.solid.elements.element import Element
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.status import InputError
@@ -61,7 +59,7 @@ class StressRecovery:
         accurate than elsewhere, extrapolated trilinearly to the nodes, and averaged over the elements that share a
         node; of tetrahedra at four points, linearly.
         """
-        elements, gradient = self.mesh.elements, self._gradients
+        elements, gradient = self.mesh.elements, self.mesh.sample_gradients
         samples = _cauchy(np.einsum("eai,eqaj->eqij", np.asarray(u)[elements], gradient), self.material)
         at_nodes = np.einsum("aq,eqij->eaij", self.mesh.element.extrapolation, samples)
         total = np.zeros((len(self.mesh.nodes), 3, 3))
@@ -82,22 +80,31 @@ class StressRecovery:
             A position lies outside the solid.
         """
         positions = np.atleast_2d(np.asarray(positions, dtype=float))
-        corners = self.mesh.nodes[self.mesh.elements]
+        corners, kind = self.mesh.nodes[self.mesh.elements], self.mesh.element
         _, near = cKDTree(corners.mean(axis=1)).query(positions, k=min(27, len(corners)))
-        near = near.reshape(len(positions), -1)
-        element = np.empty(len(positions), dtype=int)
-        natural = np.empty((len(positions), 3))
-        for i, position in enumerate(positions):
-            element[i], natural[i] = _invert(self.mesh.element, corners, near[i], position)
-        along = self.mesh.element.shapes(natural)[1]
+        count = near.size // len(positions)
+        nodes, target = corners[near.ravel()], np.repeat(positions, count, axis=0)
+        natural = np.tile(kind.nodes.mean(axis=0), (len(nodes), 1))
+        for _ in range(20):
+            value, slope = kind.shapes(natural)
+            error = np.einsum("ea,eai->ei", value, nodes) - target
+            jacobian = np.einsum("ear,eai->eir", slope, nodes)
+            step = np.linalg.solve(jacobian, error[..., None])[..., 0]
+            # divergent candidates stay bounded and lose
+            natural = np.clip(natural - step, -1.6, 1.6)
+        outside = kind.outside(natural).reshape(-1, count)
+        best = outside.argmin(axis=1)
+        if (lost := outside.min(axis=1) > 1e-6).any():
+            raise InputError(
+                f"StressRecovery.locate positions must lie inside the solid, got {positions[lost][0].tolist()} m in "
+                "the reference configuration; a point on the cylinder between two nodes may lie a little outside the "
+                "quadratic faces: move it inward."
+            )
+        chosen = np.arange(len(positions)) * count + best
+        along, element = kind.shapes(natural[chosen])[1], near.ravel()[chosen]
         jacobian = np.einsum("nar,nai->nir", along, corners[element])
         gradient = np.einsum("nar,nri->nai", along, np.linalg.inv(jacobian))
-        return MaterialPoints(element=element, natural=natural, gradient=gradient)
-
-    @cached_property
-    def _gradients(self) -> np.ndarray:
-        element = self.mesh.element
-        return element.reference_gradients(self.mesh.nodes[self.mesh.elements], element.sampling)[0]
+        return MaterialPoints(element=element, natural=natural[chosen], gradient=gradient)
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:
@@ -110,25 +117,3 @@ def _cauchy(H: np.ndarray, material: SaintVenantKirchhoff) -> np.ndarray:
     """Cauchy stress of displacement gradients H (..., 3, 3)."""
     F = H + np.eye(3)
     return material.first_piola(H) @ F.swapaxes(-1, -2) / np.linalg.det(F)[..., None, None]
-
-
-def _invert(
-    element: Element, corners: np.ndarray, candidates: np.ndarray, position: np.ndarray
-) -> tuple[int, np.ndarray]:
-    """Element and natural coordinates of a position, by Newton's method in the candidate elements at once."""
-    natural = np.tile(element.nodes.mean(axis=0), (len(candidates), 1))
-    for _ in range(20):
-        value, gradient = element.shapes(natural)
-        error = np.einsum("ea,eai->ei", value, corners[candidates]) - position
-        jacobian = np.einsum("ear,eai->eir", gradient, corners[candidates])
-        step = np.linalg.solve(jacobian, error[..., None])[..., 0]
-        natural = np.clip(natural - step, -1.6, 1.6)
-    outside = element.outside(natural)
-    best = int(np.argmin(outside))
-    if outside[best] > 1e-6:
-        raise InputError(
-            f"StressRecovery.locate positions must lie inside the solid, got {position.tolist()} m in the reference "
-            "configuration; a point on the cylinder between two nodes may lie a little outside the quadratic faces: "
-            "move it inward."
-        )
-    return int(candidates[best]), natural[best]

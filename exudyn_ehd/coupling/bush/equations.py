@@ -111,7 +111,8 @@ class BushEquations:
         nodal = self._nodal_forces(t, u, v)
         if self.carrier is not None:
             acceleration = np.zeros_like(u)
-            acceleration[self.slaved] = self.carrier.velocity_accelerations(q[self.count :], q_t[self.count :])
+            of_frame = self.carrier.frame_accelerations(q[self.count :], q_t[self.count :])
+            acceleration[self.slaved] = self.carrier.point_accelerations(of_frame)
             nodal -= self.solid.scalar_mass @ acceleration
         result = np.empty(len(q))
         result[: self.count] = nodal.ravel()[self._moving_rows]
@@ -119,7 +120,7 @@ class BushEquations:
             B = self.carrier.jacobian()
             result[self.count :] = B.T @ nodal[self.slaved].ravel()
             if self.contained is not None:
-                result[self.count :] += self.contained.velocity_force(self.carrier.side, q_t[self.count :])
+                result[self.count :] += self.contained.velocity_force(self.carrier.side, of_frame)
         result[self._held] = -self._spring * q[self._held]
         return result
 
@@ -157,7 +158,7 @@ class BushEquations:
         B = self.carrier.jacobian()
         along, across = moving[:, self._slaved_rows] @ B, (slaved[:, self._moving_rows].T @ B).T
         along[self._held] = across[:, self._held] = 0.0
-        turn = self.carrier.force_derivative(qc, q_t[self.count :], self._nodal_forces(t, u, v)[self.slaved])
+        turn = self.carrier.force_derivative(qc, self._nodal_forces(t, u, v)[self.slaved])
         carried = B.T @ (slaved[:, self._slaved_rows] @ B) - position_factor * turn
         return bmat([[K, along], [across, carried]], format="csr")
 

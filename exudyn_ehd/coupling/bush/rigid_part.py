@@ -44,12 +44,11 @@ class RigidPart:
         J = side.jac[:2].reshape(6, -1)
         return J.T @ self._frame_mass(side.frame) @ J
 
-    def velocity_force(self, side: Side, q_t: np.ndarray) -> np.ndarray:
-        """Generalized inertia force (n,) at accelerations of zero, with the sign of M q_tt; after `Side.vary`."""
+    def velocity_force(self, side: Side, accelerations: np.ndarray) -> np.ndarray:
+        """Generalized inertia force (n,) at q_tt = 0, with the sign of M q_tt, for the frame's accelerations (6,)."""
         A, omega = side.frame[:, :3], side.frame[:, 5]
-        rates = (side.jac[2:] @ q_t).reshape(6)
         s, inertia = A @ self.first, self._frame_mass(side.frame)[3:, 3:]
-        wrench = self._frame_mass(side.frame) @ rates
+        wrench = self._frame_mass(side.frame) @ accelerations
         wrench[:3] += np.cross(omega, np.cross(omega, s))
         wrench[3:] += np.cross(omega, inertia @ omega)
         return wrench @ side.jac[:2].reshape(6, -1)

@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide, slope_rotation
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, node_side
 from exudyn_ehd.status import InputError
 
 SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
@@ -141,17 +141,10 @@ def _within(where: str, x: float, low: float, high: float) -> float:
     return min(max(x, low), high)
 
 
-def beam_ends(mbs: exu.MainSystem, nodes: tuple[Index, ...], node_kinds: dict[str, int]) -> tuple[NodeSide, NodeSide]:
+def beam_ends(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[NodeSide, NodeSide]:
     """The nodes' own frames of a geometrically exact beam element."""
-    ends = []
-    for node in nodes:
-        data = mbs.GetNode(node)
-        reference = np.array(data["referenceCoordinates"], dtype=float)
-        kind = node_kinds[data["nodeType"]]
-        ends.append(NodeSide(kind, node, reference, np.zeros(3), np.eye(3)))
-        rest = np.zeros(reference.size)
-        ends[-1].update(None, rest, rest, None)
-    return ends[0], ends[1]
+    first, second = (node_side(mbs, node) for node in nodes)
+    return first, second
 
 
 def beam_side(

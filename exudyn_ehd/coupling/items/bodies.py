@@ -15,15 +15,9 @@ from exudyn_ehd.coupling.contract import REFERENCE, Index, NodeIndex, ObjectInde
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
-from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide
 from exudyn_ehd.status import InputError
 
-NODE_KINDS = {
-    "RigidBodyEP": rigid_nodes.EULER_PARAMETERS,
-    "RigidBodyRxyz": rigid_nodes.TAIT_BRYAN,
-    "RigidBodyRotVecLG": rigid_nodes.ROTATION_VECTOR,
-    "RigidBody2D": rigid_nodes.PLANAR,
-}
 POINT_KINDS = {"Point": rigid_nodes.POINT, "Point2D": rigid_nodes.PLANAR_POINT, "PointGround": rigid_nodes.GROUND}
 MASS_POINTS = ("MassPoint", "MassPoint2D")
 _MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
@@ -57,8 +51,8 @@ class Item:
         Frame of its node (or of global space for ground) in the reference configuration.
     reference_coordinates, initial_coordinates, initial_velocities : ndarray (n,)
         Of its nodes; empty if only Exudyn's marker knows.
-    body, node_kind : exudyn.ObjectIndex, int
-        The reduced finite-element body, and how its rigid node turns; None for any other item.
+    body : exudyn.ObjectIndex or None
+        The reduced finite-element body; None for any other item.
     build : function of point (3,) and joint rotation (3, 3), or None
         Makes the side; None for rigid nodes and ground.
     """
@@ -78,7 +72,6 @@ class Item:
     initial_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     initial_velocities: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     body: Index | None = None
-    node_kind: int | None = None
     build: Callable[[np.ndarray, np.ndarray], Side] | None = None
 
     def side(self, point: np.ndarray, joint_rotation: np.ndarray) -> Side:
@@ -200,7 +193,6 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
     return dataclasses.replace(
         rigid,
         kind=None,
-        node_kind=rigid.kind,
         body=body,
         nodes=nodes,
         reference_coordinates=reference,
@@ -254,7 +246,7 @@ def beam_item(
     mbs: exu.MainSystem, where: str, nodes: tuple[Index, ...], length: float, transform: np.ndarray | None = None
 ) -> Item:
     """Element of a geometrically exact beam, or a marker on one at ``transform`` (4, 4), local coordinates."""
-    ends = beams.beam_ends(mbs, nodes, NODE_KINDS)
+    ends = beams.beam_ends(mbs, nodes)
     reference, initial, velocities = beams.node_coordinates(mbs, nodes)
     share = None if transform is None else 0.5 + float(transform[0, 3]) / length
     position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])

@@ -63,30 +63,31 @@ class Carrier:
         """Return dx/dt, shape (s, 3) [m/s]."""
         return velocities(self.side.frame, self.local)
 
-    def velocity_accelerations(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-        """Return the accelerations at q_tt = 0, shape (s, 3) [m/s^2]; `move` must have run at the same state."""
-        self.side.vary(self.mbs, q, q_t)
+    def frame_accelerations(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Acceleration and angular acceleration (6,) of the frame at q_tt = 0; `move` has run at the same state."""
+        return np.asarray(self.side.change(self.mbs, q) @ q_t @ q_t)
+
+    def point_accelerations(self, frame: np.ndarray) -> np.ndarray:
+        """Accelerations (s, 3) [m/s^2] of the points for those of the frame (6,)."""
         arms, omega = self._arms(), self.side.frame[:, 5]
-        along, turning = self.side.jac[2] @ q_t, self.side.jac[3] @ q_t
-        return along + np.cross(turning, arms) + np.cross(omega, np.cross(omega, arms))
+        return frame[:3] + np.cross(frame[3:], arms) + np.cross(omega, np.cross(omega, arms))
 
     def jacobian(self) -> np.ndarray:
         """Return B, shape (3 s, n)."""
         B = self.side.jac[0].T + np.cross(self.side.jac[1].T, self._arms()[:, None, :])
         return B.transpose(0, 2, 1).reshape(3 * len(self.local), -1)
 
-    def force_derivative(self, q: np.ndarray, q_t: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    def force_derivative(self, q: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """Return d(B^T f)/dq (n, n) at constant global forces f, shape (s, 3) [N].
 
         That of resultants F = sum f and M = sum s x f at the frame, and dM = sum (dphi x s) x f.
         """
         arms, turn = self._arms(), self.side.jac[1]
-        self.side.vary(self.mbs, q, q_t)
-        result = np.zeros((len(q), len(q)))
-        self.side.geometric(self.mbs, q, forces.sum(axis=0), np.cross(arms, forces).sum(axis=0), result)
+        load = np.concatenate((forces, np.cross(arms, forces)), axis=1).sum(axis=0)
+        result = np.tensordot(load, self.side.change(self.mbs, q), 1)
         # (dphi x s) x f = s (dphi . f) - dphi (s . f)
         both = np.einsum("si,sj->ij", arms, forces)
-        return result + turn.T @ (both - np.trace(both) * np.eye(3)) @ turn
+        return np.asarray(result + turn.T @ (both - np.trace(both) * np.eye(3)) @ turn)
 
     def _arms(self) -> np.ndarray:
         return self.local @ self.side.frame[:, :3].T

@@ -12,7 +12,6 @@ from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, MarkerIndex, No
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES, element_nodes, node_coordinates
 from exudyn_ehd.coupling.items.bodies import (
     MASS_POINTS,
-    NODE_KINDS,
     POINT_KINDS,
     Item,
     beam_item,
@@ -21,7 +20,7 @@ from exudyn_ehd.coupling.items.bodies import (
     node_item,
 )
 from exudyn_ehd.coupling.kinematics.fitted_sides import FittedSide, fitted_rotation
-from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, NodeSide, TreeSide
+from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, FloatingSide, MarkerSide, TreeSide, node_side
 from exudyn_ehd.status import InputError
 
 _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeRigid")
@@ -119,10 +118,7 @@ def _marker_side(
     if kind == "KinematicTreeRigid":
         return (lambda rotation: TreeSide(marker, list(nodes), rotation)), nodes
     if kind == "SuperElementRigid":
-        frame = node_item(mbs, "", nodes[0]).side(np.zeros(3), np.eye(3))
-        assert isinstance(frame, NodeSide)
-        frame.rho[:] = 0.0
-        return (lambda rotation: FloatingSide(marker, list(nodes), rotation, frame)), nodes
+        return (lambda rotation: FloatingSide(marker, list(nodes), rotation, node_side(mbs, nodes[0]))), nodes
     return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
 
 

@@ -20,9 +20,9 @@ import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix, issparse
 
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
-from exudyn_ehd.coupling.items.bodies import NODE_KINDS, body_of_node
+from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
-from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.kinematics.sides import node_side
 from exudyn_ehd.status import InputError
 
 # Negative eigenvalue of a scaled mass matrix that is none of rounding.
@@ -58,10 +58,7 @@ class ReducedBody:
     def __init__(self, mbs: exu.MainSystem, body: Index) -> None:
         self.body = ObjectIndex(int(body))
         self.nodes = [int(node) for node in mbs.GetObjectParameter(body, "nodeNumbers")]
-        node = NodeIndex(self.nodes[0])
-        values = mbs.GetNode(node)
-        reference = np.array(values["referenceCoordinates"], dtype=float)
-        self.frame = NodeSide(NODE_KINDS[values["nodeType"]], node, reference, np.zeros(3), np.eye(3))
+        self.frame = node_side(mbs, NodeIndex(self.nodes[0]))
         self._solvers: tuple[object, object] = (None, None)
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:

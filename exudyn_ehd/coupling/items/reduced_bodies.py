@@ -17,7 +17,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.kinematics.relative import skew
-from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore
 from exudyn_ehd.solid.fe_faces import bore_faces, find_bore
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
@@ -115,8 +115,8 @@ def _find_surface(
             f"{where}: fem must be the FEMinterface that the body was made of, with {len(places)} nodes, got one with "
             f"{len(surface.fem.nodes['Position'])}."
         )
-    faces, chosen = bore_faces(where, surface.fem, places, chosen)
-    shapes = basis.reshape(len(places), 3, -1)[chosen]
+    faces = bore_faces(where, surface.fem, places, chosen)
+    shapes = basis.reshape(len(places), 3, -1)[faces.nodes]
     reduced = ReducedBore(
         faces=faces,
         displacements=np.einsum("nik,ij->njk", shapes, local),
@@ -128,11 +128,7 @@ def _find_surface(
     )
 
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
-        assert item.node_kind is not None
-        frame = NodeSide(
-            item.node_kind, item.node, item.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
-        )
-        return FloatingBoreSide(frame, item.nodes[1], origin, local, reduced.rigid)
+        return FloatingBoreSide(node_side(mbs, item.nodes[0]), item.nodes[1], origin, local, reduced.rigid)
 
     return reduced, dataclasses.replace(item, build=build)
 
@@ -189,17 +185,9 @@ class FloatingBoreSide:
         self.frame[:, 4] = floating.frame[:, 4] - S @ omega + self.jac[0, :, n:] @ q_t[n:]
         self.frame[:, 5] = omega + self.jac[1, :, n:] @ q_t[n:]
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-        n = self.floating.size
-        self.change = floating_change(self.floating, q[:n], self.arm, self.jac)
-        self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
-
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global loads into ``out``, after `vary` at the same state."""
-        out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        return floating_change(self.floating, q[: self.floating.size], self.arm, self.jac)
 
 
 def _rotation(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -20,7 +20,7 @@ from numba import njit
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.kinematics.rigid_nodes import cross, dot
+from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever, column, combined, cross, dot
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
 LARGEST_TURN = 0.9
@@ -28,38 +28,27 @@ LARGEST_TURN = 0.9
 
 
 @njit(cache=True)
-def _outer_add(a, b, factor, out):
-    for i in range(3):
-        for j in range(3):
-            out[i, j] += factor * a[i] * b[j]
-
-
-@njit(cache=True)
-def _skew_add(a, out):
-    out[0, 1] -= a[2]
-    out[0, 2] += a[1]
-    out[1, 0] += a[2]
-    out[1, 2] -= a[0]
-    out[2, 0] -= a[1]
-    out[2, 1] += a[0]
-
-
-@njit(cache=True)
-def _roll_map(t, d0):
-    """U (3, 3) = skew(t) - tau / (1 - tau^2) t c^T with omega = U dt/dt."""
+def _turn(t, length, d0, ds):
+    """Rotation G ds (3-tuple) of the frame for a change ds of the slope; t and ds are 3-tuples."""
+    dt = combined(ds, 1.0 / length, t, -dot(t, ds) / length)
     tau = dot(t, d0)
-    u = np.zeros((3, 3))
-    _skew_add(t, u)
-    _outer_add(t, cross(t, d0), -tau / (1.0 - tau * tau), u)
-    return u
+    return combined(cross(t, dt), 1.0, t, -tau / (1.0 - tau * tau) * dot(cross(t, d0), dt))
 
 
 @njit(cache=True)
-def _direction_map(t, length):
-    """P (3, 3) = (I - t t^T) / |s| with dt = P ds."""
-    p = np.eye(3) / length
-    _outer_add(t, t, -1.0 / length, p)
-    return p
+def _turn_change(t, length, d0, ds, es):
+    """Change of `_turn` at fixed ds for a change es of the slope."""
+    along, tau, c = dot(t, es), dot(t, d0), cross(t, d0)
+    r = 1.0 - tau * tau
+    dt = combined(ds, 1.0 / length, t, -dot(t, ds) / length)
+    et = combined(es, 1.0 / length, t, -along / length)
+    changed = combined(et, dot(t, ds), t, dot(et, ds))
+    changed = combined(changed, -1.0 / length, dt, -along / length)
+    twist = tau / r * dot(c, dt)
+    twisted = (1.0 + tau * tau) / (r * r) * dot(et, d0) * dot(c, dt)
+    twisted += tau / r * (dot(cross(et, d0), dt) + dot(c, changed))
+    turned = combined(cross(et, dt), 1.0, cross(t, changed), 1.0)
+    return combined(turned, 1.0, combined(t, twisted, et, twist), -1.0)
 
 
 @njit(cache=True)
@@ -78,74 +67,38 @@ def slope_rotation(s, d0):
 @njit(cache=True)
 def slope_frame(S, Sx, q, q_t, d0, rho, a_loc, frame_out, jac_out):
     """Fill frame (3, 6) and Jp, Jr at total coordinates ``q`` (n,) and rates; nan where the roll is undefined."""
-    s, s_t = Sx @ q, Sx @ q_t
+    s = Sx @ q
     length = np.sqrt(dot(s, s))
     if not (length > 0.0 and abs(dot(s, d0)) < LARGEST_TURN * length):
         frame_out[:] = np.nan
         return
-    t = s / length
+    t = s[0] / length, s[1] / length, s[2] / length
     a = slope_rotation(s, d0)
-    G = _roll_map(t, d0) @ _direction_map(t, length)
-    w = a @ rho
-    omega = G @ s_t
-    axes, place, speed, turn = a @ a_loc, S @ q, S @ q_t, G @ Sx
-    spun = cross(omega, w)
+    w, omega = a @ rho, (0.0, 0.0, 0.0)
+    for k in range(q.size):
+        turn = _turn(t, length, d0, column(Sx, k))
+        arm, omega = cross(turn, w), combined(omega, 1.0, turn, q_t[k])
+        for i in range(3):
+            jac_out[0, i, k], jac_out[1, i, k] = S[i, k] + arm[i], turn[i]
+    axes, place, speed, spun = a @ a_loc, S @ q, S @ q_t, cross(omega, w)
     for i in range(3):
         for j in range(3):
             frame_out[i, j] = axes[i, j]
         frame_out[i, 3], frame_out[i, 4], frame_out[i, 5] = place[i] + w[i], speed[i] + spun[i], omega[i]
-    for k in range(q.size):
-        arm = cross(turn[:, k].copy(), w)
-        for i in range(3):
-            jac_out[0, i, k], jac_out[1, i, k] = S[i, k] + arm[i], turn[i, k]
 
 
 @njit(cache=True)
-def _map_change(t, length, d0, ds):
-    """Change (3, 3) of G for a change ds of the slope."""
-    U, P = _roll_map(t, d0), _direction_map(t, length)
-    dt = P @ ds
-    tau, c = dot(t, d0), cross(t, d0)
-    r = 1.0 - tau * tau
-    dU, dP = np.zeros((3, 3)), np.zeros((3, 3))
-    _skew_add(dt, dU)
-    _outer_add(t, c, -(1.0 + tau * tau) / (r * r) * dot(dt, d0), dU)
-    _outer_add(dt, c, -tau / r, dU)
-    _outer_add(t, cross(dt, d0), -tau / r, dU)
-    _outer_add(dt, t, -1.0 / length, dP)
-    _outer_add(t, dt, -1.0 / length, dP)
-    return dU @ P + U @ (dP - P * (dot(t, ds) / length))
-
-
-@njit(cache=True)
-def slope_variation(Sx, q, q_t, d0, rho, jac_out):
-    """Fill Vq, Wq at the state for which ``jac_out`` holds Jr."""
-    s, s_t = Sx @ q, Sx @ q_t
-    length = np.sqrt(dot(s, s))
-    t = s / length
-    w = slope_rotation(s, d0) @ rho
-    omega = jac_out[1] @ q_t
-    for k in range(q.size):
-        turn = jac_out[1, :, k].copy()
-        dw = _map_change(t, length, d0, Sx[:, k].copy()) @ s_t
-        turned, moved = cross(dw, w), cross(omega, cross(turn, w))
-        for i in range(3):
-            jac_out[2, i, k], jac_out[3, i, k] = turned[i] + moved[i], dw[i]
-
-
-@njit(cache=True)
-def slope_geometric(Sx, q, d0, rho, jac, force, moment, out):
-    """d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment; ``jac`` holds Jr."""
+def slope_change(Sx, q, d0, rho, jac, change_out):
+    """Fill the derivatives (6, n, n) of Jp and Jr to q at the state for which ``jac`` holds Jr."""
     s = Sx @ q
     length = np.sqrt(dot(s, s))
-    t = s / length
-    w = slope_rotation(s, d0) @ rho
-    total = moment + np.array(cross(w, force))
-    for b in range(q.size):
-        change = _map_change(t, length, d0, Sx[:, b].copy()).T @ total
-        arm = cross(cross(jac[1, :, b].copy(), w), force)
-        for a in range(q.size):
-            out[a, b] = dot(Sx[:, a], change) + dot(jac[1, :, a], arm)
+    t = s[0] / length, s[1] / length, s[2] / length
+    for a in range(q.size):
+        for b in range(q.size):
+            turned = _turn_change(t, length, d0, column(Sx, a), column(Sx, b))
+            for i in range(3):
+                change_out[i, a, b], change_out[3 + i, a, b] = 0.0, turned[i]
+    add_lever(jac[1], slope_rotation(s, d0) @ rho, change_out)
 
 
 class BeamSide:
@@ -221,22 +174,13 @@ class BeamSide:
             self.jac[:2, :, place] = weight * end.jac[:2]
         self.jac[0] += np.cross(self.jac[1].T, self.arm).T
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        out = np.zeros((6, self.size, self.size))
         for end, weight, place in self._parts():
-            end.vary(mbs, q[place], q_t[place])
-            self.jac[2:, :, place] = weight * end.jac[2:]
-        moved = np.cross(self.jac[1].T, self.arm)
-        self.jac[2] += (np.cross(self.jac[3].T, self.arm) + np.cross(self.frame[:, 5], moved)).T
-
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        total = moment + np.cross(self.arm, force)
-        for end, weight, place in self._parts():
-            end.geometric(mbs, q[place], weight * force, weight * total, out[place, place])
-        out += self.jac[1].T @ np.cross(np.cross(self.jac[1].T, self.arm), force).T
+            out[:, place, place] = weight * end.change(mbs, q[place])
+        add_lever(self.jac[1], self.arm, out)
+        return out
 
 
 class SlopeSide:
@@ -295,12 +239,8 @@ class SlopeSide:
             self.jac,
         )
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-        slope_variation(self.slope, self.reference + q, q_t, self.director, self.rho, self.jac)
-
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        slope_geometric(self.slope, self.reference + q, self.director, self.rho, self.jac, force, moment, out)
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        out = np.empty((6, self.size, self.size))
+        slope_change(self.slope, self.reference + q, self.director, self.rho, self.jac, out)
+        return out

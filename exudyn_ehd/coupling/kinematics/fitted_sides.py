@@ -19,6 +19,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.kinematics.relative import skew, skews
+from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever
 
 # Smallest extent of the nodes normal to a line, over that along it (both squared), that fixes a rotation.
 SLENDER = 1e-8
@@ -86,7 +87,7 @@ class FittedSide:
         if R is None:
             self.frame[:] = np.nan
             return
-        self.velocities, self.mean = v, w @ x
+        self.mean = w @ x
         self.turned = self.spokes @ R.T
         self.products = np.einsum("k,ki,kj->ij", w, self.turned, x - self.mean)
         self.inverse = np.linalg.inv(np.trace(self.products) * np.eye(3) - self.products)
@@ -99,38 +100,22 @@ class FittedSide:
         self.frame[:, :3], self.frame[:, 3] = R @ self.rotation, self.mean + self.arm
         self.frame[:, 4], self.frame[:, 5] = w @ v + np.cross(omega, self.arm), omega
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state.
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state.
 
-        The variation of ``D omega = sum w r x v`` at fixed v, with dr = dphi x r.
+        Row i of Jr is the nodes' forces ``w (D^-1 e_i) x r`` of a unit moment.
         """
-        turn, omega, arm = self.jac[1], self.frame[:, 5], skew(self.arm)
-        flow = np.einsum("k,ki,kj->ij", self.weights, self.turned, self.velocities)
-        by_turn = flow - np.trace(flow) * np.eye(3) - skew(self.products @ omega)
-        rate = self.inverse @ (by_turn @ turn + self._fit_change(omega))
-        self.jac[3] = rate
-        self.jac[2] = -arm @ rate - skew(omega) @ arm @ turn
-
-    def _fit_change(self, a: np.ndarray) -> np.ndarray:
-        """Minus the change of D a with the points at fixed R, (3, n): sum w (r (a . dx) - a (r . dx))."""
-        both = np.multiply.outer(self.turned, a)
-        return self._columns(self.weights[:, None, None] * (both - both.transpose(0, 2, 1)))
-
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``.
-
-        That of the nodes' forces ``w (D^-1 T) x r`` with the moment T = M + arm x F about the mean.
-        """
-        turn = self.jac[1]
-        torque = self.inverse @ (moment + np.cross(self.arm, force))
-        lever = np.outer(self.arm, force)
-        by_turn = lever - np.trace(lever) * np.eye(3) - skew(self.products @ torque)
-        change = self.inverse @ (by_turn @ turn + self._fit_change(torque))
-        # d(t x r) = dt x r + t x (dphi x r); a skew matrix is minus its transpose
-        out[:] = self._columns(self.levers).T @ change
-        out[:] -= self._columns(self.weights[:, None, None] * (skews(self.turned.T) @ skew(torque))).T @ turn
+        turn, w, out = self.jac[1], self.weights[:, None, None], np.zeros((6, self.size, self.size))
+        for i, torque in enumerate(self.inverse):
+            both = np.multiply.outer(self.turned, torque)
+            # minus the change of D torque with the points at fixed R: sum w (r (torque . dx) - torque (r . dx))
+            by_points = self._columns(w * (both - both.transpose(0, 2, 1)))
+            change = self.inverse @ (by_points - skew(self.products @ torque) @ turn)
+            # d(t x r) = dt x r + t x (dphi x r); a skew matrix is minus its transpose
+            out[3 + i] = self._columns(self.levers).T @ change
+            out[3 + i] -= self._columns(w * (skews(self.turned.T) @ skew(torque))).T @ turn
+        add_lever(turn, self.arm, out)
+        return out
 
 
 def fitted_rotation(weights: np.ndarray, spokes: np.ndarray, x: np.ndarray) -> np.ndarray | None:

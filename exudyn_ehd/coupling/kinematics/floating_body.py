@@ -28,10 +28,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, column, cross, dot, in_frame, times
+from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, column, combined, cross, dot, in_frame, times
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
-
-_SPIN_CHANGE = np.int64(3)
 
 
 class BodyIntegrals(NamedTuple):
@@ -95,7 +93,6 @@ class FloatingBody:
         self.rigid, self.size = n, n + k
         shapes = (3, n), (3,), (3, 3), (k, 3, 3), (3, k), (3, 3), (3, n)
         self._at = _Place(*(np.zeros(shape) for shape in shapes))
-        self._arms, self._none = np.zeros((n, n)), np.zeros(3)
 
     def mass(self, q: np.ndarray) -> np.ndarray:
         """Mass matrix (n + k, n + k) at q."""
@@ -114,22 +111,13 @@ class FloatingBody:
     def derivative(self, q: np.ndarray, q_t: np.ndarray, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (n + k, n + k) of `left_hand_side`: f_q times that to q plus f_qt times that to q_t."""
         self._move(q, q_t)
-        frame, out, moment = self.frame, np.empty((self.size, self.size)), np.empty(3)
-        frame.vary(None, q[: self.rigid], q_t[: self.rigid])
-        _derivative(self.of, frame.frame, frame.jac, self._at, self.bryan, q, q_t, f_q, f_qt, moment, out)
-        frame.geometric(None, q[: self.rigid], self._none, moment, self._arms)
-        out[: self.rigid, : self.rigid] += f_q * self._arms
+        change, out = self.frame.change(None, q[: self.rigid]), np.empty((self.size, self.size))
+        _derivative(self.of, self.frame.frame, change, self._at, self.bryan, q, q_t, f_q, f_qt, out)
         return out
 
     def _move(self, q: np.ndarray, q_t: np.ndarray) -> None:
         self.frame.update(None, q[: self.rigid], q_t[: self.rigid], None)
         _settle(self.of, self.frame.frame, self.frame.jac, q, self._at)
-
-
-@njit(cache=True)
-def _sum(a, fa, b, fb):
-    """Combination fa a + fb b of 3-tuples."""
-    return fa * a[0] + fb * b[0], fa * a[1] + fb * b[1], fa * a[2] + fb * b[2]
 
 
 @njit(cache=True)
@@ -196,14 +184,16 @@ def _motion(S, at, bryan, q_t):
             at.growth[i, j] = 0.0
     w = alpha = flow = (0.0, 0.0, 0.0)
     for c in range(3, n):
-        w = _sum(w, 1.0, column(at.G, c), q_t[c])
+        w = combined(w, 1.0, column(at.G, c), q_t[c])
     if bryan:
         first, second, third = column(at.G, 3), column(at.G, 4), column(at.G, 5)
         # sum over i < j of theta_t,i theta_t,j h_i x h_j
-        alpha = _sum(cross(first, _sum(second, q_t[4], third, q_t[5])), q_t[3], cross(second, third), q_t[4] * q_t[5])
+        alpha = combined(
+            cross(first, combined(second, q_t[4], third, q_t[5])), q_t[3], cross(second, third), q_t[4] * q_t[5]
+        )
     for a in range(k):
         rate = q_t[n + a]
-        flow = _sum(flow, 1.0, column(S, a), rate)
+        flow = combined(flow, 1.0, column(S, a), rate)
         for i in range(3):
             for j in range(3):
                 at.growth[i, j] += rate * at.R[a, j, i]
@@ -214,8 +204,8 @@ def _motion(S, at, bryan, q_t):
 def _force_and_moment(at, w, alpha, flow):
     """Tuples f and m."""
     s = at.s[0], at.s[1], at.s[2]
-    f = _sum(cross(alpha, s), 1.0, cross(w, _sum(cross(w, s), 1.0, flow, 2.0)), 1.0)
-    m = _sum(_sum(times(at.J, alpha), 1.0, cross(w, times(at.J, w)), 1.0), 1.0, times(at.growth, w), 2.0)
+    f = combined(cross(alpha, s), 1.0, cross(w, combined(cross(w, s), 1.0, flow, 2.0)), 1.0)
+    m = combined(combined(times(at.J, alpha), 1.0, cross(w, times(at.J, w)), 1.0), 1.0, times(at.growth, w), 2.0)
     return f, m
 
 
@@ -245,9 +235,9 @@ def _alpha_changes(at, bryan, q_t, f_q, f_qt):
     h1, h2, h3 = column(at.G, 3), column(at.G, 4), column(at.G, 5)
     a, b, c = q_t[3], q_t[4], q_t[5]
     h12, h13, h23 = cross(h1, h2), cross(h1, h3), cross(h2, h3)
-    by_second = cross(h12, _sum(h2, a * b, h3, a * c))
-    by_third = _sum(
-        _sum(cross(h13, _sum(h2, a * b, h3, a * c)), 1.0, cross(h1, h23), a * b), 1.0, cross(h23, h3), b * c
+    by_second = cross(h12, combined(h2, a * b, h3, a * c))
+    by_third = combined(
+        combined(cross(h13, combined(h2, a * b, h3, a * c)), 1.0, cross(h1, h23), a * b), 1.0, cross(h23, h3), b * c
     )
     for i in range(3):
         out[i, 3] = f_qt * (b * h12[i] + c * h13[i])
@@ -256,35 +246,34 @@ def _alpha_changes(at, bryan, q_t, f_q, f_qt):
 
 
 @njit(cache=True)
-def _derivative(of, frame, jac, at, bryan, q, q_t, f_q, f_qt, moment_out, out):
-    """Fill the derivative, without that of G^T at a fixed moment, and that moment m, global (3,)."""
+def _derivative(of, frame, change, at, bryan, q, q_t, f_q, f_qt, out):
+    """Fill the derivative; ``change`` (6, n, n) is that of the node's Jacobians."""
     n = at.G.shape[1]
     w, alpha, flow = _motion(of.S, at, bryan, q_t)
     f, m = _force_and_moment(at, w, alpha, flow)
-    moment_out[0], moment_out[1], moment_out[2] = times(frame, m)
+    moment = times(frame, m)
     _by_modes(of, frame, at, w, alpha, q_t, f_q, f_qt, out)
     _alpha_changes(at, bryan, q_t, f_q, f_qt)
     s = at.s[0], at.s[1], at.s[2]
     ws, Jw = cross(w, s), times(at.J, w)
     for c in range(n):
         g = column(at.G, c)
-        spin = _sum(
-            in_frame(frame, (jac[_SPIN_CHANGE, 0, c], jac[_SPIN_CHANGE, 1, c], jac[_SPIN_CHANGE, 2, c])),
-            1.0,
-            cross(w, g),
-            1.0,
-        )
-        dw, da = _sum(spin, f_q, g, f_qt), column(at.alphas, c)
+        dw = (0.0, 0.0, 0.0)
+        for d in range(3, n):
+            dw = combined(dw, 1.0, (change[3, d, c], change[4, d, c], change[5, d, c]), q_t[d])
+        spin = combined(in_frame(frame, dw), 1.0, cross(w, g), 1.0)
+        dw, da = combined(spin, f_q, g, f_qt), column(at.alphas, c)
         # f and m turn with the frame
-        df = _sum(cross(g, f), f_q, cross(da, s), 1.0)
-        df = _sum(df, 1.0, cross(dw, _sum(ws, 1.0, flow, 2.0)), 1.0)
-        df = times(frame, _sum(df, 1.0, cross(w, cross(dw, s)), 1.0))
-        dm = _sum(_sum(cross(g, m), f_q, times(at.J, da), 1.0), 1.0, times(at.growth, dw), 2.0)
-        dm = _sum(_sum(dm, 1.0, cross(dw, Jw), 1.0), 1.0, cross(w, times(at.J, dw)), 1.0)
+        df = combined(cross(g, f), f_q, cross(da, s), 1.0)
+        df = combined(df, 1.0, cross(dw, combined(ws, 1.0, flow, 2.0)), 1.0)
+        df = times(frame, combined(df, 1.0, cross(w, cross(dw, s)), 1.0))
+        dm = combined(combined(cross(g, m), f_q, times(at.J, da), 1.0), 1.0, times(at.growth, dw), 2.0)
+        dm = combined(combined(dm, 1.0, cross(dw, Jw), 1.0), 1.0, cross(w, times(at.J, dw)), 1.0)
         for i in range(3):
             out[i, c] = df[i]
         for d in range(3, n):
-            out[d, c] = dot(column(at.G, d), dm)
+            turned = dot((change[3, d, c], change[4, d, c], change[5, d, c]), moment)
+            out[d, c] = dot(column(at.G, d), dm) + f_q * turned
         _modes_by_motion(of.C, at, w, q_t, dw, da, c, out)
 
 
@@ -304,21 +293,21 @@ def _modes_by_motion(C, at, w, q_t, dw, da, c, out):
 def _by_modes(of, frame, at, w, alpha, q_t, f_q, f_qt, out):
     """Fill the columns of the modes."""
     n, k = at.G.shape[1], at.R.shape[0]
-    axis = _sum(alpha, f_q, w, 2.0 * f_qt)
+    axis = combined(alpha, f_q, w, 2.0 * f_qt)
     for a in range(k):
         S, R = column(of.S, a), at.R[a]
         df = cross(axis, S)
-        df = times(frame, _sum(df, 1.0, cross(w, cross(w, S)), f_q))
+        df = times(frame, combined(df, 1.0, cross(w, cross(w, S)), f_q))
         grown = (0.0, 0.0, 0.0)
         for b in range(k):
             Pw = times(of.P[a, b], w)
-            grown = _sum(grown, 1.0, Pw, q_t[n + b])
+            grown = combined(grown, 1.0, Pw, q_t[n + b])
             turned = axis[0] * of.C[b, a, 0] + axis[1] * of.C[b, a, 1] + axis[2] * of.C[b, a, 2]
             out[n + a, n + b] = f_q * (of.stiffness[a, b] - dot(w, Pw)) + f_qt * of.damping[a, b] - turned
         back = in_frame(R, w)
-        both = _sum(times(R, w), 1.0, back, 1.0)
-        dm = _sum(_sum(times(R, alpha), 1.0, in_frame(R, alpha), 1.0), 1.0, cross(w, both), 1.0)
-        dm = _sum(_sum(dm, 1.0, grown, 2.0), f_q, back, 2.0 * f_qt)
+        both = combined(times(R, w), 1.0, back, 1.0)
+        dm = combined(combined(times(R, alpha), 1.0, in_frame(R, alpha), 1.0), 1.0, cross(w, both), 1.0)
+        dm = combined(combined(dm, 1.0, grown, 2.0), f_q, back, 2.0 * f_qt)
         for i in range(3):
             out[i, n + a] = df[i]
         for c in range(3, n):

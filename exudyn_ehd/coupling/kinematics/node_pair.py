@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.coupling.kinematics.relative import global_loads, motion_variation, relative_motion, tangent_matrices
-from exudyn_ehd.coupling.kinematics.rigid_nodes import node_frame, node_geometric, node_variation
+from exudyn_ehd.coupling.kinematics.rigid_nodes import node_change, node_frame, vary
 
 
 @njit(cache=True)
@@ -32,12 +32,11 @@ def derive_nodes(housing, journal, q, q_t, wrench, tangent):
     loads, stiffness, damping = np.empty((4, 3)), np.zeros((size, size)), np.empty((size, size))
     motion_q, motion_qt = np.empty((10, size)), np.empty((10, size))
     global_loads(frame_h, frame_j, wrench, loads)
-    for first, end, side, row in ((0, n, housing, 0), (n, size, journal, 2)):
+    for first, end, side, load in ((0, n, housing, loads[:2]), (n, size, journal, loads[2:])):
         if end > first:
-            own = q[first:end]
-            node_variation(side[0], own, q_t[first:end], side[1], side[2], side[5])
-            geometric = stiffness[first:end, first:end]
-            node_geometric(side[0], own, side[1], side[2], loads[row], loads[row + 1], geometric)
+            change = np.empty((6, end - first, end - first))
+            node_change(side[0], q[first:end], side[1], side[2], change)
+            vary(change, q_t[first:end], load.reshape(6), side[5], stiffness[first:end, first:end])
     motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q, motion_qt)
     tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, stiffness, damping)
     return stiffness, damping, motion_q, motion_qt

@@ -172,30 +172,18 @@ def global_loads(frame_h, frame_j, wrench, loads_out):
 
 
 @njit(cache=True)
-def generalized_force(jac_h, jac_j, loads, force_out):
-    """Generalized force Q = Jp^T F + Jr^T M (n,) of both sides, order housing, journal."""
-    n_h = jac_h.shape[2]
-    for side in range(2):
-        jac = jac_h if side == 0 else jac_j
-        start = 0 if side == 0 else n_h
-        for k in range(jac.shape[2]):
-            total = 0.0
-            for i in range(3):
-                total += jac[0, i, k] * loads[2 * side, i] + jac[1, i, k] * loads[2 * side + 1, i]
-            force_out[start + k] = total
-
-
-@njit(cache=True)
 def wrench_force(frame_h, frame_j, jac_h, jac_j, wrench, force_out):
-    """Generalized force (n,) of both sides for a wrench (6,), as in `global_loads` and `generalized_force`."""
-    loads = np.empty((4, 3))
-    global_loads(frame_h, frame_j, wrench, loads)
-    generalized_force(jac_h, jac_j, loads, force_out)
+    """Generalized force (n,) of both sides, order housing, journal, for a wrench (6,) on the journal, joint frame."""
+    loads = wrench_map(frame_h, frame_j, jac_h, jac_j)
+    for k in range(loads.shape[0]):
+        force_out[k] = 0.0
+        for c in range(6):
+            force_out[k] += loads[k, c] * wrench[c]
 
 
 @njit(cache=True)
 def wrench_map(frame_h, frame_j, jac_h, jac_j):
-    """Map (n, 6) from the wrench on the journal, joint frame, to the generalized forces of `generalized_force`."""
+    """Map (n, 6) from the wrench on the journal, joint frame, to the generalized forces of both sides."""
     n_h = jac_h.shape[2]
     out = np.empty((n_h + jac_j.shape[2], 6))
     r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
@@ -255,36 +243,30 @@ def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, m
 
     ``tangent`` (6, 10) is d wrench / d motion in the joint frame.
     """
-    r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
     force, moment = (loads[2, 0], loads[2, 1], loads[2, 2]), (-loads[1, 0], -loads[1, 1], -loads[1, 2])
-    n_h = jac_h.shape[2]
-    n = n_h + jac_j.shape[2]
-    dw, load, column_c = np.empty(6), np.empty((4, 3)), np.empty(n)
+    by_wrench, n_h = wrench_map(frame_h, frame_j, jac_h, jac_j), jac_h.shape[2]
+    n = by_wrench.shape[0]
+    by_place, by_rate = np.empty(6), np.empty(6)
     for c in range(n):
         jac, k = (jac_h, c) if c < n_h else (jac_j, c - n_h)
-        for kind in range(2):
-            motion = motion_q if kind == 0 else motion_qt
-            for i in range(6):
-                dw[i] = 0.0
-                for m in range(10):
-                    dw[i] += tangent[i, m] * motion[m, c]
-            df = times(frame_h, (dw[0], dw[1], dw[2]))
-            dm = times(frame_h, (dw[3], dw[4], dw[5]))
-            dmj = _minus(dm, cross(r, df))
-            if kind == 0:
-                turned, moved = _jac_column(jac, _JR, k), cross(_jac_column(jac, _JP, k), force)
-                if c < n_h:
-                    # the joint frame turns, and with it the wrench
-                    turn_f, turn_m = cross(turned, force), cross(turned, moment)
-                    df, dm = _plus(df, turn_f), _plus(dm, turn_m)
-                    dmj = _plus(dmj, _plus(_minus(turn_m, cross(r, turn_f)), moved))
-                else:
-                    dmj = _minus(dmj, moved)
+        for i in range(6):
+            by_place[i] = by_rate[i] = 0.0
+            for m in range(10):
+                by_place[i] += tangent[i, m] * motion_q[m, c]
+                by_rate[i] += tangent[i, m] * motion_qt[m, c]
+        # the arm of the force about the journal's point
+        moved = cross(force, _jac_column(jac, _JP, k))
+        if c < n_h:
+            # the joint frame turns, and with it the wrench
+            turned, moved = _jac_column(jac, _JR, k), _minus((0.0, 0.0, 0.0), moved)
+            turn_f, turn_m = in_frame(frame_h, cross(turned, force)), in_frame(frame_h, cross(turned, moment))
             for i in range(3):
-                load[0, i], load[1, i], load[2, i], load[3, i] = -df[i], -dm[i], df[i], dmj[i]
-            generalized_force(jac_h, jac_j, load, column_c)
-            for i in range(n):
-                if kind == 0:
-                    k_out[i, c] += column_c[i]
-                else:
-                    d_out[i, c] = column_c[i]
+                by_place[i] += turn_f[i]
+                by_place[3 + i] += turn_m[i]
+        for i in range(n):
+            total = dot(_jac_column(jac_j, _JR, i - n_h), moved) if i >= n_h else 0.0
+            d_out[i, c] = 0.0
+            for m in range(6):
+                total += by_wrench[i, m] * by_place[m]
+                d_out[i, c] += by_wrench[i, m] * by_rate[m]
+            k_out[i, c] += total

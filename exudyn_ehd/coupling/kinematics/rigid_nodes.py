@@ -6,7 +6,9 @@ of rigid bodies, `film_element.MarkerSide` for any other marker):
 frame (3, 6)      columns 0-2: A, marker frame to global; 3: position p; 4: velocity v; 5: angular velocity omega;
                   all global
 jac   (4, 3, n)   Jp, Jr, Vq, Wq with dp = Jp dq, dphi = Jr dq (global rotation), dv = Vq dq and domega = Wq dq at
-                  fixed q_t; with respect to q_t, dv = Jp dq_t and domega = Jr dq_t.
+                  fixed q_t; with respect to q_t, dv = Jp dq_t and domega = Jr dq_t
+change (6, n, n)  derivatives of J = [Jp, Jr] to q: contracted with q_t they are Vq and Wq, with a force and a moment
+                  the geometric stiffness (`vary`).
 
 Legend: q, q_t coordinates (without reference values) and their rates; n their number; rho joint point in the node's
 frame [m]; a_loc marker frame to node frame; s = A_node rho the global lever arm; T, F, M global torque, force, moment.
@@ -88,6 +90,12 @@ def in_frame(a, b):
 def dot(a, b):
     """Scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)
+def combined(a, fa, b, fb):
+    """Combination fa a + fb b of 3-tuples."""
+    return fa * a[0] + fb * b[0], fa * a[1] + fb * b[1], fa * a[2] + fb * b[2]
 
 
 @njit(cache=True)
@@ -192,64 +200,25 @@ def rotation_of(kind: int, reference: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def _spin_variation(kind, theta, theta_t, a, jr, w_out):
-    """d(Jr theta_t) / d theta (3, m) at fixed theta_t, in the first columns of ``w_out`` (3, 4)."""
-    for i in range(3):
-        for k in range(4):
-            w_out[i, k] = 0.0
+def _turn_change(kind, theta, jr, w_out):
+    """Changes (3, m, m) of the columns of Jr (3, m) with theta, in the first entries of ``w_out`` (3, 4, 4)."""
+    w_out.fill(0.0)
     if kind == EULER_PARAMETERS:
         norm2 = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2] + theta[3] * theta[3]
-        _euler_g(theta_t[0], theta_t[1], theta_t[2], theta_t[3], w_out)
-        for i in range(3):
-            omega_i = jr[i, 0] * theta_t[0] + jr[i, 1] * theta_t[1] + jr[i, 2] * theta_t[2] + jr[i, 3] * theta_t[3]
-            for k in range(4):
-                # G(e) e_t = -G(e_t) e, and the normalisation 1 / |e|^2
-                w_out[i, k] = -w_out[i, k] / norm2 - 2.0 * omega_i * theta[k] / norm2
-    elif kind == TAIT_BRYAN:
-        s, t = theta_t[1], theta_t[2]
-        later = jr[0, 2] * t, jr[1, 2] * t, jr[2, 2] * t
-        both = jr[0, 1] * s + later[0], jr[1, 1] * s + later[1], jr[2, 1] * s + later[2]
-        w_out[0, 0], w_out[1, 0], w_out[2, 0] = cross((jr[0, 0], jr[1, 0], jr[2, 0]), both)
-        w_out[0, 1], w_out[1, 1], w_out[2, 1] = cross((jr[0, 1], jr[1, 1], jr[2, 1]), later)
-    elif kind == ROTATION_VECTOR:
-        x, y, z = theta_t[0], theta_t[1], theta_t[2]
-        for i in range(3):
-            # A (e_k x theta_t)
-            w_out[i, 0] = a[i, 2] * y - a[i, 1] * z
-            w_out[i, 1] = a[i, 0] * z - a[i, 2] * x
-            w_out[i, 2] = a[i, 1] * x - a[i, 0] * y
-
-
-@njit(cache=True)
-def _torque_variation(kind, theta, jr, torque, h_out):
-    """d(Jr^T T) / d theta at a fixed global torque T (3-tuple), in the first rows and columns of ``h_out`` (4, 4)."""
-    for i in range(4):
+        g, unit = np.empty((3, 4)), np.zeros(4)
         for j in range(4):
-            h_out[i, j] = 0.0
-    if kind == EULER_PARAMETERS:
-        norm2 = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2] + theta[3] * theta[3]
-        x, y, z = 2.0 * torque[0], 2.0 * torque[1], 2.0 * torque[2]
-        # G is linear: T . G(e_j) e_i, row for row
-        h_out[0, 1], h_out[0, 2], h_out[0, 3] = -x, -y, -z
-        h_out[1, 0], h_out[1, 2], h_out[1, 3] = x, -z, y
-        h_out[2, 0], h_out[2, 1], h_out[2, 3] = y, z, -x
-        h_out[3, 0], h_out[3, 1], h_out[3, 2] = z, -y, x
-        for i in range(4):
-            q_i = jr[0, i] * torque[0] + jr[1, i] * torque[1] + jr[2, i] * torque[2]
-            for j in range(4):
-                h_out[i, j] = (h_out[i, j] - 2.0 * q_i * theta[j]) / norm2
-    elif kind == TAIT_BRYAN:
-        # axis i turns with every angle before it: dg_i / dtheta_j = g_j x g_i for j < i
-        for i in range(3):
-            for j in range(i):
-                d = cross(column(jr, j), column(jr, i))
-                h_out[i, j] = d[0] * torque[0] + d[1] * torque[1] + d[2] * torque[2]
-    elif kind == ROTATION_VECTOR:
-        # cross product with the local torque A^T T, Jr = A
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            local = jr[0, i] * torque[0] + jr[1, i] * torque[1] + jr[2, i] * torque[2]
-            h_out[j, k], h_out[k, j] = -local, local
+            unit[j] = 1.0
+            # G is linear, and 1 / |e|^2 the normalisation
+            _euler_g(unit[0], unit[1], unit[2], unit[3], g)
+            unit[j] = 0.0
+            for i in range(3):
+                for k in range(4):
+                    w_out[i, k, j] = (g[i, k] - 2.0 * jr[i, k] * theta[j]) / norm2
+    else:
+        for k in range(3):
+            # axes turn with every angle before them, those of local increments with all
+            for j in range(k if kind == TAIT_BRYAN else 3):
+                w_out[0, k, j], w_out[1, k, j], w_out[2, k, j] = cross(column(jr, j), column(jr, k))
 
 
 @njit(cache=True)
@@ -298,44 +267,56 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
 
 
 @njit(cache=True)
-def node_variation(kind, q, q_t, reference, rho, jac_out):
-    """Fill Vq and Wq of ``jac_out`` (4, 3, n), whose Jr must be current: variation of v and omega at fixed rates."""
+def node_change(kind, q, reference, rho, change_out):
+    """Fill ``change_out`` (6, n, n): derivatives d J[i, a] / dq_b of J = [Jp, Jr]; arguments as in `node_frame`."""
     nt = translations(kind)
-    a, jr, theta, w = np.empty((3, 3)), np.empty((3, 4)), np.empty(4), np.empty((3, 4))
-    rates, spin = np.zeros(4), np.zeros(3)
+    a, jr, theta, w = np.empty((3, 3)), np.zeros((3, 4)), np.empty(4), np.empty((3, 4, 4))
     m = turn(kind, q, reference, a, jr, theta)
+    _turn_change(kind, theta, jr, w)
     s = times(a, (rho[0], rho[1], rho[2]))
+    change_out.fill(0.0)
     for k in range(m):
-        rates[k] = q_t[nt + k]
-    _spin_variation(kind, theta, rates, a, jr, w)
-    for i in range(3):
-        for k in range(m):
-            spin[i] += jr[i, k] * rates[k]
-    omega = spin[0], spin[1], spin[2]
-    for i in range(3):
-        for k in range(q.size):
-            jac_out[2, i, k] = jac_out[3, i, k] = 0.0
-    for k in range(m):
-        # v = r_t + omega x s, ds = dphi x s
-        turned, moved = cross(column(w, k), s), cross(omega, cross(column(jr, k), s))
-        for i in range(3):
-            jac_out[2, i, nt + k], jac_out[3, i, nt + k] = turned[i] + moved[i], w[i, k]
+        for j in range(m):
+            dr = w[0, k, j], w[1, k, j], w[2, k, j]
+            dp = lever_change(dr, column(jr, k), column(jr, j), s)
+            for i in range(3):
+                change_out[i, nt + k, nt + j], change_out[3 + i, nt + k, nt + j] = dp[i], dr[i]
 
 
 @njit(cache=True)
-def node_geometric(kind, q, reference, rho, force, moment, geo_out):
-    """Geometric term d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment at the marker."""
-    nt = translations(kind)
-    a, jr, theta, h = np.empty((3, 3)), np.empty((3, 4)), np.empty(4), np.empty((4, 4))
-    m = turn(kind, q, reference, a, jr, theta)
-    s, F = times(a, (rho[0], rho[1], rho[2])), (force[0], force[1], force[2])
-    torque = cross(s, F)
-    _torque_variation(kind, theta, jr, (moment[0] + torque[0], moment[1] + torque[1], moment[2] + torque[2]), h)
-    for i in range(q.size):
-        for j in range(q.size):
-            geo_out[i, j] = 0.0
-    for j in range(m):
-        # the torque s x F changes with the arm: dT = (dphi x s) x F
-        d_torque = cross(cross(column(jr, j), s), F)
-        for i in range(m):
-            geo_out[nt + i, nt + j] = h[i, j] + jr[0, i] * d_torque[0] + jr[1, i] * d_torque[1] + jr[2, i] * d_torque[2]
+def lever_change(dr, turn, moving, arm):
+    """Change of turn x arm, 3-tuples, for a change ``dr`` of the turn while the arm turns with ``moving``."""
+    first, second = cross(dr, arm), cross(turn, cross(moving, arm))
+    return first[0] + second[0], first[1] + second[1], first[2] + second[2]
+
+
+@njit(cache=True)
+def add_lever(turns, arm, change_out):
+    """Add to the changes of Jp in ``change_out`` (6, n, n) those of Jr x arm, for Jr (3, n) and an arm (3,)."""
+    s = arm[0], arm[1], arm[2]
+    for k in range(turns.shape[1]):
+        for j in range(turns.shape[1]):
+            dr = change_out[3, k, j], change_out[4, k, j], change_out[5, k, j]
+            dp = lever_change(dr, column(turns, k), column(turns, j), s)
+            for i in range(3):
+                change_out[i, k, j] += dp[i]
+
+
+@njit(cache=True)
+def vary(change, q_t, load, jac_out, geometric_out):
+    """Fill Vq, Wq of ``jac_out`` and the geometric term d(J^T load) / dq (n, n) at a fixed load (6,), force and moment.
+
+    ``change`` (6, n, n) is that of `node_change`.
+    """
+    n = q_t.size
+    for b in range(n):
+        for i in range(6):
+            total = 0.0
+            for a in range(n):
+                total += change[i, a, b] * q_t[a]
+            jac_out[2 + i // 3, i % 3, b] = total
+        for a in range(n):
+            total = 0.0
+            for i in range(6):
+                total += change[i, a, b] * load[i]
+            geometric_out[a, b] = total

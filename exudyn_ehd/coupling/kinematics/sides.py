@@ -17,7 +17,13 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import node_pair, relative, rigid_nodes
 
-_NONE, _UNITS = np.zeros(3), np.eye(3)
+NODE_KINDS = {
+    "RigidBodyEP": rigid_nodes.EULER_PARAMETERS,
+    "RigidBodyRxyz": rigid_nodes.TAIT_BRYAN,
+    "RigidBodyRotVecLG": rigid_nodes.ROTATION_VECTOR,
+    "RigidBody2D": rigid_nodes.PLANAR,
+}
+"""How the nodes of rigid bodies turn, by Exudyn's names."""
 SideType = TypeVar("SideType", bound=Side)
 
 
@@ -64,17 +70,20 @@ class NodeSide:
         if self.size:
             rigid_nodes.node_frame(self.kind, q, q_t, self.reference, self.rho, self.rotation, self.frame, self.jac)
 
-    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        out = np.empty((6, self.size, self.size))
         if self.size:
-            rigid_nodes.node_variation(self.kind, q, q_t, self.reference, self.rho, self.jac)
+            rigid_nodes.node_change(self.kind, q, self.reference, self.rho, out)
+        return out
 
-    def geometric(
-        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        if self.size:
-            rigid_nodes.node_geometric(self.kind, q, self.reference, self.rho, force, moment, out)
+
+def node_side(mbs: exu.MainSystem, node: Index) -> NodeSide:
+    """Frame of a node of a rigid body itself, in the reference configuration."""
+    data = mbs.GetNode(node)
+    side = NodeSide(NODE_KINDS[data["nodeType"]], node, data["referenceCoordinates"], np.zeros(3), np.eye(3))
+    side.update(mbs, np.zeros(side.size), np.zeros(side.size), None)
+    return side
 
 
 class MarkerSide:
@@ -101,7 +110,6 @@ class MarkerSide:
         self.frame = np.zeros((3, 6))
         self.jac = np.zeros((4, 3, 0))
         self.size = -1
-        self.change: np.ndarray | None = None
         self._offers_change = True
 
     def bind(self, mbs: exu.MainSystem) -> None:
@@ -125,26 +133,11 @@ class MarkerSide:
             self.jac[0] = mbs.ComputeItem(self.marker, exu.ComputeItemType.PositionJacobian)
             self.jac[1] = mbs.ComputeItem(self.marker, exu.ComputeItemType.RotationJacobian)
 
-    def vary(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-        self.change = self._jacobian_change(mbs, q)
-        if self.change is not None:
-            self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
-
-    def geometric(
-        self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global loads into ``out``, after `vary` at the same state."""
-        if self.change is not None:
-            out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
-
-    def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray | None:
-        """Entries d J[i, a] / dq_b (6, n, n) of J = [Jp, Jr]; None if unknown."""
-        if not self._offers_change:
-            return None
+    def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
         item, n = exu.ComputeItemType.JacobianTTimesVectorDerivative, self.size
         change = np.zeros((6, n, n))
-        for i, unit in enumerate(np.eye(6)):
+        for i, unit in enumerate(np.eye(6)[: 6 * self._offers_change]):
             part = np.asarray(mbs.ComputeItem(self.marker, item, vector=unit))
             # Exudyn gives an empty matrix for one that vanishes
             if part.size:
@@ -165,7 +158,8 @@ class TreeSide(MarkerSide):
         super().bind(mbs)
         self._leading = ~np.tri(self.size, dtype=bool)  # [k, j]: j > k
 
-    def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
+    def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
         Jp, Jr = self.jac[0].T, self.jac[1].T
         turned = np.cross(Jr[None, :, :], np.stack([Jp, Jr])[:, :, None, :])
         turned[0][self._leading] = np.cross(Jr[:, None, :], Jp[None, :, :])[self._leading]
@@ -192,14 +186,15 @@ class FloatingSide(MarkerSide):
         super().__init__(marker, nodes, rotation)
         self.floating = frame
 
-    def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
+    def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
         n = self.floating.size
         self.floating.update(mbs, q[:n], np.zeros(n), CURRENT)
         return floating_change(self.floating, q[:n], self.frame[:, 3] - self.floating.frame[:, 3], self.jac)
 
 
 def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.ndarray) -> np.ndarray:
-    """Entries d J[i, a] / dq_b (6, m, m) of the Jacobians of a point in a floating frame.
+    """Derivatives d J[i, a] / dq_b (6, m, m) of the Jacobians of a point in a floating frame.
 
     Parameters
     ----------
@@ -213,15 +208,11 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
         Jp and Jr of the point: the node's columns, then those of local coordinates.
     """
     n, size = floating.size, jac.shape[2]
+    change, own = np.zeros((6, size, size)), floating.change(None, q)
+    rigid_nodes.add_lever(np.ascontiguousarray(jac[1, :, :n]), arm, own)
+    change[:, :n, :n] = own
     # (n, 3, 3): cross products with the columns of Jr, vectors standing behind them
     turns = relative.skews(jac[1, :, :n])
-    change = np.zeros((6, size, size))
-    # row i of the cross product with the arm is arm x e_i, negative
-    for i, crossed in enumerate(-relative.skew(arm)):
-        floating.geometric(None, q, _NONE, _UNITS[i], change[3 + i, :n, :n])
-        floating.geometric(None, q, _NONE, crossed, change[i, :n, :n])
-    # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
-    change[:3, :n, :n] += (turns @ (turns @ arm).T).transpose(1, 0, 2)
     for first in (0, 3):
         change[first : first + 3, n:, :n] = (turns @ jac[first // 3, :, n:]).transpose(1, 2, 0)
     change[:3, :n, n:] = (turns @ jac[0, :, n:]).transpose(1, 0, 2)
@@ -301,11 +292,9 @@ def derivatives_between(
         return found
     frames, jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
     relative.global_loads(*frames, wrench, loads)
-    housing.vary(mbs, q[:n_h], q_t[:n_h])
-    journal.vary(mbs, q[n_h:], q_t[n_h:])
-    motion_q, motion_qt = kinematics.variation_of(*frames, *jacobians)
     stiffness, damping = np.zeros((q.size, q.size)), np.empty((q.size, q.size))
-    housing.geometric(mbs, q[:n_h], loads[0], loads[1], stiffness[:n_h, :n_h])
-    journal.geometric(mbs, q[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])
+    for side, own, load in ((housing, slice(0, n_h), loads[:2]), (journal, slice(n_h, q.size), loads[2:])):
+        rigid_nodes.vary(side.change(mbs, q[own]), q_t[own], load.reshape(6), side.jac, stiffness[own, own])
+    motion_q, motion_qt = kinematics.variation_of(*frames, *jacobians)
     relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_q, motion_qt, stiffness, damping)
     return stiffness, damping, motion_q, motion_qt

@@ -209,9 +209,7 @@ def _search(
     mbs: exu.MainSystem, rotors: Sequence[Index | Sequence[Index]] | None, ratios: Sequence[float] | None
 ) -> Iterator[EquilibriumSearch]:
     """A search in a system that gets its states and films back."""
-    require_system(WHERE, mbs)
-    if not mbs.systemIsConsistent:
-        raise InputError(f"{WHERE}: the system is not assembled; call mbs.Assemble() first.")
+    require_system(WHERE, mbs, assembled=True)
     require_items(mbs)
     joints = joints_of(mbs)
     if not joints:

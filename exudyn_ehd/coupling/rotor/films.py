@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.axial import axial_variation, centre_of
-from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -33,35 +34,37 @@ _LOADS, _SIGNS = [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 class Carrier:
     """One side of a joint: its node in the system, None for ground, its frame and its Jacobians.
 
-    Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t.
+    Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t: dp = Jp dx and
+    v = Jp u.
     """
 
     def __init__(self, side: NodeSide, node: TurningNode | None) -> None:
         self.side, self.node = side, node
-        size = 0 if node is None else 6
-        self.frame, self.jac = side.frame.copy(), np.zeros((4, 3, size))
-        self.places = np.arange(size) + (0 if node is None else node.own.start)
-        self._arm = np.zeros((3, 3))
+        self.size, self.nodes = (0 if node is None else 6), side.nodes
+        self.frame, self.jac = side.frame.copy(), np.zeros((4, 3, self.size))
+        self.places = np.arange(self.size) + (0 if node is None else node.own.start)
+        self._arm = np.zeros(3)
 
-    def update(self, q: np.ndarray, u: np.ndarray) -> None:
-        """Bring frame and Jacobians to a state."""
+    def update(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
+    ) -> None:
+        """Fill the frame and Jp, Jr at the system's coordinates ``q`` (n,) and rates u, ``q_t`` (size,)."""
         if self.node is None:
             return
-        turn, v, omega = self.node.turn(q), u[self.node.own][:3], u[self.node.own][3:]
+        turn, v, omega = self.node.turn(q), q_t[self.node.own][:3], q_t[self.node.own][3:]
         arm = turn @ self.side.rho
         self.frame[:, :3] = turn @ self.side.rotation
         self.frame[:, 3] = self.node.position(q) + arm
         self.frame[:, 4], self.frame[:, 5] = v + np.cross(omega, arm), omega
-        self._arm = relative.skew(arm)
         self.jac[0, :, :3] = self.jac[1, :, 3:] = np.eye(3)
-        self.jac[0, :, 3:], self.jac[2, :, 3:] = -self._arm, -relative.skew(omega) @ self._arm
+        self.jac[0, :, 3:] = -relative.skew(arm)
+        self._arm = arm
 
-    def geometric(self, force: np.ndarray) -> np.ndarray:
-        """d(Jp^T F + Jr^T M) / dx (n, n) at fixed loads in space: the force's arm turns."""
-        change = np.zeros((self.places.size, self.places.size))
-        if self.node is not None:
-            change[3:, 3:] = relative.skew(force) @ self._arm
-        return change
+    def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
+        """Derivatives (6, n, n) of Jp and Jr by x: the arm turns."""
+        out = np.zeros((6, self.size, self.size))
+        rigid_nodes.add_lever(self.jac[1], self._arm, out)
+        return out
 
 
 class FilmLoads(NamedTuple):
@@ -73,14 +76,11 @@ class FilmLoads(NamedTuple):
         Generalized force.
     by_place, by_rate : (n, n) arrays
         Its derivatives by x and u.
-    motion_by_place : (10, n) array
-        Derivative of the journal's motion in the joint frame.
     """
 
     force: np.ndarray
     by_place: np.ndarray
     by_rate: np.ndarray
-    motion_by_place: np.ndarray
 
 
 class RotorFilm:
@@ -97,7 +97,7 @@ class RotorFilm:
         self.model = plain_model(joint)
         self.bearing = self.model.bearing
         housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
-        self.housing, self.journal = housing, journal
+        self.mbs, self.sides = system.mbs, (housing, journal)
         self.frames, self.jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
         turning = [system.ratios.get(int(side.nodes[0]), 0.0) if side.nodes else 0.0 for side in joint.element.sides]
         self.ratio = turning[1]
@@ -107,15 +107,16 @@ class RotorFilm:
                 "spinning bodies by rotors=..., and give them as second entry of the joint's itemNumbers."
             )
         self.places = np.concatenate((housing.places, journal.places))
-        self.motion = np.zeros(10)
+        self.motion, self.rates = np.zeros(10), np.zeros(self.places.size)
         self.faces, self.offset, self.centre = joint.element.faces, joint.element.offset, np.zeros(3)
         self._on_faces: ThrustEvaluation | None = None
         self._told = False
 
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
         """Bring the journal's motion to a state."""
-        for side in (self.housing, self.journal):
-            side.update(q, u)
+        for side in self.sides:
+            side.update(self.mbs, q, u, None)
+        self.rates = u[self.places]
         self.motion = relative.motion_of(*self.frames)
         if self.faces is not None:
             self.centre = centre_of(*self.frames, self.offset)
@@ -130,34 +131,27 @@ class RotorFilm:
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
-        """Return the generalized force in the directions, and its derivatives, of all films of the joint.
-
-        Of a wrench (6,) with tangent (6, 10), and of the films on the end faces at the state of the last `update`.
-        """
-        on_faces = None
+        """Loads of a wrench (6,) with tangent (6, 10), and of the films on the end faces, after `update`."""
+        state, on_faces, by_wrench = (self.rates, self.rates), None, self._wrench_map()
         if self._on_faces is not None:
             on_faces = self._on_faces.tangent()
             wrench, tangent = wrench + self._on_faces.wrench, tangent[:, :10] + on_faces[:, :10]
-        frames, jacobians, h, n = self.frames, self.jacobians, self.housing.places.size, self.places.size
-        loads, force = np.empty((4, 3)), np.empty(n)
-        relative.global_loads(*frames, wrench, loads)
-        relative.generalized_force(*jacobians, loads, force)
-        motion_x, motion_u = relative.variation_of(*frames, *jacobians)
-        by_place, by_rate = np.zeros((n, n)), np.empty((n, n))
-        by_place[:h, :h], by_place[h:, h:] = self.housing.geometric(loads[0]), self.journal.geometric(loads[2])
         tangent = np.ascontiguousarray(tangent)
-        relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_x, motion_u, by_place, by_rate)
+        by_place, by_rate, _, _ = derivatives_between(self.mbs, self.sides, state, wrench, tangent)
         if on_faces is not None:
-            by_wrench = relative.wrench_map(*frames, *jacobians)
             by_place += np.outer(by_wrench @ on_faces[:, 10], axial_variation(by_wrench, self.centre))
-        return FilmLoads(force, by_place, by_rate, motion_x)
+        return FilmLoads(by_wrench @ wrench, by_place, by_rate)
+
+    def _wrench_map(self) -> np.ndarray:
+        """Map (n, 6) from a wrench on the journal to generalized forces."""
+        return np.asarray(relative.wrench_map(*self.frames, *self.jacobians))
 
     def by_spin(self, tangent: np.ndarray) -> np.ndarray:
         """Derivative (n,) of the generalized force of all films to the speed of the first rotor."""
         change = tangent[:, 8].copy()
         if self._on_faces is not None:
             change += self._on_faces.tangent()[:, 8]
-        return np.asarray(relative.wrench_map(*self.frames, *self.jacobians) @ (self.ratio * change))
+        return self._wrench_map() @ (self.ratio * change)
 
     @property
     def support_stiffness(self) -> float:
@@ -188,7 +182,7 @@ class RotorFilm:
         thrust = self.bearing.thrust
         if self._on_faces is None or thrust is None:
             return 1.0
-        along = axial_variation(relative.wrench_map(*self.frames, *self.jacobians), self.centre) @ x[self.places]
+        along = axial_variation(self._wrench_map(), self.centre) @ x[self.places]
         turn = relative.variation_of(*self.frames, *self.jacobians)[0][2:4] @ x[self.places]
         closed = abs(float(along)) + thrust.outer_radius * float(np.hypot(*turn))
         allowed = 0.6 * self._on_faces.minimum_gap if thrust.contact is None else 0.3 * thrust.clearance

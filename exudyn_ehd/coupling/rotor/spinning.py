@@ -10,9 +10,8 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, NodeIndex, ObjectIndex
-from exudyn_ehd.coupling.items.bodies import NODE_KINDS
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide, node_side
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.status import InputError
 
@@ -90,8 +89,7 @@ def _rotor(mbs: exu.MainSystem, joints: list[Joint], nodes: list[int], ratio: fl
                 f"{WHERE}: a rotor must consist of rigid bodies and geometrically exact beams on their nodes, got node "
                 f"{node} of type {data['nodeType']}; make the shaft of rigid bodies or ObjectBeamGeometricallyExact."
             )
-        reference = np.array(data["referenceCoordinates"], dtype=float)
-        references.append(rigid_nodes.rotation_of(TURNING[data["nodeType"]], reference))
+        references.append(node_side(mbs, NodeIndex(node)).frame[:, :3])
     for joint in joints:
         journal = joint.element.sides[1]
         if isinstance(journal, NodeSide) and journal.nodes and int(journal.nodes[0]) in nodes:

@@ -34,6 +34,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, node_side
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
 from exudyn_ehd.status import InputError
 
@@ -50,56 +51,52 @@ class TurningNode:
 
     Parameters
     ----------
-    kind : int
-        How it turns (`rigid_nodes`).
+    side : NodeSide
+        Its own frame.
     places : (n,) array
         Its coordinates among those of the system.
-    reference : (n,) array
     first : int
         Place of its displacement and rotation (6,) in x.
     """
 
-    def __init__(self, kind: int, places: np.ndarray, reference: np.ndarray, first: int) -> None:
-        self.kind, self.places, self.reference = kind, places, reference
-        self.own = slice(first, first + 6)
-        self._frame, self._jac = np.zeros((3, 6)), np.zeros((4, 3, places.size))
+    def __init__(self, side: NodeSide, places: np.ndarray, first: int) -> None:
+        self.side, self.places, self.own = side, places, slice(first, first + 6)
 
     def turn(self, q: np.ndarray) -> np.ndarray:
         """Rotation (3, 3), node to space, at the system's coordinates."""
-        return rigid_nodes.rotation_of(self.kind, self.reference + q[self.places])
+        return rigid_nodes.rotation_of(self.side.kind, self.side.reference + q[self.places])
 
     def position(self, q: np.ndarray) -> np.ndarray:
         """Place (3,) in space, m."""
-        return (self.reference + q[self.places])[:3]
+        return (self.side.reference + q[self.places])[:3]
 
     def rates(self, q: np.ndarray, omega: np.ndarray) -> Rates:
         """B (n, 6), the rates (m,) of the rotation's coordinates for omega (3,), and their rates at constant omega."""
-        own, zero = q[self.places], np.zeros(3)
+        own = q[self.places]
         rates = np.zeros(own.size)
-        rigid_nodes.node_frame(self.kind, own, rates, self.reference, zero, UNIT, self._frame, self._jac)
-        turns = self._jac[1, :, 3:]
-        if self.kind == rigid_nodes.TAIT_BRYAN:
+        self.side.update(None, own, rates, None)
+        turns = self.side.jac[1, :, 3:]
+        if self.side.kind == rigid_nodes.TAIT_BRYAN:
             inverse = np.linalg.inv(turns)
         else:
             # columns or rows are orthogonal and of one length; Euler parameters keep theirs
             inverse = turns.T / (turns[0] @ turns[0])
         rates[3:] = inverse @ omega
-        rigid_nodes.node_variation(self.kind, own, rates, self.reference, zero, self._jac)
         B = np.zeros((own.size, 6))
         B[:3, :3], B[3:, 3:] = UNIT, inverse
-        return B, rates[3:], -inverse @ (self._jac[3, :, 3:] @ rates[3:])
+        return B, rates[3:], -inverse @ (self.side.change(None, own)[3:] @ rates @ rates)
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
         """Change the coordinates of the system by a displacement and a rotation (6,), exact to the second order."""
-        theta = self.reference[3:] + q[self.places[3:]]
+        theta = self.side.reference[3:] + q[self.places[3:]]
         change = self.rates(q, x[3:])[1]
-        if self.kind == rigid_nodes.ROTATION_VECTOR:
+        if self.side.kind == rigid_nodes.ROTATION_VECTOR:
             change = _rotation_vector_rates(theta, change)
         theta = theta + change
-        if self.kind == rigid_nodes.EULER_PARAMETERS:
+        if self.side.kind == rigid_nodes.EULER_PARAMETERS:
             theta /= np.linalg.norm(theta)
         q[self.places[:3]] += x[:3]
-        q[self.places[3:]] = theta - self.reference[3:]
+        q[self.places[3:]] = theta - self.side.reference[3:]
 
 
 class SpinningSystem:
@@ -141,11 +138,10 @@ class SpinningSystem:
         self.nodes: dict[int, TurningNode] = {}
         self.size, plain = 0, np.ones(self.q.size, dtype=bool)
         for number in range(data.NumberOfNodes()):
-            known = mbs.GetNode(NodeIndex(number))
-            if known["nodeType"] in TURNING:
+            node = NodeIndex(number)
+            if mbs.GetNode(node)["nodeType"] in TURNING:
                 places = np.array(data.GetNodeLTGODE2(number), dtype=int)
-                reference = np.array(known["referenceCoordinates"], dtype=float)
-                self.nodes[number] = TurningNode(TURNING[known["nodeType"]], places, reference, self.size)
+                self.nodes[number] = TurningNode(node_side(mbs, node), places, self.size)
                 plain[places] = False
                 self.size += 6
         turning = [(k, *pair) for k, rotor in enumerate(rotors) for pair in zip(rotor.nodes, rotor.axes, strict=True)]

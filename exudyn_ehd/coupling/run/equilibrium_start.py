@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import INITIAL, JointModel
+from exudyn_ehd.coupling.contract import INITIAL, JointModel, require_system
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
@@ -26,8 +26,7 @@ def place(
 ) -> EquilibriumResult:
     """Move the journal's node to its equilibrium; see `LubricatedJoint.place_in_equilibrium`."""
     journal = element.sides[1]
-    if not mbs.systemIsConsistent:
-        raise InputError(f"{_WHERE}: the system of joint '{name}' is not assembled; call mbs.Assemble() first.")
+    require_system(_WHERE, mbs, assembled=True, of=f" of joint '{name}'")
     if not isinstance(journal, NodeSide) or not journal.nodes:
         raise InputError(
             f"{_WHERE}: the journal of joint '{name}' must be a rigid body or node that moves; place other bodies by a "

@@ -10,7 +10,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.contract import Index, require_system
 from exudyn_ehd.coupling.element.modal import ModalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.element.sensors import add_sensor
@@ -121,13 +121,7 @@ class Joint:
 
         See `SaveState` for the whole system.
         """
-        if not self.mbs.systemIsConsistent:
-            raise InputError(
-                f"{type(self).__name__}.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() "
-                "first."
-            )
-        self.element.require_items(self.mbs)
-        require_end(f"{type(self).__name__}.state", self.mbs, self.element.steps.solver)
+        self._require_end("state")
         time, memory, begin, rows = self.element.steps.remembered(self.mbs)
         return JointState(
             name=self.name,
@@ -138,6 +132,13 @@ class Joint:
             begin=begin,
             modes=bore_modes_of(self.element),
         )
+
+    def _require_end(self, method: str) -> None:
+        """Refuse a system that is not at the end of its run, as it was made for the joint."""
+        where = f"{type(self).__name__}.{method}"
+        require_system(where, self.mbs, assembled=True, of=f" of joint '{self.name}'")
+        self.element.require_items(self.mbs)
+        require_end(where, self.mbs, self.element.steps.solver)
 
     def forget(self) -> None:
         """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.

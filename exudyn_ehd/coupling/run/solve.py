@@ -386,8 +386,7 @@ def refusing(mbs: exu.MainSystem) -> AbstractContextManager[StepRefusal]:
 @contextmanager
 def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: SystemState) -> Iterator[None]:
     """Put a state into a system for the run within; user functions and settings are given back afterwards."""
-    if not mbs.systemIsConsistent:
-        raise InputError("SolveDynamic.restart: the system is not assembled; call mbs.Assemble() first.")
+    require_system("SolveDynamic.restart", mbs, assembled=True)
     state.put_into(mbs, joints_of(mbs))
     integration = settings.timeIntegration
     integration.startTime = state.time

@@ -18,8 +18,8 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.joint.bore.transfer import end_means, separate_means, vertex_means
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.modes import JournalModes
-from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.solid.modes.static import BoreModes
+from exudyn_ehd.solid.unrolled import Surface, directed
 
 # Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
 TURNED = 1e-6

@@ -19,9 +19,12 @@ from numba import njit, prange
 
 from exudyn_ehd.solid.elements.kernels import (
     FAST,
+    combined,
     doubled_strain,
     inverse_transposed,
+    product,
     second_piola,
+    transposed,
     viscous_strain,
     volume_change,
 )
@@ -41,62 +44,42 @@ def blocks_of(inverse: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _local(A, X, p, x, e):
-    """H row by row at a point whose natural gradients begin at p of A, and its geometry at x of X."""
-    a0, b0, c0 = A[p + e], A[p + BLOCK + e], A[p + 2 * BLOCK + e]
-    a1, b1, c1 = A[p + 3 * BLOCK + e], A[p + 4 * BLOCK + e], A[p + 5 * BLOCK + e]
-    a2, b2, c2 = A[p + 6 * BLOCK + e], A[p + 7 * BLOCK + e], A[p + 8 * BLOCK + e]
-    x00, x01, x02 = X[x + e], X[x + BLOCK + e], X[x + 2 * BLOCK + e]
-    x10, x11, x12 = X[x + 3 * BLOCK + e], X[x + 4 * BLOCK + e], X[x + 5 * BLOCK + e]
-    x20, x21, x22 = X[x + 6 * BLOCK + e], X[x + 7 * BLOCK + e], X[x + 8 * BLOCK + e]
-    first = a0 * x00 + a1 * x10 + a2 * x20, a0 * x01 + a1 * x11 + a2 * x21, a0 * x02 + a1 * x12 + a2 * x22
-    second = b0 * x00 + b1 * x10 + b2 * x20, b0 * x01 + b1 * x11 + b2 * x21, b0 * x02 + b1 * x12 + b2 * x22
-    third = c0 * x00 + c1 * x10 + c2 * x20, c0 * x01 + c1 * x11 + c2 * x21, c0 * x02 + c1 * x12 + c2 * x22
-    return first + second + third
+def _entries(flat, p):
+    """Matrix whose entries begin at p, a block apart."""
+    return (
+        (flat[p], flat[p + BLOCK], flat[p + 2 * BLOCK]),
+        (flat[p + 3 * BLOCK], flat[p + 4 * BLOCK], flat[p + 5 * BLOCK]),
+        (flat[p + 6 * BLOCK], flat[p + 7 * BLOCK], flat[p + 8 * BLOCK]),
+    )
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def _local(A, X, p, x):
+    """H at a point whose natural gradients begin at p of A, and its geometry at x of X."""
+    return product(transposed(_entries(A, p)), transposed(_entries(X, x)))
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
 def _first_piola(h, s):
-    """P = S + H S row by row."""
-    h00, h01, h02, h10, h11, h12, h20, h21, h22 = h
-    s00, s11, s22, s01, s02, s12 = s
-    first = s00 + h00 * s00 + h01 * s01 + h02 * s02, s01 + h00 * s01 + h01 * s11 + h02 * s12
-    second = s01 + h10 * s00 + h11 * s01 + h12 * s02, s11 + h10 * s01 + h11 * s11 + h12 * s12
-    third = s02 + h20 * s00 + h21 * s01 + h22 * s02, s12 + h20 * s01 + h21 * s11 + h22 * s12
-    last = s02 + h00 * s02 + h01 * s12 + h02 * s22, s12 + h10 * s02 + h11 * s12 + h12 * s22
-    return first + (last[0],) + second + (last[1],) + third + (s22 + h20 * s02 + h21 * s12 + h22 * s22,)
+    """P = S + H S."""
+    return combined(s, 1.0, product(h, s), 1.0)
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
 def _neo_hooke(h, law, P):
-    """P + mu (H + F^-T H^T) + lam ln(J) F^-T row by row."""
+    """P + mu (H + F^-T H^T) + lam ln(J) F^-T."""
     log, t = inverse_transposed(h)
-    log *= law.lam
-    h00, h01, h02, h10, h11, h12, h20, h21, h22 = h
-    t00, t01, t02, t10, t11, t12, t20, t21, t22 = t
-    mu = law.mu
-    p00 = P[0] + mu * (h00 + t00 * h00 + t01 * h01 + t02 * h02) + log * t00
-    p01 = P[1] + mu * (h01 + t00 * h10 + t01 * h11 + t02 * h12) + log * t01
-    p02 = P[2] + mu * (h02 + t00 * h20 + t01 * h21 + t02 * h22) + log * t02
-    p10 = P[3] + mu * (h10 + t10 * h00 + t11 * h01 + t12 * h02) + log * t10
-    p11 = P[4] + mu * (h11 + t10 * h10 + t11 * h11 + t12 * h12) + log * t11
-    p12 = P[5] + mu * (h12 + t10 * h20 + t11 * h21 + t12 * h22) + log * t12
-    p20 = P[6] + mu * (h20 + t20 * h00 + t21 * h01 + t22 * h02) + log * t20
-    p21 = P[7] + mu * (h21 + t20 * h10 + t21 * h11 + t22 * h12) + log * t21
-    p22 = P[8] + mu * (h22 + t20 * h20 + t21 * h21 + t22 * h22) + log * t22
-    return p00, p01, p02, p10, p11, p12, p20, p21, p22
+    elastic = combined(h, law.mu, product(t, h), law.mu)
+    return combined(combined(P, 1.0, elastic, 1.0), 1.0, t, law.lam * log)
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _pull(P, X, p, x, e, B_out):
+def _pull(P, X, p, x, B_out):
     """B_ri = w P_ij dxi_r/dX_j."""
-    w = X[x + 9 * BLOCK + e]
-    for r in range(3):
-        y = x + 3 * r * BLOCK + e
-        x0, x1, x2, z = w * X[y], w * X[y + BLOCK], w * X[y + 2 * BLOCK], p + 3 * r * BLOCK + e
-        B_out[z] = P[0] * x0 + P[1] * x1 + P[2] * x2
-        B_out[z + BLOCK] = P[3] * x0 + P[4] * x1 + P[5] * x2
-        B_out[z + 2 * BLOCK] = P[6] * x0 + P[7] * x1 + P[8] * x2
+    w, (b0, b1, b2) = X[x + 9 * BLOCK], product(_entries(X, x), P)
+    B_out[p], B_out[p + BLOCK], B_out[p + 2 * BLOCK] = w * b0[0], w * b0[1], w * b0[2]
+    B_out[p + 3 * BLOCK], B_out[p + 4 * BLOCK], B_out[p + 5 * BLOCK] = w * b1[0], w * b1[1], w * b1[2]
+    B_out[p + 6 * BLOCK], B_out[p + 7 * BLOCK], B_out[p + 8 * BLOCK] = w * b2[0], w * b2[1], w * b2[2]
 
 
 @njit(cache=True, fastmath=FAST)
@@ -106,15 +89,15 @@ def _stresses(A, At, X, points, law, B_out):
         p, x = 9 * BLOCK * q, 10 * BLOCK * q
         if law.neo_hooke or law.beta != 0.0:
             for e in range(BLOCK):
-                h, k = _local(A, X, p, x, e), _local(At, X, p, x, e)
+                h, k = _local(A, X, p + e, x + e), _local(At, X, p + e, x + e)
                 P = _first_piola(h, second_piola(viscous_strain(h, k, law), law))
                 if law.neo_hooke:
                     P = _neo_hooke(h, law, P)
-                _pull(P, X, p, x, e, B_out)
+                _pull(P, X, p + e, x + e, B_out)
         else:
             for e in range(BLOCK):
-                h = _local(A, X, p, x, e)
-                _pull(_first_piola(h, second_piola(doubled_strain(h), law)), X, p, x, e, B_out)
+                h = _local(A, X, p + e, x + e)
+                _pull(_first_piola(h, second_piola(doubled_strain(h), law)), X, p + e, x + e, B_out)
 
 
 @njit(cache=True, inline="always")
@@ -200,7 +183,7 @@ def smallest_volume_ratio(N, X, elements, u):
         np.dot(N, U, A)
         for q in range(len(N) // 3):
             for e in range(count):
-                ratio = 1.0 + volume_change(_local(flat, X[block], 9 * BLOCK * q, 10 * BLOCK * q, e))
+                ratio = 1.0 + volume_change(_local(flat, X[block], 9 * BLOCK * q + e, 10 * BLOCK * q + e))
                 if not ratio >= least:
                     least, where = ratio, first + e
     return least, where

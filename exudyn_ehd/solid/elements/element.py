@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+
+from exudyn_ehd.solid.elements.shapes import Cell
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,7 +32,7 @@ class Quadrature:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Element:
+class Element(Cell):
     """A kind of element with n nodes.
 
     Parameters
@@ -66,10 +67,8 @@ class Element:
     abaqus: tuple[str, ...]
     meshio: str
     fem: str
-    nodes: np.ndarray
     edges: np.ndarray
     faces: np.ndarray
-    shapes: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
     rules: dict[str, Quadrature]
     exact: Quadrature
     sampling: Quadrature
@@ -89,12 +88,6 @@ class Element:
         """Return whether a quadrature is one of this element's shape."""
         volume = float(self.exact.weights.sum())
         return abs(float(np.sum(rule.weights)) - volume) < 1e-6 * volume
-
-    def outside(self, natural: np.ndarray) -> np.ndarray:
-        """Return the distance of points (p, 3) beyond the element, in natural coordinates; negative inside."""
-        if self.nodes.min() < 0.0:
-            return np.abs(natural).max(axis=1) - 1.0
-        return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)
 
     def reference_gradients(self, corners: np.ndarray, rule: Quadrature) -> tuple[np.ndarray, np.ndarray]:
         """Return dN_a/dX, shape (m, q, n, 3) [1/m], and volume weights (m, q) [m^3] of elements (m, n, 3)."""

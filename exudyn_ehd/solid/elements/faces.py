@@ -6,34 +6,31 @@ come first, then the nodes on the edges 0-1, 1-2 and so on.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
+from exudyn_ehd.solid.elements.shapes import Cell, linear_simplex, quadratic_simplex, serendipity
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Face:
+class Face(Cell):
     """A kind of face with a nodes.
 
     Parameters
     ----------
-    nodes : ndarray, shape (a, 2)
-        Natural coordinates.
+    nodes, shapes
+        As in `Cell`, d = 2.
     corners : int
         4 of a quadrilateral, 3 of a triangle.
-    shapes : function
-        Shape functions (n, a) and their gradients (n, a, 2) at natural coordinates (n, 2).
     outline : ndarray of int
         Nodes around the face, closed.
     triangles : ndarray of int, shape (t, 3)
         Flat triangles that make it up.
     """
 
-    nodes: np.ndarray
     corners: int
-    shapes: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
     outline: np.ndarray
     triangles: np.ndarray
 
@@ -41,12 +38,6 @@ class Face:
     def middle(self) -> float:
         """Both natural coordinates of the middle."""
         return 0.0 if self.corners == 4 else 1.0 / 3.0
-
-    def outside(self, natural: np.ndarray) -> np.ndarray:
-        """Return the distance of points (n, 2) beyond the face, in natural coordinates; negative inside."""
-        if self.corners == 4:
-            return np.abs(natural).max(axis=1) - 1.0
-        return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)
 
     def from_square(self, points: np.ndarray) -> np.ndarray:
         """Natural coordinates of points (n, 2) of the square [-1, 1]^2; its last side is a triangle's last corner."""
@@ -77,49 +68,10 @@ class Face:
 
 _SQUARE = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)
 
-
-def _quadrilateral(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    points = np.atleast_2d(points)
-    r, s = points.T
-    value = np.empty((len(points), 8))
-    gradient = np.empty((len(points), 8, 2))
-    for a, (ra, sa) in enumerate(_SQUARE):
-        if a < 4:
-            value[:, a] = (1 + r * ra) * (1 + s * sa) * (r * ra + s * sa - 1) / 4
-            gradient[:, a, 0] = ra * (1 + s * sa) * (2 * r * ra + s * sa) / 4
-            gradient[:, a, 1] = sa * (1 + r * ra) * (r * ra + 2 * s * sa) / 4
-        elif ra == 0:
-            value[:, a] = (1 - r**2) * (1 + s * sa) / 2
-            gradient[:, a, 0] = -r * (1 + s * sa)
-            gradient[:, a, 1] = sa * (1 - r**2) / 2
-        else:
-            value[:, a] = (1 - s**2) * (1 + r * ra) / 2
-            gradient[:, a, 0] = ra * (1 - s**2) / 2
-            gradient[:, a, 1] = -s * (1 + r * ra)
-    return value, gradient
-
-
-_CORNER_SLOPES = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
-
-
-def _flat_triangle(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    r, s = np.atleast_2d(points).T
-    return np.stack([1.0 - r - s, r, s], axis=1), np.broadcast_to(_CORNER_SLOPES, (len(r), 3, 2))
-
-
-def _triangle(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    L, dL = _flat_triangle(points)[0], _CORNER_SLOPES
-    pairs = ((0, 1), (1, 2), (2, 0))
-    value = np.column_stack([L * (2.0 * L - 1.0), *(4.0 * L[:, i] * L[:, j] for i, j in pairs)])
-    ends = (4.0 * L - 1.0)[:, :, None] * dL
-    edges = [4.0 * (L[:, i, None] * dL[j] + L[:, j, None] * dL[i]) for i, j in pairs]
-    return value, np.concatenate([ends, np.stack(edges, axis=1)], axis=1)
-
-
 QUADRILATERAL = Face(
     nodes=_SQUARE,
     corners=4,
-    shapes=_quadrilateral,
+    shapes=partial(serendipity, _SQUARE),
     outline=np.array([0, 4, 1, 5, 2, 6, 3, 7, 0]),
     triangles=np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)]),
 )
@@ -127,7 +79,7 @@ QUADRILATERAL = Face(
 TRIANGLE = Face(
     nodes=np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]),
     corners=3,
-    shapes=_triangle,
+    shapes=partial(quadratic_simplex, np.array([(0, 1), (1, 2), (2, 0)])),
     outline=np.array([0, 3, 1, 4, 2, 5, 0]),
     triangles=np.array([(0, 3, 5), (3, 1, 4), (4, 2, 5), (3, 4, 5)]),
 )
@@ -135,7 +87,7 @@ TRIANGLE = Face(
 FLAT_TRIANGLE = Face(
     nodes=np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]),
     corners=3,
-    shapes=_flat_triangle,
+    shapes=linear_simplex,
     outline=np.array([0, 1, 2, 0]),
     triangles=np.array([(0, 1, 2)]),
 )

@@ -20,9 +20,12 @@ rule           force  tangent  displacement error
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from exudyn_ehd.solid.elements.element import Element, Quadrature
+from exudyn_ehd.solid.elements.shapes import linear_simplex, quadratic_simplex
 
 EDGES = np.array([(0, 1, 4), (1, 2, 5), (2, 0, 6), (0, 3, 7), (1, 3, 8), (2, 3, 9)])
 """Edges as (corner, corner, mid-edge node), shape (6, 3)."""
@@ -30,22 +33,8 @@ FACES = np.array([(0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (2
 """6-node triangles whose normal x_,r × x_,s points outward, shape (4, 6)."""
 
 _CORNERS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
-_SLOPES = np.array([(-1, -1, -1), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
-
-
-def _barycentric(points: np.ndarray) -> np.ndarray:
-    points = np.atleast_2d(points)
-    return np.column_stack([1.0 - points.sum(axis=1), points])
-
-
-def shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return N_a (n, 10) and their gradients (n, 10, 3) at natural coordinates (n, 3)."""
-    L = _barycentric(points)
-    i, j = EDGES[:, 0], EDGES[:, 1]
-    value = np.concatenate([L * (2.0 * L - 1.0), 4.0 * L[:, i] * L[:, j]], axis=1)
-    ends = (4.0 * L - 1.0)[:, :, None] * _SLOPES
-    edges = 4.0 * (L[:, i, None] * _SLOPES[j] + L[:, j, None] * _SLOPES[i])
-    return value, np.concatenate([ends, edges], axis=1)
+shapes = partial(quadratic_simplex, EDGES[:, :2])
+"""Shape functions (p, 10) and their gradients (p, 10, 3) at natural coordinates (p, 3)."""
 
 
 def _orbits(degree: int, four: list[tuple[float, float]], six: list[tuple[float, float]]) -> Quadrature:
@@ -88,6 +77,6 @@ TET10 = Element(
     rules={"HAMMER4": HAMMER4, "WALKINGTON14": WALKINGTON14},
     exact=WALKINGTON14,
     sampling=HAMMER4,
-    extrapolation=_barycentric(NODES) @ np.linalg.inv(_barycentric(HAMMER4.points)),
+    extrapolation=linear_simplex(NODES)[0] @ np.linalg.inv(linear_simplex(HAMMER4.points)[0]),
 )
 """The element."""

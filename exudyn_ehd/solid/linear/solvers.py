@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.sparse import spmatrix
+from scipy.sparse import csr_matrix, spmatrix
 from scipy.sparse.linalg import LinearOperator, SuperLU, gcrotmk, splu
 
 
@@ -19,6 +19,26 @@ def sparse_factor(A: spmatrix, *, pivoting: float = 0.0) -> SuperLU:
     """
     options = {"SymmetricMode": True}
     return splu(A.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=pivoting, options=options)
+
+
+def held_solution(K: csr_matrix, nodes: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """Displacements of a body with three coordinates a node under nodal forces, both (n, k), with some nodes held.
+
+    Raises
+    ------
+    RuntimeError
+        If the stiffness matrix (n, n) of the rest is singular.
+    """
+    free = np.ones(K.shape[0], dtype=bool)
+    free[(3 * nodes[:, None] + np.arange(3)).ravel()] = False
+    factor = sparse_factor(K[free][:, free])
+
+    def solve(loads: np.ndarray) -> np.ndarray:
+        out = np.zeros_like(loads)
+        out[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        return out
+
+    return solve
 
 
 def solve_by_products(

@@ -53,8 +53,7 @@ from numpy.polynomial.legendre import legval
 from scipy.linalg import block_diag, eigh
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.fe_faces import BoreFaces
-from exudyn_ehd.solid.mesh import Surface, directed
+from exudyn_ehd.solid.unrolled import Surface, directed
 from exudyn_ehd.status import InputError
 
 # Version of the choice of modes: raise it with every change of what follows, so that files of older modes are not used.
@@ -104,7 +103,7 @@ class FilmSurface:
 
     Parameters
     ----------
-    faces : Surface or BoreFaces
+    faces : Surface
     points : (p,) arrays
         Angle [rad], z [m] and weight, as `film_points` returns them.
     length : float
@@ -115,6 +114,8 @@ class FilmSurface:
     Attributes
     ----------
     theta, zeta, weight : ndarray, shape (p,)
+    places : ndarray of int, shape (3 n,)
+        Coordinates of the faces' nodes among those of the body.
     radial : csr_matrix, shape (p, 3 n)
         Radial displacements at the points from displacements at the nodes of the faces.
     twist : ndarray, shape (3 n, 1)
@@ -123,11 +124,12 @@ class FilmSurface:
 
     def __init__(
         self,
-        faces: Surface | BoreFaces,
+        faces: Surface,
         points: tuple[np.ndarray, np.ndarray, np.ndarray],
         length: float,
         frame: np.ndarray,
     ) -> None:
+        self.places = (3 * faces.nodes[:, None] + np.arange(3)).ravel()
         self.theta, z, self.weight = points
         self.zeta = 2.0 * z / length
         cos, sin, values = np.cos(self.theta), np.sin(self.theta), faces.interpolation(self.theta, z)
@@ -178,78 +180,13 @@ class FilmSurface:
         return float((np.linalg.norm(odd.T @ weighted, axis=0) / np.linalg.norm(weighted, axis=0)).max())
 
 
-class Answers(NamedTuple):
-    """Nodal displacements (3 m, c) of a body under the candidates, and what belongs to them.
-
-    The first candidate is a uniform traction around the bore, if it moves the bore radially.
-
-    Attributes
-    ----------
-    solutions : ndarray, shape (3 m, c)
-    loads : ndarray, shape (3 m, c + t)
-        Nodal forces of the candidates and of the measuring films.
-    seen : ndarray, shape (p, c + t)
-        Displacements under both as the film sees them, by `FilmSurface.weighted`.
-    tilted : bool
-        With pressures that are odd in z.
-    """
-
-    solutions: np.ndarray
-    loads: np.ndarray
-    seen: np.ndarray
-    tilted: bool
-
-
-def answers(
-    surface: FilmSurface,
-    places: np.ndarray,
-    solve: Callable[[np.ndarray], np.ndarray],
-    size: int,
-    tilted: bool,
-    without_rigid: bool = False,
-) -> Answers:
-    """Return a body's responses to the films; odd pressures are included if even ones displace the body oddly.
-
-    Parameters
-    ----------
-    surface : FilmSurface
-    places : ndarray of int
-        Places of the coordinates of its faces' nodes among those of the body.
-    solve : callable
-        Displacements of the held body under nodal forces, both (size, k).
-    size : int
-        Number of the body's coordinates.
-    tilted : bool
-    without_rigid : bool
-        The film does not see the rigid motion of the bore: it is the joint's.
-    """
-    pressures, count = surface.pressures(tilted)
-    loads = np.zeros((size, 1 + pressures.shape[1]))
-    loads[places] = np.concatenate((surface.twist, surface.loads(pressures)), axis=1)
-    solutions = solve(loads)
-    seen = surface.weighted(solutions[places])
-    if without_rigid:
-        seen = surface.without_rigid(seen)
-    if not tilted and surface.odd_share(seen[:, 1 + count :]) > ODD:
-        return answers(surface, places, solve, size, True, without_rigid)
-    moved = np.linalg.norm(seen, axis=0)
-    first = 0 if moved[0] > SMALLEST_TWIST * moved[1 : 1 + count].max() else 1
-    return Answers(solutions[:, first : 1 + count], loads[:, first:], seen[:, first:], tilted)
-
-
-def film_points(faces: Surface | BoreFaces, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Angles [rad], z [m] and weights of sum one (p,) of points on the surface of a film, parted where faces meet.
-
-    Points of a `Surface` that lie in its holes are left out.
-    """
+def film_points(faces: Surface, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Angles [rad], z [m] and weights of sum one (p,) of points on the surface of a film, parted where faces meet."""
     cuts, half = faces.cuts, 0.5 * length
     around, width = _points(0.0, 2.0 * np.pi, cuts[0], AROUND)
     along, height = _points(-half, half, cuts[1], ALONG)
     T, Z = (x.ravel() for x in np.meshgrid(around, along, indexing="ij"))
     weight = np.multiply.outer(width, height).ravel() / (2.0 * np.pi * length)
-    if isinstance(faces, Surface):
-        covered = faces.covers(T, Z)
-        T, Z, weight = T[covered], Z[covered], weight[covered]
     return T, Z, weight
 
 
@@ -427,27 +364,69 @@ def fewest_modes(
     return high, error(high)
 
 
+class FilmModes(NamedTuple):
+    """Modes of a body under a film, of unit strain energy, and the t measuring films.
+
+    Attributes
+    ----------
+    modes : ndarray, shape (size, k)
+        Nodal displacements.
+    error : float
+    loads : ndarray, shape (size, t)
+        Nodal forces of the measuring films.
+    exact, scale : ndarray, shapes (p, t), (t,)
+        Displacements under them as the film sees them, and the sizes over which errors count.
+    """
+
+    modes: np.ndarray
+    error: float
+    loads: np.ndarray
+    exact: np.ndarray
+    scale: np.ndarray
+
+
 def film_modes(
-    compliance: np.ndarray, weighted: np.ndarray, scale: np.ndarray, tilted: bool, tolerance: float
-) -> tuple[np.ndarray, float]:
-    """Combinations (k, c) of c candidates within the tolerance, of unit strain energy, and their error.
+    surface: FilmSurface,
+    solve: Callable[[np.ndarray], np.ndarray],
+    size: int,
+    tilted: bool,
+    tolerance: float,
+    without_rigid: bool = False,
+) -> FilmModes:
+    """Fewest modes of a body within the tolerance; odd pressures take part if even ones displace the body oddly.
 
     Parameters
     ----------
-    compliance : ndarray, shape (c, c + t)
-        Work of the loads of candidates and measuring films on the displacements of the candidates.
-    weighted : ndarray, shape (p, c + t)
-        Displacements of both, as `FilmSurface.weighted`.
-    scale : ndarray, shape (t,)
+    surface : FilmSurface
+    solve : callable
+        Displacements of the held body under nodal forces, both (size, k).
+    size : int
+        Number of the body's coordinates.
+    tilted : bool
+    tolerance : float
+    without_rigid : bool
+        The film does not see the rigid motion of the bore: it is the joint's.
     """
-    count = len(compliance)
-    root = covariance_root(tilted)
-    # of a twist
-    root = block_diag(CERTAIN * np.eye(count - len(root)), root)
-    coefficients, sizes = leading_modes(compliance[:, :count], root)
-    shapes, amounts = weighted[:, :count] @ coefficients.T, coefficients @ compliance[:, count:]
-    chosen, error = fewest_modes(shapes, amounts, weighted[:, count:], scale, sizes, tolerance)
-    return coefficients[:chosen], error
+    pressures, count = surface.pressures(tilted)
+    loads = np.zeros((size, 1 + pressures.shape[1]))
+    loads[surface.places] = np.concatenate((surface.twist, surface.loads(pressures)), axis=1)
+    solutions = solve(loads)
+    seen = surface.weighted(solutions[surface.places])
+    if without_rigid:
+        seen = surface.without_rigid(seen)
+    if not tilted and surface.odd_share(seen[:, 1 + count :]) > ODD:
+        return film_modes(surface, solve, size, True, tolerance, without_rigid)
+    moved, root = np.linalg.norm(seen, axis=0), covariance_root(tilted)
+    if moved[0] > SMALLEST_TWIST * moved[1 : 1 + count].max():
+        count, root = count + 1, block_diag(CERTAIN, root)
+    else:
+        solutions, loads, seen = solutions[:, 1:], loads[:, 1:], seen[:, 1:]
+    candidates, exact = solutions[:, :count], seen[:, count:]
+    scale, work = surface.scale(exact, tilted), candidates.T @ loads
+    coefficients, sizes = leading_modes(work[:, :count], root)
+    shapes, amounts = seen[:, :count] @ coefficients.T, coefficients @ work[:, count:]
+    chosen, error = fewest_modes(shapes, amounts, exact, scale, sizes, tolerance)
+    return FilmModes(candidates @ coefficients[:chosen].T, error, loads[:, count:], exact, scale)
 
 
 def orthogonal_on(shapes: np.ndarray) -> np.ndarray:

@@ -22,18 +22,16 @@ a bore.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.linear.solvers import sparse_factor
-from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
+from exudyn_ehd.solid.linear.solvers import held_solution
+from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.modes import films
-from exudyn_ehd.solid.modes.films import FilmSurface, answers, film_modes, film_points, orthogonal_on
-from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points, orthogonal_on
+from exudyn_ehd.solid.unrolled import Surface, directed
 from exudyn_ehd.status import PlausibilityWarning, warn_user
 from exudyn_ehd.storage import cached_arrays
 
@@ -75,19 +73,12 @@ class BoreModes:
     def largest_strain(self, coordinates: np.ndarray) -> float:
         """Return the largest linear strain of the bush at coordinates (k,) [m]."""
         u = np.tensordot(coordinates, self.displacements, 1)[self.mesh.elements]
-        gradient = np.einsum("eai,eqaj->eqij", u, self._gradients)
+        gradient = np.einsum("eai,eqaj->eqij", u, self.mesh.sample_gradients)
         return float(np.abs(np.linalg.eigvalsh(0.5 * (gradient + gradient.swapaxes(-1, -2)))).max())
-
-    @cached_property
-    def _gradients(self) -> np.ndarray:
-        element = self.mesh.element
-        return element.reference_gradients(self.mesh.nodes[self.mesh.elements], element.sampling)[0]
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Radial displacement of the bore at the grid theta x z for unit coordinates, shape (len(theta), len(z), k)."""
-        T, Z = np.meshgrid(theta, z, indexing="ij")
-        values = self.faces.interpolation(T.ravel(), Z.ravel())
-        return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
+        return self.faces.on_grid(self.radial_of, theta, z)
 
     def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return `radial` (p, k) at points (p,), where ``values`` (p, nodes) maps nodal displacements to the points."""
@@ -97,7 +88,7 @@ class BoreModes:
 
     def twist(self, length: float) -> np.ndarray:
         """Loads (k,) of a moment of 1 Nm about the axis as a uniform traction around the bore of a film [1/m]."""
-        surface = FilmSurface(self.faces, film_points(self.faces, length), length, np.eye(3))
+        surface = film_surface(self.faces, length)
         radius = float(np.hypot(*self.mesh.nodes[self.faces.nodes[0], :2]))
         bore = self.displacements[:, self.faces.nodes].reshape(self.count, -1)
         return np.asarray(bore @ surface.twist)[:, 0] / (radius * surface.weight.sum())
@@ -148,35 +139,24 @@ def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
     return b"".join([repr(described).encode(), *stored])
 
 
-def held_factor(solid: TotalLagrange) -> tuple[np.ndarray, SuperLU]:
-    """Free coordinates (3 n,) with the outer surface held, and the factor of their stiffness at rest."""
-    mesh = solid.mesh
-    free = np.ones(3 * len(mesh.nodes), dtype=bool)
-    free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
-    return free, sparse_factor(solid.tangent(np.zeros_like(mesh.nodes))[free][:, free])
+def film_surface(bore: Surface, length: float) -> FilmSurface:
+    """Points on a bore under a film of ``length`` [m] about the mid-plane, without those in its holes."""
+    theta, z, weight = film_points(bore, length)
+    covered = bore.covers(theta, z)
+    return FilmSurface(bore, (theta[covered], z[covered], weight[covered]), length, np.eye(3))
 
 
 def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
     """Compute the modes of a bush on its mesh under a film: one factorisation, one solution per pressure."""
-    free, factor = held_factor(bush.solid(mesh))
-    surface = FilmSurface(mesh.bore, film_points(mesh.bore, length), length, np.eye(3))
-    places = (3 * mesh.bore.nodes[:, None] + np.arange(3)).ravel()
-
-    def solve(loads: np.ndarray) -> np.ndarray:
-        out = np.zeros_like(loads)
-        out[free] = factor.solve(np.ascontiguousarray(loads[free]))
-        return out
-
-    solutions, loads, seen, tilted = answers(surface, places, solve, free.size, bush.tilted)
-    scale = surface.scale(seen[:, solutions.shape[1] :], tilted)
-    coefficients, error = film_modes(solutions.T @ loads, seen, scale, tilted, bush.tolerance)
-    coefficients = orthogonal_on(mesh.bore.radial((solutions @ coefficients.T).T)) @ coefficients
-    modes = (solutions @ coefficients.T).T
+    solve = held_solution(bush.solid(mesh).tangent(np.zeros_like(mesh.nodes)), mesh.outer.nodes)
+    surface = film_surface(mesh.bore, length)
+    found = film_modes(surface, solve, mesh.nodes.size, bush.tilted, bush.tolerance)
+    modes = orthogonal_on(mesh.bore.radial(found.modes.T)) @ found.modes.T
     shape = mesh.bore.radial(modes)
     peak = shape[np.arange(len(shape)), np.argmax(np.abs(shape), axis=1)]
     return BoreModes(
         mesh=mesh,
         displacements=(modes / peak[:, None]).reshape(len(peak), -1, 3),
         stiffness=1.0 / peak**2,
-        error=error,
+        error=found.error,
     )

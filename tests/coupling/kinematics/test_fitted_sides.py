@@ -61,14 +61,12 @@ def test_derivatives_are_those_of_the_frame_at_any_turn(seed):
     rates = central(lambda q: at(q, lambda s: s.frame[:, 4:]), q)
     push = central(lambda q: at(q, lambda s: s.jac[0].T @ force + s.jac[1].T @ moment), q)
     side.update(None, q, q_t, None)
-    side.vary(None, q, q_t)
-    A = side.frame[:, :3]
-    geometric = np.empty((q.size, q.size))
-    side.geometric(None, q, force, moment, geometric)
+    A, change = side.frame[:, :3], side.change(None, q)
+    geometric = np.tensordot(np.concatenate((force, moment)), change, 1)
     np.testing.assert_allclose(side.jac[0], place, atol=1e-8)
     np.testing.assert_allclose(side.jac[1], axial(np.einsum("ijn,kj->ikn", turned, A)), atol=1e-8)
     np.testing.assert_allclose(side.frame[:, 4:], np.stack([place @ q_t, side.jac[1] @ q_t], axis=1), atol=1e-8)
-    np.testing.assert_allclose(side.jac[2:], rates.transpose(1, 0, 2), atol=1e-7)
+    np.testing.assert_allclose((q_t @ change).reshape(2, 3, -1), rates.transpose(1, 0, 2), atol=1e-7)
     np.testing.assert_allclose(geometric, push, atol=1e-7)
 
 

@@ -81,8 +81,7 @@ class Particles:
         w, alpha = self.side.frame[:, 5].copy(), np.zeros(3)
         if self.side.kind == rigid_nodes.TAIT_BRYAN:
             # quadratic in the rates, and the change of w along them
-            self.side.vary(None, q[: self.n], q_t[: self.n])
-            alpha = self.side.jac[3] @ q_t[: self.n]
+            alpha = self.side.change(None, q[: self.n])[3:] @ q_t[: self.n] @ q_t[: self.n]
         a = np.array([np.cross(alpha, u) + np.cross(w, np.cross(w, u) + 2 * v) for u, v in zip(arms, flows)])
         out = np.einsum("p,pai,pa->i", self.masses, J, a)
         out[self.n :] += self.stiffness @ q[self.n :] + self.damping @ q_t[self.n :]

@@ -159,17 +159,17 @@ def test_pair_of_nodes_in_one_call_is_what_its_kernels_are_one_by_one(housing, j
     force = np.empty(q.size)
     relative.wrench_force(*(s.frame for s in sides), *(s.jac for s in sides), wrench, force)
     n, (a, b) = sides[0].size, (detached(side) for side in sides)
+    loads, own, (stiffness, damping) = np.empty((4, 3)), np.empty(q.size), np.zeros((2, q.size, q.size))
     for side, part in ((a, slice(n)), (b, slice(n, None))):
         if side.size:
             side.frame[:] = side.jac[:] = np.nan
         side.update(mbs, q[part], q_t[part], None)
-        side.vary(mbs, q[part], q_t[part])
-    loads, own = np.empty((4, 3)), np.empty(q.size)
     relative.global_loads(a.frame, b.frame, wrench, loads)
-    relative.generalized_force(a.jac, b.jac, loads, own)
-    stiffness, damping = np.zeros((2, q.size, q.size))
-    a.geometric(mbs, q[:n], *loads[:2], stiffness[:n, :n])
-    b.geometric(mbs, q[n:], *loads[2:], stiffness[n:, n:])
+    for side, part, load in ((a, slice(n), loads[:2]), (b, slice(n, None), loads[2:])):
+        change = side.change(mbs, q[part])
+        side.jac[2:] = (q_t[part] @ change).reshape(2, 3, -1)
+        stiffness[part, part] = np.tensordot(load.ravel(), change, 1)
+        own[part] = load.ravel() @ side.jac[:2].reshape(6, -1)
     by_q, by_qt = relative.variation_of(a.frame, b.frame, a.jac, b.jac)
     relative.tangent_matrices(a.frame, b.frame, a.jac, b.jac, loads, tangent, by_q, by_qt, stiffness, damping)
     # the same operations; compilers may contract them elsewhere

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,9 +12,10 @@ from exudyn_ehd.film.grid import bearing_grid, long_bearing_grid
 from exudyn_ehd.film.models import film_grid
 from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore
 from exudyn_ehd.joint.bore.transfer import vertex_means
-from exudyn_ehd.solid.fe_faces import BoreFaces
-from exudyn_ehd.solid.modes.static import bore_modes, held_factor
-from exudyn_ehd.solid.unrolled import Unrolled
+from exudyn_ehd.solid.fe_faces import OUTSIDE
+from exudyn_ehd.solid.linear.solvers import held_solution
+from exudyn_ehd.solid.modes.static import bore_modes
+from exudyn_ehd.solid.unrolled import patch
 from tests.solid_pressures import pressure_loads
 from tests.solid_tetrahedra import tetrahedra
 
@@ -77,16 +80,14 @@ def deflections(described, material, grid):
         mesh=described, material=ehd.SaintVenantKirchhoff(youngs_modulus=material, poisson_ratio=0.3, density=1e3)
     )
     mesh = bush.build_mesh()
-    free, factor = held_factor(bush.solid(mesh))
+    solve = held_solution(bush.solid(mesh).tangent(0.0 * mesh.nodes), mesh.outer.nodes)
     bore, size = NodalBore(mesh.bore, grid), len(mesh.nodes)
     loads = np.zeros((size, 3, 2))
     force = pressure(grid.x[:, None], 2.0 * grid.z * R / L) * grid.weight * R**2
     loads[mesh.bore.nodes, :2, 0] = bore.load(force).reshape(-1, 2)
     loads = loads.reshape(-1, 2)
     loads[:, 1:] = pressure_loads(mesh.bore, size, [pressure], 12)
-    moved = np.zeros_like(loads)
-    moved[free] = factor.solve(np.ascontiguousarray(loads[free]))
-    moved = moved.reshape(size, 3, 2)[mesh.bore.nodes, :2]
+    moved = solve(loads).reshape(size, 3, 2)[mesh.bore.nodes, :2]
     # at the vertices themselves, by the shape functions there
     T, Z = np.meshgrid(grid.x, grid.z * R, indexing="ij")
     exact = mesh.bore.interpolation(T.ravel(), Z.ravel()) @ moved[..., 1]
@@ -140,34 +141,26 @@ def test_modes_see_the_film_as_the_nodes_do():
     assert np.abs(moved - shapes @ q).max() < 1e-9 * np.abs(moved).max()
 
 
-class Torn(Unrolled):
+def torn_bore(surface, hole):
     """A bore without one of its faces, or with one of its lines of nodes cut in two."""
-
-    def __init__(self, surface, hole):
-        self.positions, self.faces = surface.positions.copy(), surface.local_faces.copy()
-        if hole:
-            middle = self.positions[self.faces].mean(axis=1)
-            self.faces = np.delete(self.faces, np.argmin(np.linalg.norm(middle - [R, 0.0, 0.0], axis=1)), axis=0)
-            return
-        on_cut = np.flatnonzero((np.abs(self.positions[:, 1]) < 1e-9) & (self.positions[:, 0] > 0.0))
-        number = np.arange(len(self.positions))
+    positions, faces = surface.positions.copy(), surface.local_faces.copy()
+    if hole:
+        middle = positions[faces].mean(axis=1)
+        faces = np.delete(faces, np.argmin(np.linalg.norm(middle - [R, 0.0, 0.0], axis=1)), axis=0)
+    else:
+        on_cut = np.flatnonzero((np.abs(positions[:, 1]) < 1e-9) & (positions[:, 0] > 0.0))
+        number = np.arange(len(positions))
         number[on_cut] = len(number) + np.arange(on_cut.size)
-        above = self.positions[self.faces].mean(axis=1)[:, 1] > 0.0
-        self.faces[above] = number[self.faces[above]]
-        self.positions = np.concatenate((self.positions, self.positions[on_cut]))
-
-    @property
-    def local(self):
-        return self.faces
-
-    def interpolation(self, theta, z):
-        return BoreFaces(positions=self.positions, faces=self.faces).interpolation(theta, z)
+        above = positions[faces].mean(axis=1)[:, 1] > 0.0
+        faces[above] = number[faces[above]]
+        positions = np.concatenate((positions, positions[on_cut]))
+    return replace(patch(positions, faces), tolerance=OUTSIDE)
 
 
 @pytest.mark.parametrize("hole", [False, True], ids=["slot", "hole"])
 def test_no_mean_is_taken_across_slots_and_holes(hole):
     """A bore whose halves move apart moves the vertices of either side as that side; holes between vertices pass."""
-    torn = Torn(cylinder(8, 1, 64).mesh().bore, hole)
+    torn = torn_bore(cylinder(8, 1, 64).mesh().bore, hole)
     grid = bearing_grid(R, L, 16 if hole else 50, 5, start_angle=0.02 + (0.17 if hole else 0.0))
     S = vertex_means(torn, grid)
     assert np.abs(S.sum(axis=1) - 1.0).max() < 1e-12

@@ -10,8 +10,8 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.journal.turning import TurningJournal
+from exudyn_ehd.solid.unrolled import patch
 from exudyn_ehd.status import InputError, Status
 from tests.sampling import sample
 
@@ -45,7 +45,7 @@ def journal(displacement, around=24, along=4, turn=0.0):
     positions = np.stack([R * cos, R * sin, Z], axis=1)
     return TurningJournal(
         surface=ReducedBore(
-            faces=BoreFaces(positions=positions, faces=faces),
+            faces=patch(positions, faces),
             displacements=np.einsum("ijn,njk->nik", frame, local),
             stiffness_matrix=np.diag(np.full(local.shape[2], 1e9)),
             radius=R,
