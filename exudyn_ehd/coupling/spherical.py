@@ -25,8 +25,17 @@ from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.history import FIRST_BLOCK, LOAD, JointHistory, Quantity, make_row
-from exudyn_ehd.coupling.record.record import Record, history_of
+from exudyn_ehd.coupling.record.history import (
+    COLUMNS,
+    FIRST_BLOCK,
+    LOAD,
+    MINIMUM_GAP,
+    TIME,
+    JointHistory,
+    Quantity,
+    make_row,
+)
+from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.solver_state import require_end
@@ -34,7 +43,7 @@ from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, requir
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
-from exudyn_ehd.joint.step_error import errors_of_ball, pack_of_ball
+from exudyn_ehd.joint.step_error import NO_BALL_ERROR, errors_of_ball, pack_of_ball
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_bool, require_type, require_vector
 
@@ -76,17 +85,11 @@ class SphericalFailures(Failures):
         return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
 
 
-class BallRecord(Record):
-    """Rows of a ball, which know the stiffness and the damping of three translations."""
-
-    def snapshot(self, final: np.ndarray | None) -> JointHistory:
-        """The record, with ``final`` as its last row if given."""
-        rows = self._all_rows(final)
-        history = history_of(rows, self._dimensions, lags=False)
-        place, velocity, _ = np.split(history.motion[:, :9], 3, axis=1)
-        clearance, packed, load = history.radial_clearance, rows.behind[:, PACK], rows.behind[:, LOAD]
-        errors = errors_of_ball(history.time, place, velocity, packed, history.minimum_gap, clearance, load)
-        return dataclasses.replace(history, step_error=errors)
+def errors_of_rows(bearing: SphericalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Errors (n,) of the steps of rows (n, WIDTH) of a ball, and that of its place behind them."""
+    place, velocity, _ = np.split(rows[:, COLUMNS["motion"]][:, :9], 3, axis=1)
+    known, gap, load = rows[:, PACK], rows[:, MINIMUM_GAP], rows[:, LOAD]
+    return errors_of_ball(before, rows[:, TIME], place, velocity, known, gap, bearing.radial_clearance, load)
 
 
 class SphericalFilmElement(FilmElement):
@@ -97,7 +100,7 @@ class SphericalFilmElement(FilmElement):
     def __init__(self, model: JointModel, socket: Side, ball: Side, name: str) -> None:
         super().__init__(model, socket, ball, name)
         self.failures = SphericalFailures(name, model.bearing)
-        self.steps.record = BallRecord(model.bearing)
+        self.steps.record = Record(model.bearing, errors_of_rows, NO_BALL_ERROR)
         self.outer = outer_load.OuterLoad(self.sides, outer_load.BALL)
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:

@@ -10,24 +10,25 @@ from __future__ import annotations
 import bisect
 import dataclasses
 import json
+import math
 import os
 import pathlib
 import secrets
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.coupling.record.history import TIME, WIDTH
 from exudyn_ehd.coupling.record.thinning import Every, Period
 from exudyn_ehd.status import InputError, RunError, require_type
 from exudyn_ehd.storage import require_path
 
 HEAD = 512
-# Rows read before those that are asked for.
-LEAD = 1000
-# Rows in memory while a column is read.
-PART = 4096
-FORMAT = "exudyn_ehd rows 3"
+FORMAT = "exudyn_ehd rows 4"
+# Numbers in a row, and bytes.
+WIDE = WIDTH + 2
+BYTES = 8 * WIDE
 NAME = "{name}"
 
 
@@ -95,8 +96,7 @@ class RowsOnDisk:
                 f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
                 "another path in File(...)."
             )
-        self._known, self._width = dict(head), int(head["width"])
-        self._head = b""
+        self._known, self._head = dict(head), b""
 
     def add(self, rows: np.ndarray, settled: int) -> None:
         """Write rows (n, k) behind the others; those after the ``settled`` first ones may be replaced by the next call.
@@ -111,7 +111,7 @@ class RowsOnDisk:
                 self._begin()
             with open(self.path, "r+b") as file:
                 _require_head(file, self._head, self.path, self.joint)
-                file.seek(HEAD + 8 * self._width * self.count)
+                file.seek(HEAD + BYTES * self.count)
                 file.write(np.ascontiguousarray(rows).tobytes())
                 file.truncate()
         except OSError as error:
@@ -160,37 +160,23 @@ class Rows(NamedTuple):
     joint: str = ""
     head: bytes = b""
 
-    @property
-    def width(self) -> int:
-        """Numbers in a row."""
-        return int(self.behind.shape[1])
-
-    @property
-    def total(self) -> int:
-        """Number of rows."""
-        return self.settled + len(self.behind)
-
-    def parts(self) -> Iterator[np.ndarray]:
-        """All rows, `PART` of them at a time.
+    def column(self, where: int | slice) -> np.ndarray:
+        """One column (n,), or several (n, k).
 
         Raises
         ------
         RunError
             If the file is another one by now.
         """
-        left = self.settled
-        if left:
-            with open(self.path, "rb") as file:
-                _require_head(file, self.head, self.path, self.joint)
-                while left:
-                    part = np.fromfile(file, count=min(left, PART) * self.width).reshape(-1, self.width)
-                    yield part
-                    left -= len(part)
-        yield self.behind
+        return np.concatenate([self.mapped()[:, where], self.behind[:, where]])
 
-    def column(self, where: int | slice) -> np.ndarray:
-        """One column (n,), or several (n, k)."""
-        return np.concatenate([part[:, where] for part in self.parts()])
+    def mapped(self) -> np.ndarray:
+        """Rows of the file, which are read where they are asked for."""
+        if not self.settled:
+            return self.behind[:0]
+        with open(self.path, "rb") as file:
+            _require_head(file, self.head, self.path, self.joint)
+        return np.memmap(self.path, dtype=float, mode="r", offset=HEAD, shape=(self.settled, WIDE))
 
 
 def _require_head(file: BinaryIO, head: bytes, path: pathlib.Path, joint: str) -> None:
@@ -212,26 +198,15 @@ def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
     return head if isinstance(head, dict) and head.get("format") == FORMAT else None
 
 
-def open_rows(path: str | pathlib.Path, width: int) -> Rows:
-    """The whole rows (n, width) that a file of `RowsOnDisk` has by now."""
+def open_rows(path: str | pathlib.Path, start: float, end: float) -> Rows:
+    """The whole rows (n, WIDE) that a file of `RowsOnDisk` has by now, or those from ``start`` to ``end``, s."""
     path = pathlib.Path(path).absolute()
     with open(path, "rb") as file:
         head = file.read(HEAD)
-    return Rows(np.empty((0, width)), _whole_rows(path, width), path, path.name, head)
-
-
-def _whole_rows(path: str | pathlib.Path, width: int) -> int:
-    return (os.path.getsize(path) - HEAD) // (8 * width)
-
-
-def read_rows(path: str | pathlib.Path, width: int, start: float, end: float) -> tuple[int, np.ndarray]:
-    """The whole rows (n, width) of a file of `RowsOnDisk` from `LEAD` rows before ``start`` to ``end``, s, and the
-    place of the first of them."""
-    whole = _whole_rows(path, width)
-    if not whole:
-        return 0, np.empty((0, width))
-    rows = np.memmap(path, dtype=float, mode="r", offset=HEAD, shape=(whole, width))
-    first, last = bisect.bisect_left(rows[:, 0], start), bisect.bisect_right(rows[:, 0], end)
+    rows = Rows(np.empty((0, WIDE)), (os.path.getsize(path) - HEAD) // BYTES, path, path.name, head)
+    if start == -math.inf and end == math.inf:
+        return rows
+    mapped = rows.mapped()
     # one more on either side, for times that are meant to be the limits
-    first = max(0, first - LEAD)
-    return first, np.array(rows[first : last + 1])
+    first, last = bisect.bisect_left(mapped[:, TIME], start), bisect.bisect_right(mapped[:, TIME], end)
+    return Rows(np.array(mapped[max(0, first - 1) : last + 1]))
