@@ -98,12 +98,12 @@ _LAZY = {
         "coupling.rotor.api": "SolveEquilibrium SolveThreshold stability_map",
         "coupling.rotor.result": "RotorResult",
         "coupling.run.joint_state": "JointState",
+        "coupling.run.periodic": "LastCycle UntilPeriodic",
         "coupling.run.restart": "SystemState",
         "coupling.run.settings": "ConfigureSolver",
         "coupling.run.solve": "SaveState SolveDynamic SolveStatic",
         "coupling.run.sparse": "FactorReuse SolveDynamicSparse",
         "coupling.spherical": "CreateLubricatedSphericalJoint LubricatedSphericalJoint SphericalHistory",
-        "coupling.watch.periodic": "LastCycle UntilPeriodic",
         "coupling.watch.step_control": "StepControl",
         "joint.spherical.steady": "SphericalBearing SphericalResult steady_spherical",
         "joint.static.thrust": "ThrustResult",
@@ -143,12 +143,12 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold, stability_map
     from exudyn_ehd.coupling.rotor.result import RotorResult
     from exudyn_ehd.coupling.run.joint_state import JointState
+    from exudyn_ehd.coupling.run.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
     from exudyn_ehd.coupling.run.solve import SaveState, SolveDynamic, SolveStatic
     from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
     from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint, LubricatedSphericalJoint, SphericalHistory
-    from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.watch.step_control import StepControl
     from exudyn_ehd.joint.spherical.steady import SphericalBearing, SphericalResult, steady_spherical
     from exudyn_ehd.joint.static.thrust import ThrustResult

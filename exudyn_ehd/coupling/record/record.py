@@ -130,8 +130,8 @@ class Record:
         """
         if rows.ndim != 2 or rows.shape[1] != WIDTH + 2 or (not self.is_thinned and has_gaps(rows[:, STEP_COUNT])):
             raise InputError(
-                f"LubricatedJoint.restore_state: rows must be (n, {WIDTH + 2}), got {rows.shape}, and those of a thinned "
-                "record need a thinned one; create the joint with the record of the stored run."
+                f"LubricatedJoint.restore_state: rows must be (n, {WIDTH + 2}), got {rows.shape}, and those of a "
+                "thinned record need a thinned one; create the joint with the record of the stored run."
             )
         self.clear()
         self.thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP], initial=math.inf))

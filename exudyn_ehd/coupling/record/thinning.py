@@ -167,7 +167,7 @@ class Thinner:
 
 
 def errors_of(bearing: JournalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Errors (n,) of the steps of a journal's rows (n, WIDTH), and that of the pose behind them; see `errors_behind`."""
+    """Errors (n,) of the steps of a journal's rows (n, WIDTH), that of the pose behind them; see `errors_behind`."""
     motion, peak, deflection = rows[:, COLUMNS["motion"]], rows[:, COLUMNS["peak_angle"]], None
     if isinstance(getattr(bearing, "bush", None), ElasticLiner):
         size = rows[:, COLUMNS["bore_displacement"], None]

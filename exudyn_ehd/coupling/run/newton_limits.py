@@ -79,7 +79,7 @@ class GapLimit:
 
     def start(self, mbs: exu.MainSystem) -> None:
         """Remember where Newton's method starts."""
-        self.before = [values.copy() for values in _state(mbs)]
+        self.before = [values.copy() for values in state_of(mbs)]
         self.behind.clear()
 
     def shorten(self, mbs: exu.MainSystem, additive: np.ndarray) -> None:
@@ -103,7 +103,7 @@ class GapLimit:
                 else:
                     allowed = allowed_part(last.bodies, after, bearing.radial_clearance, bearing.length)
                 part = min(part, allowed, self._allowed_at_end(film, last, after))
-        state = _state(mbs)
+        state = state_of(mbs)
         if part < 1.0:
             taken = np.where(additive, part, 1.0)
             for share, old, new in zip((taken, taken, taken, part), self.before, state, strict=True):
@@ -175,8 +175,8 @@ def _allowed_towards(other: np.ndarray, before: np.ndarray, after: np.ndarray, l
     return half / along if along > half else 1.0
 
 
-def _state(mbs: exu.MainSystem) -> list[np.ndarray]:
-    """Coordinates, velocities, accelerations and multipliers, as Exudyn holds them."""
+def state_of(mbs: exu.MainSystem) -> list[np.ndarray]:
+    """Coordinates of second order, velocities, accelerations and multipliers now, as Exudyn holds them: not copied."""
     state = mbs.systemData.GetSystemStateDict(CURRENT, True)
     return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt", "AECoords")]
 

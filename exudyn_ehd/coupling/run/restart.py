@@ -14,7 +14,6 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, Data
-from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
@@ -129,16 +128,6 @@ class SystemState:
                         arrays[f"{k} {name}{field.name}"] = np.asarray(value, dtype=float)
         with replacing(path, binary=True) as file:
             np.savez_compressed(file, format=_FORMAT, head=json.dumps({"time": self.time, "joints": heads}), **arrays)
-
-
-def judged(joints: Sequence[Joint]) -> Sequence[Joint]:
-    """Joints by whose films orbits can be judged; `InputError` if a record does not tell them."""
-    for joint in joints:
-        if joint.element.kinematics is not relative:
-            raise InputError(
-                f"SolveDynamic: joint '{joint.name}' holds a ball, whose record has no orbit; leave out until_periodic."
-            )
-    return joints
 
 
 def load_state(path: str | pathlib.Path) -> SystemState:

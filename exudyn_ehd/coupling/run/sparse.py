@@ -28,7 +28,9 @@ from __future__ import annotations
 
 import time
 import weakref
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeAlias
 
 import exudyn as exu
@@ -36,20 +38,12 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.linear import SystemFactor
 from exudyn_ehd.coupling.contract import require_system
-from exudyn_ehd.coupling.element.side_by_side import side_by_side
+from exudyn_ehd.coupling.run.newton_limits import state_of
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
-from exudyn_ehd.coupling.run.solve import (
-    joints_of,
-    own_errors,
-    progress_of,
-    refusing,
-    require_items,
-    start_guess,
-    step_control,
-)
-from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
+from exudyn_ehd.coupling.run.solve import joints_of, require_control, require_items, running
+from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
-from exudyn_ehd.coupling.watch.solver_state import user_function
+from exudyn_ehd.coupling.watch.solver_state import idle, user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 from exudyn_ehd.status import InputError, require_integer, require_number
@@ -188,16 +182,15 @@ def SolveDynamicSparse(
     require_time("SolveDynamicSparse", settings)
     _require_offered(settings.timeIntegration)
     require_items(mbs)
-    control = step_control("SolveDynamicSparse", mbs, settings, stepControl)
-    shared = side_by_side("SolveDynamicSparse", [joint.element for joint in joints_of(mbs)], threads)
+    require_control("SolveDynamicSparse", settings, stepControl)
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     run = SparseRun()
-    before = user_function(mbs.GetPreNewtonResidualUserFunction())
-    matrix = SystemMatrix(mbs)
+    start = StartGuess([joint.element for joint in joints_of(mbs)], settings)
+    before = user_function(mbs, "PreNewtonResidual") or idle("PreNewtonResidual")
     loop = _Newton(
-        matrix=matrix,
-        guess=start_guess(mbs, before or None),
+        matrix=SystemMatrix(mbs),
+        guess=partial(start.begin, before),
         reuse=FactorReuse() if reuse is None else reuse,
         run=run,
     )
@@ -206,18 +199,18 @@ def SolveDynamicSparse(
     solver.SetUserFunctionNewton(mbs, weakref.proxy(loop))
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
     mbs.sys["dynamicSolver"] = solver
-    start = time.perf_counter()
+    began = time.perf_counter()
     chosen = settings.linearSolver.solverType
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        with shared, control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"), progress_of(mbs, settings):
+        with running("SolveDynamicSparse", mbs, settings, stepControl, threads):
             run.success = bool(solver.SolveSystem(mbs, settings))
             if not run.success:
                 raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")
     finally:
         settings.linearSolver.solverType = chosen
-    run.seconds = time.perf_counter() - start
+    run.seconds = time.perf_counter() - began
     return run
 
 
@@ -240,7 +233,7 @@ class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
-    guess: StartGuess
+    guess: Callable[[exu.MainSystem, float, int, int], None]
     reuse: FactorReuse
     run: SparseRun
     factor: SystemFactor | None = None
@@ -251,7 +244,7 @@ class _Newton:
     def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
         # Exudyn's Newton method forgets the multipliers of the step before, too
-        data.SetAECoordinates([0.0] * self.matrix.constraints)
+        state_of(mbs)[3][:] = 0.0
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
         error = first = solver.ComputeNewtonResidual(mbs, settings)
@@ -363,12 +356,11 @@ class _Newton:
         d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
-        data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
+        n, h = self.matrix.coordinates, self.step_size
         square = solver.newmarkBeta * h * h
         dq = d[:n]
-        places, velocities, accelerations = motion(mbs)
+        places, velocities, accelerations, multipliers = state_of(mbs)
         places -= dq
         velocities -= solver.newmarkGamma * h / square * dq
         accelerations -= dq / (solver.factJacAlgorithmic * square)
-        if len(d) > n:
-            data.SetAECoordinates((data.GetAECoordinates() - d[n:] / square).tolist())
+        multipliers -= d[n:] / square

@@ -21,7 +21,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
 from typing import Any, TypeAlias
 
 import exudyn as exu
@@ -166,7 +165,7 @@ class StepSize:
 
     def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
         """User function after Newton's method and the user's own: error, and step size to repeat the step with."""
-        error, wanted = own(mbs, time) if own else (0.0, -1.0)
+        error, wanted = own(mbs, time)
         known = [used for joint in self.joints if (used := joint.used(mbs, time)) is not None]
         self.used = max(known, default=None)
         step = time - mbs.systemData.GetTime(START_OF_STEP)
@@ -179,7 +178,7 @@ class StepSize:
 
     def choose(self, own: Any, mbs: exu.MainSystem, time: float) -> bool:
         """User function after the user's own, behind an accepted step and before the first one: sets the next size."""
-        goes_on = bool(own(mbs, time)) if own else True
+        goes_on = bool(own(mbs, time))
         if not math.isnan(self.time):
             for joint in self.joints:
                 joint.accept()
@@ -223,8 +222,8 @@ def steps_by_error(
     kept = run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize
     run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = NEVER, True
     with (
-        hooked(mbs, "PostNewton", lambda own: partial(control.look, own)),
-        hooked(mbs, "PostStep", lambda own: partial(control.choose, own)),
+        hooked(mbs, "PostNewton", control.look),
+        hooked(mbs, "PostStep", control.choose),
     ):
         try:
             for film in films:
