@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.records import KINDS, QUANTITIES, Target, Unit, label, unit_for
-from exudyn_ehd.pictures.style import COLUMN, finish, open_axes, style_ticks, styled
+from exudyn_ehd.pictures.style import COLUMN, picture, style_ticks
 from exudyn_ehd.tables import unit_of
 
 SIZE = (1.2 * COLUMN, 0.8 * COLUMN)
@@ -50,18 +50,16 @@ def plot_curves(
     """
     columns = [column(name, np.concatenate([curve[k + 1] for curve in curves]), units) for k, name in enumerate(names)]
     x_unit, y_unit = (unit for _, unit in columns)
-    with styled():
-        figure, ax = open_axes(ax, SIZE, path)
+    with picture(ax, SIZE, path) as (figure, ax):
         for curve in curves:
             order = np.argsort(curve.x)
             ax.plot(x_unit(curve.x[order]), y_unit(curve.y[order]), "o-", label=curve.text or None)
         xlabel, ylabel = (label(text, unit) if unit.symbol else text for text, unit in columns)
         ax.set(xlabel=xlabel, ylabel=ylabel)
-        ax.grid(True, lw=0.4, color="#D0D0D0")
-        style_ticks(ax)
+        style_ticks(ax, grid=True)
         if any(curve.text for curve in curves):
             ax.legend()
-        return finish(figure, path)
+    return figure
 
 
 def column(name: str, values: np.ndarray, units: Mapping[str, str]) -> tuple[str, Unit]:

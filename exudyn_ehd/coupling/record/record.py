@@ -7,7 +7,6 @@ import contextlib
 import functools
 import math
 import pathlib
-import zipfile
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -29,7 +28,7 @@ from exudyn_ehd.coupling.record.on_disk import Rows, RowsOnDisk, open_rows, read
 from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
 from exudyn_ehd.joint.step_error import NO_ERROR
 from exudyn_ehd.status import InputError, RunError
-from exudyn_ehd.storage import require_path
+from exudyn_ehd.storage import arrays_in, require_path
 
 # Rows in memory from which on they are settled: numbered, thinned, written to a file.
 MOST_ROWS = 256
@@ -197,11 +196,8 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     if head is not None and head["names"] == FORMAT:
         history = history_of(open_rows(path, start, end), {name: head[name] for name in DIMENSIONS})
         return history if start == -math.inf and end == math.inf else history.between(start, end)
-    try:
-        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
-            values = dict(data)
-    except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
-        values = {}
+    with open(path, "rb") as file:
+        values = arrays_in(file)
     if str(values.pop("format", "")) != FORMAT:
         raise InputError(
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
