@@ -10,7 +10,6 @@ from __future__ import annotations
 import bisect
 import dataclasses
 import json
-import math
 import os
 import pathlib
 import secrets
@@ -77,115 +76,70 @@ class File:
         return pathlib.Path(str(self.path).replace(NAME, plain))
 
 
-class RowsOnDisk:
-    """The earlier rows of a record.
-
-    Parameters
-    ----------
-    path : path
-    joint : str
-        Its name.
-    head : dict
-        What a reader has to know.
-    """
-
-    def __init__(self, path: pathlib.Path, joint: str, head: Mapping[str, Any]) -> None:
-        self.path, self.joint, self.count = path, joint, 0
-        if path.exists() and (not path.is_file() or (path.stat().st_size and read_head(path) is None)):
-            raise InputError(
-                f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
-                "another path in File(...)."
-            )
-        self._known, self._head = dict(head), b""
-
-    def add(self, rows: np.ndarray, settled: int) -> None:
-        """Write rows (n, k) behind the others; those after the ``settled`` first ones may be replaced by the next call.
-
-        Raises
-        ------
-        RunError
-            If they can't be written, or the file is another joint's by now.
-        """
-        try:
-            if not self._head:
-                self._begin()
-            with open(self.path, "r+b") as file:
-                _require_head(file, self._head, self.path, self.joint)
-                file.seek(HEAD + BYTES * self.count)
-                file.write(np.ascontiguousarray(rows).tobytes())
-                file.truncate()
-        except OSError as error:
-            raise RunError(
-                f"LubricatedJoint '{self.joint}': its record can't be written to '{self.path}' ({error.strerror}); "
-                "make room there, or name another path in File(...)."
-            ) from error
-        self.count += settled
-
-    def _begin(self) -> None:
-        """A new file: who still reads the old one keeps it."""
-        head = {"format": FORMAT, "record": secrets.token_hex(8), **self._known}
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        self.path.unlink(missing_ok=True)
-        self._head = (json.dumps(head).ljust(HEAD - 1) + "\n").encode()
-        self.path.write_bytes(self._head)
-
-    def rows(self, behind: np.ndarray) -> Rows:
-        """Return all settled rows for reading, with others (n, k) behind them."""
-        return Rows(behind, self.count, self.path, self.joint, self._head)
-
-    def clear(self) -> None:
-        """Begin anew at the next rows."""
-        self.count, self._head = 0, b""
-
-
-class Rows(NamedTuple):
-    """Rows in memory, and before them those of a file as it was, read when they are asked for.
+class RowsOnDisk(NamedTuple):
+    """Rows of a record in a file as they were, read when they are asked for.
 
     Attributes
     ----------
-    behind : (n, k) array
-        Rows in memory.
-    settled : int
-        Rows in the file.
     path : path
     joint : str
         Whose they are, for messages.
     head : bytes
-        Of the file.
+        Of the file; empty as long as there is none.
+    settled : int
+        Rows that no others will replace.
     """
 
-    behind: np.ndarray
-    settled: int = 0
-    path: pathlib.Path = pathlib.Path()
-    joint: str = ""
+    path: pathlib.Path
+    joint: str
     head: bytes = b""
+    settled: int = 0
 
-    def column(self, where: int | slice) -> np.ndarray:
-        """One column (n,), or several (n, k).
+    def begin(self, known: Mapping[str, Any]) -> RowsOnDisk:
+        """Begin a new file, with a head that says what a reader has to know: who still reads the old one keeps it."""
+        head = {"format": FORMAT, "record": secrets.token_hex(8), **known}
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.unlink(missing_ok=True)
+        new = RowsOnDisk(self.path, self.joint, (json.dumps(head).ljust(HEAD - 1) + "\n").encode())
+        self.path.write_bytes(new.head)
+        return new
+
+    def add(self, rows: np.ndarray, number: int) -> RowsOnDisk:
+        """Write rows (n, WIDE) behind the others; those after the first ``number`` may be replaced by the next.
+
+        Raises
+        ------
+        RunError
+            If the file is another joint's by now.
+        """
+        with open(self.path, "r+b") as file:
+            self._require_head(file)
+            file.seek(HEAD + BYTES * self.settled)
+            file.write(np.ascontiguousarray(rows).tobytes())
+            file.truncate()
+        return self._replace(settled=self.settled + number)
+
+    def mapped(self) -> np.ndarray:
+        """Rows (n, WIDE) of the file, which are read where they are asked for.
 
         Raises
         ------
         RunError
             If the file is another one by now.
         """
-        return np.concatenate([self.mapped()[:, where], self.behind[:, where]])
-
-    def mapped(self) -> np.ndarray:
-        """Rows of the file, which are read where they are asked for."""
         if not self.settled:
-            return self.behind[:0]
+            return np.empty((0, WIDE))
         with open(self.path, "rb") as file:
-            _require_head(file, self.head, self.path, self.joint)
+            self._require_head(file)
         return np.memmap(self.path, dtype=float, mode="r", offset=HEAD, shape=(self.settled, WIDE))
 
-
-def _require_head(file: BinaryIO, head: bytes, path: pathlib.Path, joint: str) -> None:
-    if file.read(HEAD) != head:
-        raise RunError(
-            f"LubricatedJoint '{joint}': another record has replaced the one in '{path}'; give every "
-            f"joint a File(...) with a path of its own, or '{NAME}' in it, and read arrays of a history, or save it, "
-            "before the next run."
-        )
+    def _require_head(self, file: BinaryIO) -> None:
+        if file.read(HEAD) != self.head:
+            raise RunError(
+                f"LubricatedJoint '{self.joint}': another record has replaced the one in '{self.path}'; give every "
+                f"joint a File(...) with a path of its own, or '{NAME}' in it, and read arrays of a history, or save "
+                "it, before the next run."
+            )
 
 
 def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
@@ -198,15 +152,25 @@ def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
     return head if isinstance(head, dict) and head.get("format") == FORMAT else None
 
 
-def open_rows(path: str | pathlib.Path, start: float, end: float) -> Rows:
-    """The whole rows (n, WIDE) that a file of `RowsOnDisk` has by now, or those from ``start`` to ``end``, s."""
+def require_own(path: pathlib.Path) -> None:
+    """Refuse a path that holds something else than a record."""
+    if path.exists() and (not path.is_file() or (path.stat().st_size and read_head(path) is None)):
+        raise InputError(
+            f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
+            "another path in File(...)."
+        )
+
+
+def open_rows(path: str | pathlib.Path) -> RowsOnDisk:
+    """Open the whole rows that a file of `RowsOnDisk` has by now."""
     path = pathlib.Path(path).absolute()
     with open(path, "rb") as file:
         head = file.read(HEAD)
-    rows = Rows(np.empty((0, WIDE)), (os.path.getsize(path) - HEAD) // BYTES, path, path.name, head)
-    if start == -math.inf and end == math.inf:
-        return rows
-    mapped = rows.mapped()
+    return RowsOnDisk(path, path.name, head, (os.path.getsize(path) - HEAD) // BYTES)
+
+
+def between(rows: np.ndarray, start: float, end: float) -> np.ndarray:
+    """Copy of the rows from ``start`` to ``end``, s."""
+    first, last = bisect.bisect_left(rows[:, TIME], start), bisect.bisect_right(rows[:, TIME], end)
     # one more on either side, for times that are meant to be the limits
-    first, last = bisect.bisect_left(mapped[:, TIME], start), bisect.bisect_right(mapped[:, TIME], end)
-    return Rows(np.array(mapped[max(0, first - 1) : last + 1]))
+    return np.array(rows[max(0, first - 1) : last + 1])

@@ -24,7 +24,7 @@ from exudyn_ehd.coupling.record.history import (
     JointHistory,
     has_gaps,
 )
-from exudyn_ehd.coupling.record.on_disk import Rows, RowsOnDisk, open_rows, read_head
+from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_head, require_own
 from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
 from exudyn_ehd.joint.step_error import NO_ERROR
 from exudyn_ehd.status import InputError, RunError
@@ -70,7 +70,8 @@ class Record:
 
     def keep_on_disk(self, path: pathlib.Path, joint: str) -> None:
         """Let all rows but the last ones go to a file of this joint."""
-        self._disk = RowsOnDisk(path, joint, {"names": FORMAT, **self._dimensions})
+        require_own(path)
+        self._disk = RowsOnDisk(path, joint)
 
     @property
     def is_thinned(self) -> bool:
@@ -95,18 +96,33 @@ class Record:
         self._rows, self.thinnest, self._kept, self.end = [], math.inf, [], None
         self._thinner.begin_anew()
         if self._disk is not None:
-            self._disk.clear()
+            self._disk = RowsOnDisk(self._disk.path, self._disk.joint)
 
     def write(self, final: np.ndarray | None = None) -> None:
-        """Settle the rows but the last one, and bring them to the file, if there is one, with ``final`` behind them."""
+        """Settle the rows but the last one, and bring them to the file, if there is one, with ``final`` behind them.
+
+        Raises
+        ------
+        RunError
+            If they can't be written.
+        """
         if not self._rows:
             return
         rows, self._rows = np.array(self._rows), self._rows[-1:]
         self._kept.append(self._thinner.take(rows[:-1]))
-        if self._disk is not None:
-            whole = np.concatenate(self._kept)
-            self._disk.add(np.concatenate([whole, self._behind(final)]), len(whole))
-            self._kept = []
+        if self._disk is None:
+            return
+        whole, disk = np.concatenate(self._kept), self._disk
+        try:
+            if not disk.head:
+                self._disk = disk.begin({"names": FORMAT, **self._dimensions})
+            self._disk = self._disk.add(np.concatenate([whole, self._behind(final)]), len(whole))
+        except OSError as error:
+            raise RunError(
+                f"LubricatedJoint '{disk.joint}': its record can't be written to '{disk.path}' ({error.strerror}); "
+                "make room there, or name another path in File(...)."
+            ) from error
+        self._kept = []
 
     def _behind(self, final: np.ndarray | None) -> np.ndarray:
         """Rows (n, WIDTH + 2) of what is not settled, with ``final`` behind them."""
@@ -115,12 +131,8 @@ class Record:
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, WIDTH + 2), with ``final`` behind them if given and later."""
         final = None if final is None or not final[TIME] > self.last_time else final
-        return self._all_rows(final).column(slice(None))
-
-    def _all_rows(self, final: np.ndarray | None) -> Rows:
-        """All rows, those of the file still there, with ``final`` behind them."""
-        rows = np.concatenate([*self._kept, self._behind(final)])
-        return Rows(rows) if self._disk is None else self._disk.rows(rows)
+        earlier = [] if self._disk is None else [self._disk.mapped()]
+        return np.concatenate([*earlier, *self._kept, self._behind(final)])
 
     def restore(self, rows: np.ndarray) -> None:
         """Begin with these rows (n, WIDTH + 2), all of them for a record of all steps.
@@ -149,14 +161,16 @@ class Record:
         # where the file can't be written any more, the rows are still known
         with contextlib.suppress(RunError):
             self.write(final)
-        return history_of(self._all_rows(final), self._dimensions)
+        rows = np.concatenate([*self._kept, self._behind(final)])
+        return history_of(rows, self._dimensions, self._disk)
 
 
-def history_of(rows: Rows, dimensions: Mapping[str, Any]) -> JointHistory:
-    """A history that makes its columns of rows when they are asked for."""
+def history_of(rows: np.ndarray, dimensions: Mapping[str, Any], earlier: RowsOnDisk | None = None) -> JointHistory:
+    """A history that makes its columns of rows (n, WIDTH + 2), behind those of a file, when they are asked for."""
 
     def column(name: str) -> np.ndarray:
-        values = rows.column(COLUMNS[name])
+        parts = [rows] if earlier is None else [earlier.mapped(), rows]
+        values = np.concatenate([part[:, COLUMNS[name]] for part in parts])
         return values.astype(np.int64) if name == "step_count" else values
 
     return JointHistory.of_columns(column, dimensions)
@@ -194,8 +208,10 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     require_path("load_history", path)
     head = read_head(path)
     if head is not None and head["names"] == FORMAT:
-        history = history_of(open_rows(path, start, end), {name: head[name] for name in DIMENSIONS})
-        return history if start == -math.inf and end == math.inf else history.between(start, end)
+        rows, dimensions = open_rows(path), {name: head[name] for name in DIMENSIONS}
+        if start == -math.inf and end == math.inf:
+            return history_of(np.empty((0, WIDTH + 2)), dimensions, rows)
+        return history_of(between(rows.mapped(), start, end), dimensions).between(start, end)
     with open(path, "rb") as file:
         values = arrays_in(file)
     if str(values.pop("format", "")) != FORMAT:

@@ -188,32 +188,35 @@ class ForceTolerance:
     ----------
     films : sequence of FilmElement
         Elements of all joints of a system.
+    settings : exudyn.SimulationSettings
+        Settings of the run.
 
     Attributes
     ----------
-    bushes : list
+    bushes : list or None
         Nodal bushes of the system with the places of their coordinates in its vectors; known from the first step on.
     """
 
-    def __init__(self, films: Sequence[FilmElement]) -> None:
+    def __init__(self, films: Sequence[FilmElement], settings: exu.SimulationSettings) -> None:
+        newton = settings.timeIntegration.newton
         self.films = films
-        self.bushes: list[tuple[BushFunctions, np.ndarray]] = []
-        self.given: float | None = None
-        self.relative, self.first, self.level = 0.0, 0.0, 0.0
+        self.given, self.relative = newton.absoluteTolerance, newton.relativeTolerance
+        # mode 1 measures coordinates
+        self.measures_forces = newton.residualMode == 0
+        self.bushes: list[tuple[BushFunctions, np.ndarray]] | None = None
+        self.first, self.level = 0.0, 0.0
 
     def set(self, mbs: exu.MainSystem, solver: _Solver) -> None:
         """Set Newton's tolerances at the start of a step, with the films evaluated at the end of the step before."""
-        newton = solver.newton
-        if self.given is None:
-            self.given, self.relative = newton.absoluteTolerance, newton.relativeTolerance
+        if self.bushes is None:
             self.bushes = _bushes(mbs)
             for film in self.films:
                 film.steps.tolerance = self.given
+        newton = solver.newton
         newton.relativeTolerance = self.relative
-        # mode 1 measures coordinates
-        if newton.residualMode == 0:
+        if self.measures_forces:
             self.level = self._forces()
-            level = FORCE_SHARE * newton.relativeTolerance * self.level
+            level = FORCE_SHARE * self.relative * self.level
             if self.bushes:
                 state = mbs.systemData.GetSystemStateDict(START_OF_STEP, True)
                 reach = abs(state["ODE2Coords"]) + solver.it.currentStepSize * abs(state["ODE2Coords_t"])
@@ -222,15 +225,14 @@ class ForceTolerance:
 
     def limit(self, solver: _Solver, iteration: int) -> None:
         """Set Newton's relative tolerance before an iteration, with the films evaluated in the iteration before."""
-        newton = solver.newton
-        if self.given is None or newton.residualMode != 0:
+        if not self.measures_forces:
             return
         forces = self._forces()
         if iteration == 1:
             self.first = forces
         present = max(forces, self.level)
         part = present / self.first if self.first > present else 1.0
-        newton.relativeTolerance = self.relative * max(part, LEAST_PART)
+        solver.newton.relativeTolerance = self.relative * max(part, LEAST_PART)
 
     def _forces(self) -> float:
         return math.hypot(*(force for film in self.films for force in _force(film.last)))

@@ -68,7 +68,7 @@ class StartGuess:
     """
 
     def __init__(self, films: Sequence[FilmElement], settings: exu.SimulationSettings) -> None:
-        self.limit, self.tolerance = GapLimit(films), ForceTolerance(films)
+        self.limit, self.tolerance = GapLimit(films), ForceTolerance(films, settings)
         self.by_velocities = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
         bodies = {int(node) for film in films for side in film.sides for node in side.nodes}
         self.bushes = {int(node) for film in films for node in getattr(film, "bore_nodes", ())} - bodies

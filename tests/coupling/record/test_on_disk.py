@@ -205,7 +205,7 @@ def test_a_full_disk_ends_the_run_by_name_and_leaves_the_history(tmp_path, monke
         if len(calls) > 2:
             monkeypatch.setattr("builtins.open", no_room)
         try:
-            add(self, rows, settled)
+            return add(self, rows, settled)
         finally:
             monkeypatch.setattr("builtins.open", opened)
 
