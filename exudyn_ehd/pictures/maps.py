@@ -55,24 +55,22 @@ class MapField:
     absent: str = ""
 
 
-PRESSURE = MapField("pressure", "pressure", "pressure", "viridis")
-GAP = MapField("gap", "gap", "length", "cividis")
-FILL = MapField(
-    "fill", "film fraction", "ratio", "Blues", "only a mass-conserving film has one: cavitation=ElrodAdams(...)."
-)
-TEMPERATURE = MapField(
-    "temperature", "film temperature", "temperature", "inferno", "give the bearing thermal=FilmEnergy(...)."
-)
-
-
-CONTACT_PRESSURE = MapField(
-    "contact_pressure",
-    "contact pressure",
-    "pressure",
-    "magma",
-    "give the bearing asperity=GreenwoodTripp(...) or contact=RegularisedWall(...).",
-)
-WEAR_DEPTH = MapField("wear_depth", "wear depth", "depth", "cividis", "give the bearing wear=ArchardWear(...).")
+_CONTACTS = "give the bearing asperity=GreenwoodTripp(...) or contact=RegularisedWall(...)."
+_ELROD = "only a mass-conserving film has one: cavitation=ElrodAdams(...)."
+FIELDS = {
+    field.name: field
+    for field in (
+        MapField("pressure", "pressure", "pressure", "viridis"),
+        MapField("gap", "gap", "length", "cividis"),
+        MapField("fill", "film fraction", "ratio", "Blues", _ELROD),
+        MapField(
+            "temperature", "film temperature", "temperature", "inferno", "give the bearing thermal=FilmEnergy(...)."
+        ),
+        MapField("contact_pressure", "contact pressure", "pressure", "magma", _CONTACTS),
+        MapField("wear_depth", "wear depth", "depth", "cividis", "give the bearing wear=ArchardWear(...)."),
+    )
+}
+PRESSURE = FIELDS["pressure"]
 
 
 def field_values(film: Film, field: MapField) -> np.ndarray:

@@ -248,23 +248,19 @@ class _Newton:
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
         error = first = solver.ComputeNewtonResidual(mbs, settings)
-        if turn > 0:
-            # a contact has opened or closed
-            self.factor = None
-        if solver.it.currentStepSize != self.step_size:
-            self.factor = None
-            self.step_size = solver.it.currentStepSize
-        if self.excess >= self.reuse.worth:
+        step, self.step_size = self.step_size, solver.it.currentStepSize
+        # in a further turn a contact has opened or closed
+        if turn > 0 or step != self.step_size or self.excess >= self.reuse.worth:
             self.factor = None
         age, renewable = 0, True
         for iteration in range(1, newton.maxIterations + 1):
             if not np.isfinite(error):
                 break
-            if self.factor is None or age >= self.reuse.maximum_iterations:
-                if not self._factorise(solver, mbs, settings):
-                    break
+            if age >= self.reuse.maximum_iterations:
+                self.factor = None
+            if self.factor is None:
                 age, renewable = 0, False
-            elif not self._renew_rest(solver, mbs, settings):
+            if not self._factorise(solver, mbs, settings):
                 break
             self._update(solver, mbs)
             solver.it.newtonStepsCount += 1
@@ -294,36 +290,29 @@ class _Newton:
         return not renewable or iteration <= FILMS_FIRST
 
     def _factorise(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
-        start = time.perf_counter()
-        self.factor = None
-        index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
-        system = self.matrix.assemble(mbs, solver, index2=index2)
-        constraints = self.matrix.constraints
-        try:
-            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0)
-        except RuntimeError:
-            return False
-        self.baseline = self.excess = 0
-        self.run.jacobians += 1
-        solver.it.newtonJacobiCount += 1
-        self.run.factor_bytes = self.factor.nbytes
-        self.run.seconds_jacobian += time.perf_counter() - start
-        return True
+        """Make the factor where there is none, else renew what is beside the meshes where only films join the two.
 
-    def _renew_rest(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        """Renew what is beside the meshes, where only films join the two; False if that is singular."""
-        assert self.factor is not None
-        if self.factor.coupled or not self.matrix.films:
+        Return False if the matrix is singular, upon which the step is rejected.
+        """
+        kept = self.factor
+        if kept is not None and (kept.coupled or not self.matrix.films):
             return True
         start = time.perf_counter()
         index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
+        system = self.matrix.assemble(mbs, solver, index2=index2, meshes=kept is None)
         try:
-            self.factor.renew_rest(self.matrix.assemble(mbs, solver, index2=index2, meshes=False))
+            if kept is not None:
+                kept.renew_rest(system)
+                return True
+            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if self.matrix.constraints else 0.0)
         except RuntimeError:
             return False
         finally:
             self.run.seconds_jacobian += time.perf_counter() - start
+        self.baseline = self.excess = 0
+        self.run.jacobians += 1
+        solver.it.newtonJacobiCount += 1
+        self.run.factor_bytes = self.factor.nbytes
         return True
 
     def _solve(self, solver: Solver, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
