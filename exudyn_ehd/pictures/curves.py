@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,12 +16,8 @@ from exudyn_ehd.tables import unit_of
 SIZE = (1.2 * COLUMN, 0.8 * COLUMN)
 
 
-class Curve(NamedTuple):
-    """A curve with its name in the legend; ``x``, ``y`` (n,) in SI units."""
-
-    text: str
-    x: np.ndarray
-    y: np.ndarray
+Curve: TypeAlias = tuple[str, np.ndarray, np.ndarray]
+"""Name in the legend, x and y (n,) in SI units."""
 
 
 def plot_curves(
@@ -51,13 +47,13 @@ def plot_curves(
     columns = [column(name, np.concatenate([curve[k + 1] for curve in curves]), units) for k, name in enumerate(names)]
     x_unit, y_unit = (unit for _, unit in columns)
     with picture(ax, SIZE, path) as (figure, ax):
-        for curve in curves:
-            order = np.argsort(curve.x)
-            ax.plot(x_unit(curve.x[order]), y_unit(curve.y[order]), "o-", label=curve.text or None)
+        for text, x, y in curves:
+            order = np.argsort(x)
+            ax.plot(x_unit(x[order]), y_unit(y[order]), "o-", label=text or None)
         xlabel, ylabel = (label(text, unit) if unit.symbol else text for text, unit in columns)
         ax.set(xlabel=xlabel, ylabel=ylabel)
         style_ticks(ax, grid=True)
-        if any(curve.text for curve in curves):
+        if any(text for text, _, _ in curves):
             ax.legend()
     return figure
 

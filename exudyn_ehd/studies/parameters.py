@@ -130,7 +130,7 @@ class StudyTable(Table):
         InputError
             For names that the study does not have, or more than ten curves.
         """
-        from exudyn_ehd.pictures.curves import Curve, column, plot_curves
+        from exudyn_ehd.pictures.curves import column, plot_curves
 
         along = along or self.parameters[0]
         if name not in self.columns or along not in self.parameters:
@@ -155,8 +155,7 @@ class StudyTable(Table):
             )
             for k in range(len(x))
         ]
-        curves = [Curve(*values) for values in zip(texts, x, y, strict=True)]
-        return plot_curves(curves, (along, name), self.units, ax=ax, path=path)
+        return plot_curves(list(zip(texts, x, y, strict=True)), (along, name), self.units, ax=ax, path=path)
 
     def _columns(self) -> dict[str, np.ndarray]:
         return self.columns

@@ -37,7 +37,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from typing import Any, TypeAlias
+from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -53,8 +53,6 @@ from exudyn_ehd.status import Status
 
 # Share of a film's gap that a step of Newton's method may close.
 SHARE = 0.5
-# Exudyn's stubs lack attributes of its solvers
-_Solver: TypeAlias = Any
 # Share of the relative tolerance times the films' forces.
 FORCE_SHARE = 0.1
 # Least part of the relative tolerance that is left.
@@ -206,7 +204,7 @@ class ForceTolerance:
         self.bushes: list[tuple[BushFunctions, np.ndarray]] | None = None
         self.first, self.level = 0.0, 0.0
 
-    def set(self, mbs: exu.MainSystem, solver: _Solver) -> None:
+    def set(self, mbs: exu.MainSystem, solver: Any) -> None:
         """Set Newton's tolerances at the start of a step, with the films evaluated at the end of the step before."""
         if self.bushes is None:
             self.bushes = _bushes(mbs)
@@ -223,7 +221,7 @@ class ForceTolerance:
                 level = max(level, math.hypot(*(bush.equations.rounding(reach[at]) for bush, at in self.bushes)))
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
 
-    def limit(self, solver: _Solver, iteration: int) -> None:
+    def limit(self, solver: Any, iteration: int) -> None:
         """Set Newton's relative tolerance before an iteration, with the films evaluated in the iteration before."""
         if not self.measures_forces:
             return

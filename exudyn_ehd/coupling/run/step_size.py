@@ -133,13 +133,8 @@ class StepSize:
         Elements of all joints.
     error : float
         Share of the minimum film thickness.
-    output : bool
+    sensors : bool
         Whether the system has sensors.
-
-    Attributes
-    ----------
-    refused : int
-        Steps that were repeated.
     """
 
     def __init__(
@@ -161,7 +156,6 @@ class StepSize:
         self.time = math.nan
         self.demand = 0.0
         self.used: float | None = None
-        self.refused = 0
 
     def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
         """User function after Newton's method and the user's own: error, and step size to repeat the step with."""
@@ -172,7 +166,6 @@ class StepSize:
         smallest = mbs.sys["dynamicSolver"].it.minStepSize
         if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + ROUNDING):
             return [error, wanted]
-        self.refused += 1
         step = min(step * max(SHRINK, self.used**-0.5), *(joint.wanted for joint in self.joints))
         return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
 
