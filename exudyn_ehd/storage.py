@@ -22,10 +22,9 @@ import time
 import types
 import warnings
 import zipfile
-import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from typing import Any, BinaryIO
+from typing import Any
 
 import numba
 import numpy as np
@@ -215,7 +214,13 @@ def _read(path: pathlib.Path, digest: bytes, shapes: Shapes) -> Arrays | None:
     if hashlib.sha256(digest + raw[32:]).digest() != raw[:32]:
         _warn(path, "damaged")
         return None
-    arrays = arrays_in(io.BytesIO(raw[32:]))
+    try:
+        with np.load(io.BytesIO(raw[32:]), allow_pickle=False) as data:
+            arrays = {name: data[name] for name in data.files}
+    # whatever numpy finds in bytes that are no archive of arrays
+    except (ValueError, OSError, EOFError, KeyError, AttributeError, TypeError, zipfile.BadZipFile):
+        _warn(path, "no file of this package")
+        return None
     if arrays.keys() != shapes.keys() or not _fit(arrays, shapes):
         _warn(path, "no file of this package's version")
         return None
@@ -223,26 +228,6 @@ def _read(path: pathlib.Path, digest: bytes, shapes: Shapes) -> Arrays | None:
     with suppress(OSError):
         os.utime(path)
     return arrays
-
-
-def arrays_in(file: BinaryIO) -> Arrays:
-    """Arrays of a NumPy archive by name; none if it is damaged or something else."""
-    try:
-        with np.load(file, allow_pickle=False) as data:
-            return dict(data)
-    # whatever numpy finds in bytes that are no archive of arrays
-    except (
-        ValueError,
-        OSError,
-        EOFError,
-        KeyError,
-        AttributeError,
-        TypeError,
-        NotImplementedError,
-        zipfile.BadZipFile,
-        zlib.error,
-    ):
-        return {}
 
 
 def _fit(arrays: Arrays, shapes: Shapes) -> bool:

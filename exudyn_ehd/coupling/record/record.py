@@ -24,11 +24,11 @@ from exudyn_ehd.coupling.record.history import (
     JointHistory,
     has_gaps,
 )
-from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_head, require_own
+from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_arrays, read_head, require_own
 from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
 from exudyn_ehd.joint.step_error import NO_ERROR
 from exudyn_ehd.status import InputError, RunError
-from exudyn_ehd.storage import arrays_in, require_path
+from exudyn_ehd.storage import require_path
 
 # Rows in memory from which on they are settled: numbered, thinned, written to a file.
 MOST_ROWS = 256
@@ -212,9 +212,8 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
         if start == -math.inf and end == math.inf:
             return history_of(np.empty((0, WIDTH + 2)), dimensions, rows)
         return history_of(between(rows.mapped(), start, end), dimensions).between(start, end)
-    with open(path, "rb") as file:
-        values = arrays_in(file)
-    if str(values.pop("format", "")) != FORMAT:
+    values = read_arrays(path, FORMAT)
+    if values is None:
         raise InputError(
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )

@@ -12,12 +12,13 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP
+from exudyn_ehd.coupling.record.on_disk import read_arrays
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError
-from exudyn_ehd.storage import arrays_in, replacing, require_path
+from exudyn_ehd.storage import replacing, require_path
 
 _FORMAT = "exudyn_ehd SystemState 5"
 Part = TypeVar("Part", History, StepStart)
@@ -136,9 +137,8 @@ def load_state(path: str | pathlib.Path) -> SystemState:
             f"SolveDynamic.restart must be a SystemState or the path of a file written by SaveState, got {path!r}."
         )
     require_path("SolveDynamic.restart", path)
-    with open(path, "rb") as file:
-        arrays = arrays_in(file)
-    if str(arrays.get("format")) != _FORMAT:
+    arrays = read_arrays(path, _FORMAT)
+    if arrays is None:
         raise InputError(
             f"SolveDynamic.restart: '{path}' is damaged or holds no state of this version; give a file written by "
             "SaveState."
