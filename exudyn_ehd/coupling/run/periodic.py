@@ -148,7 +148,6 @@ class Closing:
         self.aim, self.begin, self.last = aim, run.startTime, run.startTime
         self.changes: list[float] = []
         self.left = math.inf
-        self.cycles = 0
 
     def after_step(self, own: Callable[..., object], mbs: exu.MainSystem, time: float) -> bool:
         """Return whether the run goes on after the step to ``time``; the user's function is called first."""
@@ -159,19 +158,21 @@ class Closing:
         return goes_on and not self.closed
 
     @property
+    def cycles(self) -> int:
+        """Number of whole cycles that were compared, the first one included."""
+        return len(self.changes) + 1
+
+    @property
     def closed(self) -> bool:
         """Return whether the last whole cycle is close enough to the one before and to the limit."""
         return bool(self.changes) and max(self.changes[-1], self.left) <= self.aim.tolerance
 
     def look(self, mbs: exu.MainSystem, time: float, *, complete: bool = False) -> None:
         """Compare the cycle that has ended by ``time``, if one has; its end is the state now if ``complete``."""
-        period = self.aim.period
-        if self.closed or time < self.begin + (self.cycles + 1 - SAME) * period:
+        period, cycles = self.aim.period, self.cycles + 1
+        if self.closed or time < self.begin + (cycles - SAME) * period:
             return
-        self.cycles += 1
-        if self.cycles == 1:
-            return
-        end = self.begin + self.cycles * period
+        end = self.begin + cycles * period
         histories = [steps.history(mbs, complete=complete) for steps in self.films.values()]
         change = max(_change(history, self.begin, end, period) for history in histories)
         quotient = change / self.changes[-1] if self.changes and self.changes[-1] > 0.0 else 1.0
