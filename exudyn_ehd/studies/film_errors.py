@@ -100,11 +100,16 @@ def converged(levels: Sequence[np.ndarray], *, ratio: float, formal_order: float
     if len(levels) != 3 or not all(np.all(np.isfinite(level)) for level in levels):
         raise InputError(f"converged: levels must be three finite values, coarse to fine, got {levels!r}.")
     first, last = (float(np.max(np.abs(np.asarray(levels[k]) - levels[k + 1]))) / scale for k in (0, 1))
-    order = formal_order
-    if last > 0.0:
-        observed = math.log(first / last) / math.log(ratio) if first > 0.0 else LOWEST_ORDER
-        order = min(max(observed, LOWEST_ORDER), formal_order)
+    order = order_of(first, last, ratio, formal_order)
     return Converged(value=np.asarray(levels[2]), error=last / (ratio**order - 1.0), order=order)
+
+
+def order_of(first: float, last: float, ratio: float, formal_order: float) -> float:
+    """Order of a scheme from the differences between three levels, each ``ratio`` times finer than the one before."""
+    if not last > 0.0:
+        return formal_order
+    observed = math.log(first / last) / math.log(ratio) if first > 0.0 else LOWEST_ORDER
+    return min(max(observed, LOWEST_ORDER), formal_order)
 
 
 def scale_of(name: str, reference: np.ndarray) -> float:

@@ -170,25 +170,24 @@ class RowFile:
         self._rows: dict[str, Row] = {}
         head = {"format": _FORMAT, "function": fingerprint(function)}
         text = self._path.read_bytes().decode("utf-8", "replace") if self._path.exists() else ""
-        whole = text[: text.rfind("\n") + 1]
-        lines = whole.splitlines()
-        if not lines and not text:
+        if not text:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             self._write(head)
             return
+        whole = text[: text.rfind("\n") + 1]
         try:
-            stored = [json.loads(line) for line in lines]
-            known, rows = stored[0], {_key(entry["point"]): Row(**entry["row"]) for entry in stored[1:]}
-        except (ValueError, TypeError, KeyError, IndexError):
-            known, rows = {}, {}
-        if not isinstance(known, dict) or known.get("format") != _FORMAT:
+            known, *stored = (json.loads(line) for line in whole.splitlines())
+            self._rows = {_key(entry["point"]): Row(**entry["row"]) for entry in stored}
+            is_study = known["format"] == _FORMAT
+        except (ValueError, TypeError, KeyError):
+            is_study = False
+        if not is_study:
             raise InputError(f"parameter_study.file: '{path}' holds no rows of a study; name a new file.")
         if known != head:
             raise InputError(
                 f"parameter_study.file: '{path}' holds rows of another function, or of this one before it was changed; "
                 "name a new file, or delete this one."
             )
-        self._rows = rows
         if whole != text:
             self._path.write_text(whole, encoding="utf-8")
 
