@@ -83,8 +83,9 @@ TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1,
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
 LOAD = slice(FIRST_BLOCK + BLOCKS.size, FIRST_BLOCK + BLOCKS.size + LOADS)
 WIDTH = LOAD.stop
-# Tangent's blocks in a row, and the numbers behind a row that is settled.
-TANGENT, STEP_COUNT, STEP_ERROR = slice(FIRST_BLOCK, LOAD.start), WIDTH, WIDTH + 1
+# Tangent's blocks in a row, of a ball what `pack_of_ball` keeps, and the numbers behind a row that is settled.
+TANGENT, PACK = slice(FIRST_BLOCK, LOAD.start), slice(FIRST_BLOCK, FIRST_BLOCK + 15)
+STEP_COUNT, STEP_ERROR = WIDTH, WIDTH + 1
 _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))

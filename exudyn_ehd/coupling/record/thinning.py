@@ -25,6 +25,7 @@ from exudyn_ehd.coupling.record.history import (
     FORCE,
     LOAD,
     MINIMUM_GAP,
+    PACK,
     PEAK_PRESSURE,
     STEP_COUNT,
     STEP_ERROR,
@@ -33,7 +34,8 @@ from exudyn_ehd.coupling.record.history import (
     WIDTH,
 )
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind
+from exudyn_ehd.joint.spherical.bearing import SphericalBearing
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind, errors_of_ball
 from exudyn_ehd.status import require_integer, require_number
 
 Errors: TypeAlias = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -175,3 +177,10 @@ def errors_of(bearing: JournalBearing, rows: np.ndarray, before: np.ndarray) -> 
     blocks, gap = rows[:, TANGENT].reshape(-1, *BLOCKS.shape), rows[:, MINIMUM_GAP]
     dimensions = bearing.radial_clearance, bearing.length
     return errors_behind(before, rows[:, TIME], motion, blocks, gap, *dimensions, deflection, rows[:, LOAD])
+
+
+def errors_of_ball_in(bearing: SphericalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Errors (n,) of the steps of a ball's rows (n, WIDTH), and that of its place behind them; see `errors_of_ball`."""
+    place, velocity, _ = np.split(rows[:, COLUMNS["motion"]][:, :9], 3, axis=1)
+    known, gap, load = rows[:, PACK], rows[:, MINIMUM_GAP], rows[:, LOAD]
+    return errors_of_ball(before, rows[:, TIME], place, velocity, known, gap, bearing.radial_clearance, load)
