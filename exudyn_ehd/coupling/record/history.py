@@ -212,6 +212,10 @@ class JointHistory(History, HistoryPictures):
         self.__dict__[name] = values = column(name)
         return values
 
+    def __getstate__(self) -> dict[str, Any]:
+        # what is sent to other processes is read here
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
     @classmethod
     def of_columns(cls, column: Callable[[str], np.ndarray], dimensions: Mapping[str, float]) -> JointHistory:
         """A history whose columns, by the names `COLUMNS`, are made when they are asked for."""
@@ -271,9 +275,8 @@ class JointHistory(History, HistoryPictures):
             Ending in ``.npz``.
         """
         require_path("JointHistory.save (to_csv writes text)", path, ".npz")
-        fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         with replacing(path, binary=True) as file:
-            np.savez_compressed(file, format=FORMAT, **fields)
+            np.savez_compressed(file, format=FORMAT, **self.__getstate__())
 
     def to_csv(self, path: str | pathlib.Path) -> None:
         """Write all columns as text, names and SI units in the first line; vectors by their components.

@@ -4,10 +4,11 @@ and back from files."""
 from __future__ import annotations
 
 import contextlib
+import copy
 import functools
 import math
 import pathlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from exudyn_ehd.joint.step_error import NO_ERROR
 from exudyn_ehd.status import InputError, RunError
 from exudyn_ehd.storage import require_path
 
-# Rows in memory from which on they are settled: numbered, thinned, written to a file.
+# Rows in memory from which on they are settled: numbered, and thinned or written to a file.
 MOST_ROWS = 256
 
 
@@ -58,7 +59,7 @@ class Record:
         self._errors = functools.partial(errors, bearing), none
         self._thinner = Thinner(None, *self._errors)
         self._disk: RowsOnDisk | None = None
-        # rows as they came, the last of which may be replaced; settled ones, in memory or on their way to the file
+        # rows as they came, the last of which may be replaced; settled ones, thinned or on their way to the file
         self._rows: list[np.ndarray] = []
         self._kept: list[np.ndarray] = []
         self.thinnest = math.inf
@@ -99,14 +100,14 @@ class Record:
             self._disk = RowsOnDisk(self._disk.path, self._disk.joint)
 
     def write(self, final: np.ndarray | None = None) -> None:
-        """Settle the rows but the last one, and bring them to the file, if there is one, with ``final`` behind them.
+        """Settle the rows but the last one of a record that is thinned or in a file, there with ``final`` behind them.
 
         Raises
         ------
         RunError
             If they can't be written.
         """
-        if not self._rows:
+        if not self._rows or (self._disk is None and not self.is_thinned):
             return
         rows, self._rows = np.array(self._rows), self._rows[-1:]
         self._kept.append(self._thinner.take(rows[:-1]))
@@ -116,7 +117,7 @@ class Record:
         try:
             if not disk.head:
                 self._disk = disk.begin({"names": FORMAT, **self._dimensions})
-            self._disk = self._disk.add(np.concatenate([whole, self._behind(final)]), len(whole))
+            self._disk = self._disk.add(np.concatenate([whole, self._thinner.look(self._pending(final))]), len(whole))
         except OSError as error:
             raise RunError(
                 f"LubricatedJoint '{disk.joint}': its record can't be written to '{disk.path}' ({error.strerror}); "
@@ -124,15 +125,15 @@ class Record:
             ) from error
         self._kept = []
 
-    def _behind(self, final: np.ndarray | None) -> np.ndarray:
-        """Rows (n, WIDTH + 2) of what is not settled, with ``final`` behind them."""
-        return self._thinner.look(np.array(self._rows if final is None else [*self._rows, final]))
+    def _pending(self, final: np.ndarray | None) -> np.ndarray:
+        """Rows (n, WIDTH) of what is not settled, with ``final`` behind them."""
+        return np.array(self._rows if final is None else [*self._rows, final]).reshape(-1, WIDTH)
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, WIDTH + 2), with ``final`` behind them if given and later."""
         final = None if final is None or not final[TIME] > self.last_time else final
         earlier = [] if self._disk is None else [self._disk.mapped()]
-        return np.concatenate([*earlier, *self._kept, self._behind(final)])
+        return np.concatenate([*earlier, *self._kept, self._thinner.look(self._pending(final))])
 
     def restore(self, rows: np.ndarray) -> None:
         """Begin with these rows (n, WIDTH + 2), all of them for a record of all steps.
@@ -159,18 +160,25 @@ class Record:
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """The record, with ``final`` as its last row if given: a copy, or what reads the file."""
         # where the file can't be written any more, the rows are still known
-        with contextlib.suppress(RunError):
-            self.write(final)
-        rows = np.concatenate([*self._kept, self._behind(final)])
-        return history_of(rows, self._dimensions, self._disk)
+        if self._disk is not None:
+            with contextlib.suppress(RunError):
+                self.write(final)
+        disk, kept, rows, is_thinned = self._disk, list(self._kept), self._pending(final), self.is_thinned
+        # numbers and errors of the last steps are made when they are asked for
+        numbered = functools.cache(functools.partial(copy.copy(self._thinner).look, rows))
+
+        def parts(name: str) -> list[np.ndarray]:
+            last = numbered() if is_thinned or name in ("step_error", "step_count") else rows
+            return [*kept, last] if disk is None else [disk.mapped(), *kept, last]
+
+        return history_of(parts, self._dimensions)
 
 
-def history_of(rows: np.ndarray, dimensions: Mapping[str, Any], earlier: RowsOnDisk | None = None) -> JointHistory:
-    """A history that makes its columns of rows (n, WIDTH + 2), behind those of a file, when they are asked for."""
+def history_of(parts: Callable[[str], Sequence[np.ndarray]], dimensions: Mapping[str, Any]) -> JointHistory:
+    """A history that makes its columns, of the parts with their rows (n, k), when they are asked for."""
 
     def column(name: str) -> np.ndarray:
-        parts = [rows] if earlier is None else [earlier.mapped(), rows]
-        values = np.concatenate([part[:, COLUMNS[name]] for part in parts])
+        values = np.concatenate([part[:, COLUMNS[name]] for part in parts(name)])
         return values.astype(np.int64) if name == "step_count" else values
 
     return JointHistory.of_columns(column, dimensions)
@@ -210,8 +218,9 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     if head is not None and head["names"] == FORMAT:
         rows, dimensions = open_rows(path), {name: head[name] for name in DIMENSIONS}
         if start == -math.inf and end == math.inf:
-            return history_of(np.empty((0, WIDTH + 2)), dimensions, rows)
-        return history_of(between(rows.mapped(), start, end), dimensions).between(start, end)
+            return history_of(lambda _: [rows.mapped()], dimensions)
+        part = between(rows.mapped(), start, end)
+        return history_of(lambda _: [part], dimensions).between(start, end)
     values = read_arrays(path, FORMAT)
     if values is None:
         raise InputError(
