@@ -21,8 +21,8 @@ another; but deformations of bodies, which ring while the body moves smoothly, a
 Constraints are what it must not upset. Newton's first iteration leaves them open by some (h v)^2 / L from Exudyn's
 start and by far less from this one. Forces do not feel what is the same in every step, but a change g from one step to
 the next as m g / (beta h^2): from one start to the other m v^2 / L at any step size, as much as the inertia. So
-Newton's method goes on where the opening jumps. Exudyn takes that for a contact that has opened or
-closed, and begins again at zero accelerations; here each further pass of a step starts where the last one has ended.
+Newton's method goes on where the opening jumps. Exudyn takes that for a contact that has opened or closed, and begins
+again at zero accelerations; here each further pass of a step starts where the last one has ended.
 
 Steps that converge to a film that none bears, refused before Exudyn accepts them.
 
