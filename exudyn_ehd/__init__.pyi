@@ -28,6 +28,8 @@ from exudyn_ehd.coupling.rotor.api import SolveThreshold as SolveThreshold
 from exudyn_ehd.coupling.rotor.api import stability_map as stability_map
 from exudyn_ehd.coupling.rotor.result import RotorResult as RotorResult
 from exudyn_ehd.coupling.run.joint_state import JointState as JointState
+from exudyn_ehd.coupling.run.periodic import LastCycle as LastCycle
+from exudyn_ehd.coupling.run.periodic import UntilPeriodic as UntilPeriodic
 from exudyn_ehd.coupling.run.restart import SystemState as SystemState
 from exudyn_ehd.coupling.run.settings import ConfigureSolver as ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SaveState as SaveState
@@ -38,8 +40,6 @@ from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse as SolveDynamicSpa
 from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint as CreateLubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import LubricatedSphericalJoint as LubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import SphericalHistory as SphericalHistory
-from exudyn_ehd.coupling.watch.periodic import LastCycle as LastCycle
-from exudyn_ehd.coupling.watch.periodic import UntilPeriodic as UntilPeriodic
 from exudyn_ehd.coupling.watch.step_control import StepControl as StepControl
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld as FullSommerfeld
 from exudyn_ehd.film.cavitation.closures import Gumbel as Gumbel

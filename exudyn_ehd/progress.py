@@ -5,6 +5,7 @@ Pipes, files and the processes of a study get no such line, nor does work of les
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import shutil
 import sys
@@ -109,6 +110,18 @@ def announced(message: str, patience: float = PATIENCE) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
+
+
+@contextmanager
+def without_lines() -> Iterator[None]:
+    """Runs within end without the lines that they log."""
+    log = logging.getLogger("exudyn_ehd")
+    level = log.level
+    log.setLevel(max(level, logging.WARNING))
+    try:
+        yield
+    finally:
+        log.setLevel(level)
 
 
 def _duration(seconds: float) -> str:

@@ -25,15 +25,16 @@ from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.history import FIRST_BLOCK, LOAD, JointHistory, Quantity, make_row
-from exudyn_ehd.coupling.record.record import Record, history_of
+from exudyn_ehd.coupling.record.history import PACK, JointHistory, Quantity, make_row
+from exudyn_ehd.coupling.record.record import Record
+from exudyn_ehd.coupling.record.thinning import errors_of_ball_in
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
-from exudyn_ehd.joint.step_error import errors_of_ball, pack_of_ball
+from exudyn_ehd.joint.step_error import NO_BALL_ERROR, pack_of_ball
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_bool, require_type, require_vector
 
@@ -43,8 +44,6 @@ if TYPE_CHECKING:
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
 _WHERE = "CreateLubricatedSphericalJoint"
-# Columns of the record with what `pack_of_ball` keeps.
-PACK = slice(FIRST_BLOCK, FIRST_BLOCK + 15)
 _QUANTITIES = ("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load")
 
 
@@ -75,19 +74,6 @@ class SphericalFailures(Failures):
         return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
 
 
-class BallRecord(Record):
-    """Rows of a ball, which know the stiffness and the damping of three translations."""
-
-    def snapshot(self, final: np.ndarray | None) -> JointHistory:
-        """The record, with ``final`` as its last row if given."""
-        rows = self._all_rows(final)
-        history = history_of(rows, self._dimensions, lags=False)
-        place, velocity, _ = np.split(history.motion[:, :9], 3, axis=1)
-        clearance, packed, load = history.radial_clearance, rows.behind[:, PACK], rows.behind[:, LOAD]
-        errors = errors_of_ball(history.time, place, velocity, packed, history.minimum_gap, clearance, load)
-        return dataclasses.replace(history, step_error=errors)
-
-
 class SphericalFilmElement(FilmElement):
     """Film between the sides of a socket and of a ball; parameters as for `FilmElement`."""
 
@@ -96,7 +82,7 @@ class SphericalFilmElement(FilmElement):
     def __init__(self, model: JointModel, socket: Side, ball: Side, name: str) -> None:
         super().__init__(model, socket, ball, name)
         self.failures = SphericalFailures(name, model.bearing)
-        self.steps.record = BallRecord(model.bearing)
+        self.steps.record = Record(model.bearing, errors_of_ball_in, NO_BALL_ERROR)
         self.outer = outer_load.OuterLoad(self.sides, outer_load.BALL)
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:

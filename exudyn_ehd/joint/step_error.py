@@ -153,6 +153,7 @@ def pack_of_ball(tangent: np.ndarray) -> np.ndarray:
 
 
 def errors_of_ball(
+    before: np.ndarray,
     time: np.ndarray,
     place: np.ndarray,
     velocity: np.ndarray,
@@ -160,11 +161,15 @@ def errors_of_ball(
     minimum_gap: np.ndarray,
     clearance: float,
     load: np.ndarray,
-) -> np.ndarray:
-    """Error (n,) of a ball's place over the minimum film thickness, of every accepted state; see `errors_behind`.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Error (n,) of a ball's place over the minimum film thickness, of every accepted state, and ``before`` behind.
+
+    See `errors_behind`.
 
     Parameters
     ----------
+    before : (1, 7, 6) array
+        `NO_BALL_ERROR` at the beginning of a record.
     time : (n,) array
         s.
     place, velocity : (n, 3) arrays
@@ -182,14 +187,14 @@ def errors_of_ball(
     last = np.maximum.accumulate(np.where(np.isfinite(packed[:, 0]), np.arange(time.size), -1))
     first = max(FIRST, int(np.count_nonzero(last < 0)))
     if time.size <= first:
-        return out
+        return out, before
     K, D = packed[last, :9].reshape(-1, 3, 3), np.empty((time.size, 3, 3))
     D[:, _UPPER[0], _UPPER[1]] = D[:, _UPPER[1], _UPPER[0]] = packed[last, 9:]
     known = slice(first, None)
     parts = _parts(time, K, D, (place, velocity), np.zeros_like(place), load, 0, known)
-    error, variance, _ = _errors(time.size, known, parts, NO_BALL_ERROR[0])
+    error, variance, after = _errors(time.size, known, parts, before[0])
     out[known] = np.sqrt(np.sum(error**2, axis=1) + variance)[known]
-    return out / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance)
+    return out / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance), after[None]
 
 
 def next_error(

@@ -13,10 +13,9 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from exudyn_ehd.pictures.maps import PRESSURE, closed_ring, colour_limits
+from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled
 from exudyn_ehd.pictures.records import Film, Target, label, unit_for
-from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, headed, open_axes, style_ticks, styled
-from exudyn_ehd.status import InputError
+from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, headed, picture, style_ticks
 
 SIZE = (1.35 * COLUMN, 1.15 * COLUMN)
 # Shares of the bore radius.
@@ -52,24 +51,16 @@ def plot_bearing(
     -------
     matplotlib Figure
     """
-    if ax is not None and ax.name != "3d":
-        raise InputError(
-            f"plot_bearing: ax must be 3d, got {ax.name} axes; use subplots(subplot_kw={{'projection': '3d'}})."
-        )
-    theta, p = closed_ring(film.theta, film.pressure)
-    unit = unit_for("pressure", p)
-    low, high = colour_limits(unit(p), PRESSURE)
+    unit = unit_for("pressure", film.pressure)
+    low, high = colour_limits(unit(film.pressure), PRESSURE)
     norm, colours = Normalize(low, high), matplotlib.colormaps[PRESSURE.colours]
-    around = np.linspace(0.0, 2.0 * np.pi, FACETS + 1)
-    p = np.stack([np.interp(around, theta, row) for row in p.T], axis=1)
-    along = np.linspace(film.z[0], film.z[-1], ROWS)
-    p = np.stack([np.interp(along, film.z, row) for row in p])
+    around, along = np.linspace(0.0, 2.0 * np.pi, FACETS + 1), np.linspace(film.z[0], film.z[-1], ROWS)
+    p = resampled(film, film.pressure, around, along)
     z = along / film.bearing.journal_radius
     hill = pressure_surface(around, z, p)
     journal = journal_surface(film, around, z)
     own = ax is None
-    with styled():
-        figure, ax = open_axes(ax, SIZE, path, projection="3d", computed_zorder=False)
+    with picture(ax, SIZE, path, where="plot_bearing", projection="3d", computed_zorder=False) as (figure, ax):
         quads, values = quads_of(hill), quads_of(unit(p)[..., None])[..., 0].mean(axis=1)
         sides, caps = quads_of(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
         # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four
@@ -81,7 +72,7 @@ def plot_bearing(
         ring = np.stack([np.cos(around), np.sin(around)], axis=1)
         for end, order in ((z[0], 0), (z[-1], 2)):
             ax.plot(*_turned(np.column_stack([ring, np.full(len(ring), end)])).T, color=BLACK, lw=0.6, zorder=order)
-        peak = float(theta[int(np.argmax(closed_ring(film.theta, film.pressure)[1].max(axis=1)))])
+        peak = float(film.theta[int(np.argmax(film.pressure.max(axis=1)))])
         _draw_arrows(ax, film, z)
         reach = 1.0 + HILL
         box = np.array([[-reach, reach], [-z[-1], -z[0]], [-reach, reach]])
@@ -92,7 +83,7 @@ def plot_bearing(
             R, L = 1e3 * film.bearing.journal_radius, 1e3 * film.bearing.length
             sizes = f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale"
             ax.set_title(headed(title, sizes), y=0.98)
-        return finish(figure, path)
+    return figure
 
 
 def pressure_surface(theta: np.ndarray, z: np.ndarray, pressure: np.ndarray) -> np.ndarray:

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import matplotlib
 import numpy as np
-from matplotlib.colors import Normalize
+from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.bearing3d import look_at, quads_of
 from exudyn_ehd.pictures.style import new_figure, style_ticks, styled
@@ -71,6 +72,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Fi
             axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
             _draw(axes, mesh, frame, norm, colours)
             look_at(axes, box, (ELEVATION, AZIMUTH), zoom=1.1)
+            axes.set_proj_type("ortho")
             axes.set_title(frame.title, y=1.0)
             plots.append(axes)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
@@ -83,27 +85,26 @@ def _box(mesh: BushMesh, frames: Sequence[Frame]) -> np.ndarray:
     return np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
 
 
-def _draw(axes, mesh: BushMesh, frame: Frame, norm: Normalize, colours) -> None:
-    positions = (mesh.nodes + frame.displacements)[:, ORDER]
-    kind, faces = face_of(mesh.boundary), positions[mesh.boundary]
-    polygons, values = _facets(kind, faces, frame.values[mesh.boundary])
-    # closed polylines through the corners and mid-edge nodes
-    outlines = faces[:, kind.outline]
+def _draw(axes: Axes3D, mesh: BushMesh, frame: Frame, norm: Normalize, colours: Colormap) -> None:
+    """Draw the faces of a deformed mesh: facets in the colours of the field, and their outlines."""
+    kind, faces = face_of(mesh.boundary), (mesh.nodes + frame.displacements)[:, ORDER][mesh.boundary]
+    facets, values = _facets(kind, faces, frame.values[mesh.boundary])
+    # closed polylines through the corners and mid-edge nodes, towards the viewer so that no facet of their own face
+    # hides them
     elevation, azimuth = np.radians([ELEVATION, AZIMUTH])
     camera = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
-    normals = _normals(polygons)
-    # facets seen edge-on stay in: without them slits open along curved edges
-    toward = normals @ camera > -0.1 * np.linalg.norm(normals, axis=1)
-    polygons, values = polygons[toward], values[toward]
-    # painter's order: far facets first
-    nearness = np.argsort(polygons.mean(axis=1) @ camera)
-    face_colours = colours(norm(values[nearness]))
-    axes.add_collection3d(
-        Poly3DCollection(polygons[nearness], facecolors=face_colours, edgecolors=face_colours, linewidths=0.3, zorder=1)
-    )
+    depth = faces @ camera
+    outlines = faces[:, kind.outline] + np.multiply.outer(depth.max(axis=1) - depth.mean(axis=1), camera)[:, None]
     corners = faces[:, : kind.corners]
-    visible = (_normals(corners) @ camera > 0) & _unhidden(corners, camera)
-    axes.add_collection3d(Line3DCollection(outlines[visible], colors="k", linewidths=0.25, zorder=2))
+    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
+    outlines = outlines[normals @ camera > 0.0]
+    # one collection, which matplotlib sorts by depth, and with as many corners each, since it pads shorter polygons
+    # with whatever the memory holds
+    facets = np.concatenate([facets, np.repeat(facets[:, -1:], outlines.shape[1] - 4, axis=1)], axis=1)
+    fills = np.concatenate([colours(norm(values)), np.zeros((len(outlines), 4))])
+    edges = np.concatenate([fills[: len(facets)], np.tile([0.0, 0.0, 0.0, 1.0], (len(outlines), 1))])
+    polygons = np.concatenate([facets, outlines])
+    axes.add_collection3d(Poly3DCollection(polygons, facecolors=fills, edgecolors=edges, linewidths=0.3))
 
 
 def _facets(kind: Face, corners: np.ndarray, nodal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -115,27 +116,3 @@ def _facets(kind: Face, corners: np.ndarray, nodal: np.ndarray) -> tuple[np.ndar
     fields = np.einsum("pa,fa->fp", shapes, nodal)
     grids = (-1, FACETS + 1, FACETS + 1)
     return quads_of(points.reshape(*grids, 3)), quads_of(fields.reshape(*grids, 1)).mean(axis=1).ravel()
-
-
-def _normals(polygons: np.ndarray) -> np.ndarray:
-    """Normals of quadrilaterals (m, 4, 3) or triangles (m, 3, 3)."""
-    return np.cross(polygons[:, 2] - polygons[:, 0], polygons[:, -1] - polygons[:, 1])
-
-
-def _unhidden(quads: np.ndarray, camera: np.ndarray) -> np.ndarray:
-    """Faces whose centre no other face covers, seen along the camera direction."""
-    side = np.cross(camera, np.eye(3)[int(np.argmin(np.abs(camera)))])
-    side /= np.linalg.norm(side)
-    plane = np.stack([side, np.cross(camera, side)], axis=1)
-    flat, depth = quads @ plane, quads.mean(axis=1) @ camera
-    centre = flat.mean(axis=1)
-    hidden = np.zeros(len(quads), dtype=bool)
-    extent = np.linalg.norm(np.ptp(flat, axis=1), axis=1).max()
-    size = np.linalg.norm(quads[:, 2] - quads[:, 0], axis=1).max()
-    for k in range(len(quads)):
-        near = np.flatnonzero((np.abs(centre - centre[k]).max(axis=1) < extent) & (depth > depth[k] + 0.5 * size))
-        corner = flat[near] - centre[k]
-        following = np.roll(corner, -1, axis=1)
-        turn = corner[..., 0] * following[..., 1] - corner[..., 1] * following[..., 0]
-        hidden[k] = bool(((turn > 0).all(axis=1) | (turn < 0).all(axis=1)).any())
-    return ~hidden

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.records import KINDS, QUANTITIES, Target, Unit, label, unit_for
-from exudyn_ehd.pictures.style import COLUMN, finish, open_axes, style_ticks, styled
+from exudyn_ehd.pictures.style import COLUMN, picture, style_ticks
 from exudyn_ehd.tables import unit_of
 
 SIZE = (1.2 * COLUMN, 0.8 * COLUMN)
 
 
-class Curve(NamedTuple):
-    """A curve with its name in the legend; ``x``, ``y`` (n,) in SI units."""
-
-    text: str
-    x: np.ndarray
-    y: np.ndarray
+Curve: TypeAlias = tuple[str, np.ndarray, np.ndarray]
+"""Name in the legend, x and y (n,) in SI units."""
 
 
 def plot_curves(
@@ -50,18 +46,16 @@ def plot_curves(
     """
     columns = [column(name, np.concatenate([curve[k + 1] for curve in curves]), units) for k, name in enumerate(names)]
     x_unit, y_unit = (unit for _, unit in columns)
-    with styled():
-        figure, ax = open_axes(ax, SIZE, path)
-        for curve in curves:
-            order = np.argsort(curve.x)
-            ax.plot(x_unit(curve.x[order]), y_unit(curve.y[order]), "o-", label=curve.text or None)
+    with picture(ax, SIZE, path) as (figure, ax):
+        for text, x, y in curves:
+            order = np.argsort(x)
+            ax.plot(x_unit(x[order]), y_unit(y[order]), "o-", label=text or None)
         xlabel, ylabel = (label(text, unit) if unit.symbol else text for text, unit in columns)
         ax.set(xlabel=xlabel, ylabel=ylabel)
-        ax.grid(True, lw=0.4, color="#D0D0D0")
-        style_ticks(ax)
-        if any(curve.text for curve in curves):
+        style_ticks(ax, grid=True)
+        if any(text for text, _, _ in curves):
             ax.legend()
-        return finish(figure, path)
+    return figure
 
 
 def column(name: str, values: np.ndarray, units: Mapping[str, str]) -> tuple[str, Unit]:

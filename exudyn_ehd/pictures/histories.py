@@ -19,12 +19,12 @@ from exudyn_ehd.pictures.style import (
     PAGE,
     SKY,
     VERMILION,
-    finish,
     headed,
     new_figure,
-    open_axes,
+    picture,
     style_ticks,
     styled,
+    write,
 )
 from exudyn_ehd.status import InputError
 
@@ -70,9 +70,8 @@ def plot_orbit(
     _require_steps("plot_orbit", history)
     c = history.radial_clearance
     unit = unit_for("length", c)
-    with styled():
-        own = ax is None
-        figure, ax = open_axes(ax, ORBIT, path, title=title)
+    own = ax is None
+    with picture(ax, ORBIT, path, title=title) as (figure, ax):
         draw_clearance(ax, c, unit)
         e = history.eccentricity
         if ends:
@@ -83,7 +82,7 @@ def plot_orbit(
         (line,) = ax.plot(*unit(e).T, color=BLUE if own else None, label=text or "mid-plane")
         ax.set(xlabel=label("x", unit), ylabel=label("y", unit), aspect="equal")
         _mark_ends(ax, unit(e), line.get_color(), None if own else text)
-        return finish(figure, path)
+    return figure
 
 
 def draw_clearance(ax: Axes, c: float, unit: Unit) -> None:
@@ -120,26 +119,21 @@ def plot_load(
     InputError
         If ``ax`` is not polar, or the history has no steps.
     """
-    if ax is not None and ax.name != "polar":
-        raise InputError(
-            f"plot_load: ax must be polar, got {ax.name} axes; use subplots(subplot_kw={{'projection': 'polar'}})."
-        )
     _require_steps("plot_load", history)
     load = -history.force[:, :2]
     size = np.hypot(load[:, 0], load[:, 1])
     unit = unit_for("force", size)
-    with styled():
-        own = ax is None
-        figure, ax = open_axes(ax, LOAD, path, projection="polar")
+    own = ax is None
+    with picture(ax, LOAD, path, where="plot_load", projection="polar") as (figure, ax):
         angle = np.arctan2(load[:, 1], load[:, 0])
         (line,) = ax.plot(angle, unit(size), color=BLUE if own else None, label=text or "load on the bush")
         ax.set_rlim(bottom=0.0)
         ax.yaxis.set_major_locator(MaxNLocator(4))
         ax.set_rlabel_position(_freest(angle))
         ax.set_title(headed(title, f"load of the journal on the bush [{unit.symbol}]"))
-        ax.grid(True, lw=0.4, color="#D0D0D0")
+        style_ticks(ax, grid=True)
         _mark_ends(ax, np.stack([angle, unit(size)], axis=1), line.get_color(), None if own else text)
-        return finish(figure, path)
+    return figure
 
 
 def _mark_ends(ax: Axes, points: np.ndarray, colour: str, text: str | None) -> None:
@@ -204,7 +198,7 @@ def plot_traces(
     """
     _require_steps("plot_traces", history)
     names = [_checked(history, q) for q in ([quantities] if isinstance(quantities, (str, Enum)) else quantities)]
-    given = None if ax is None else np.atleast_1d(np.asarray(ax, dtype=object)).ravel()
+    given = None if ax is None else np.ravel(np.asarray(ax, dtype=object))
     if not names or (given is not None and given.size != len(names)):
         raise InputError(f"plot_traces: ax must be as many axes as quantities ({len(names)}, at least 1), got {ax!r}.")
     if angle is not None and np.shape(angle) != history.time.shape:
@@ -214,38 +208,40 @@ def plot_traces(
     along = history.time if angle is None else np.asarray(angle, dtype=float)
     unit = unit_for("time" if angle is None else "angle", along)
     with styled():
-        if given is None:
-            width = 0.62 * PAGE if len(names) > 1 else COLUMN
-            figure = new_figure((width, MARGIN + PANEL * len(names) + (TITLE if title else 0.0)), path)
-            figure.suptitle(title)
-            panels = list(figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0])
-        else:
-            panels = list(given)
-            figure = panels[0].figure
+        panels = _new_panels(len(names), title, path) if given is None else given
+        figure = panels[0].figure
         for panel, name in zip(panels, names, strict=True):
             words, kind = QUANTITIES[name]
-            values = getattr(history, name)
-            shown = unit_for(kind, values)
-            panel.plot(unit(along), shown(values), label=text or None)
+            shown = unit_for(kind, getattr(history, name))
+            values = shown(getattr(history, name))
+            panel.plot(unit(along), values, label=text or None)
             panel.set_ylabel(label(words, shown))
-            if given is None:
-                style_ticks(panel)
-                panel.grid(True, lw=0.4, color="#D0D0D0")
-                panel.margins(x=0.0)
             if kind in ("length", "ratio"):
-                largest = float(np.nanmax(shown(values)))
                 # also of curves that were there before
-                panel.set_ylim(min(0.0, 1.08 * panel.dataLim.y0), max(panel.get_ylim()[1], 1.08 * largest, 0.0))
+                highest = max(panel.get_ylim()[1], 1.08 * float(np.nanmax(values)), 0.0)
+                panel.set_ylim(min(0.0, 1.08 * panel.dataLim.y0), highest)
             if text:
                 panel.legend()
         if angle is not None:
             # at most nine ticks on fractions or multiples of a turn
-            span = float(np.ptp(unit(along))) if along.size else 0.0
+            span = float(np.ptp(unit(along)))
             panels[-1].xaxis.set_major_locator(MultipleLocator(next(b for b in _TICKS if span <= 8.0 * b)))
-        if given is None:
-            figure.align_ylabels(panels)
         panels[-1].set_xlabel(label("time" if angle is None else angle_text, unit))
-        return finish(figure, path)
+        write(figure, path)
+    return figure
+
+
+def _new_panels(count: int, title: str, path: Target) -> np.ndarray:
+    """Axes below each other in a new figure."""
+    width = 0.62 * PAGE if count > 1 else COLUMN
+    figure = new_figure((width, MARGIN + PANEL * count + (TITLE if title else 0.0)), path)
+    figure.suptitle(title)
+    panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    for panel in panels:
+        style_ticks(panel, grid=True)
+        panel.margins(x=0.0)
+    figure.align_ylabels(panels)
+    return np.asarray(panels)
 
 
 def _require_steps(where: str, history: History) -> None:

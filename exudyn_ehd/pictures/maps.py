@@ -16,7 +16,7 @@ from matplotlib.projections.polar import PolarAxes
 
 from exudyn_ehd.film.supply.areas import covers, placed
 from exudyn_ehd.pictures.records import Film, Target, Unit, label, shown, unit_for
-from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, finish, headed, open_axes, style_ticks, styled
+from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, headed, picture, style_ticks
 from exudyn_ehd.status import InputError
 
 TURN = 2.0 * math.pi
@@ -55,24 +55,22 @@ class MapField:
     absent: str = ""
 
 
-PRESSURE = MapField("pressure", "pressure", "pressure", "viridis")
-GAP = MapField("gap", "gap", "length", "cividis")
-FILL = MapField(
-    "fill", "film fraction", "ratio", "Blues", "only a mass-conserving film has one: cavitation=ElrodAdams(...)."
-)
-TEMPERATURE = MapField(
-    "temperature", "film temperature", "temperature", "inferno", "give the bearing thermal=FilmEnergy(...)."
-)
-
-
-CONTACT_PRESSURE = MapField(
-    "contact_pressure",
-    "contact pressure",
-    "pressure",
-    "magma",
-    "give the bearing asperity=GreenwoodTripp(...) or contact=RegularisedWall(...).",
-)
-WEAR_DEPTH = MapField("wear_depth", "wear depth", "depth", "cividis", "give the bearing wear=ArchardWear(...).")
+_CONTACTS = "give the bearing asperity=GreenwoodTripp(...) or contact=RegularisedWall(...)."
+_ELROD = "only a mass-conserving film has one: cavitation=ElrodAdams(...)."
+FIELDS = {
+    field.name: field
+    for field in (
+        MapField("pressure", "pressure", "pressure", "viridis"),
+        MapField("gap", "gap", "length", "cividis"),
+        MapField("fill", "film fraction", "ratio", "Blues", _ELROD),
+        MapField(
+            "temperature", "film temperature", "temperature", "inferno", "give the bearing thermal=FilmEnergy(...)."
+        ),
+        MapField("contact_pressure", "contact pressure", "pressure", "magma", _CONTACTS),
+        MapField("wear_depth", "wear depth", "depth", "cividis", "give the bearing wear=ArchardWear(...)."),
+    )
+}
+PRESSURE = FIELDS["pressure"]
 
 
 def field_values(film: Film, field: MapField) -> np.ndarray:
@@ -97,16 +95,18 @@ def closed_ring(theta: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.n
     angle = np.mod(theta, TURN)
     # an angle a rounding below a turn is the angle 0
     angle[angle > TURN * (1.0 - 1e-12)] = 0.0
-    order = np.argsort(angle)
-    angle, values = angle[order], values[order]
-    if angle[0] == 0.0:
-        edge = values[0]
-    else:
-        span = angle[0] + TURN - angle[-1]
-        share = angle[0] / span
-        edge = (1.0 - share) * values[0] + share * values[-1]
-        angle, values = np.concatenate(([0.0], angle)), np.concatenate((edge[None], values))
-    return np.concatenate((angle, [TURN])), np.concatenate((values, edge[None]))
+    around = np.unique(np.concatenate(([0.0], angle, [TURN])))
+    return around, _around(theta, values, around)
+
+
+def _around(theta: np.ndarray, values: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Values (k, m) at angles (k,) of a field on a closed ring."""
+    return np.stack([np.interp(angles, theta, column, period=TURN) for column in values.T], axis=1)
+
+
+def resampled(film: Film, values: np.ndarray, angles: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Field on the grid of angles (k,) and places (l,) along the axis, linear between vertices."""
+    return _around(film.theta, np.stack([np.interp(along, film.z, row) for row in values]), angles)
 
 
 def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) -> np.ndarray:
@@ -115,13 +115,9 @@ def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) 
     With ``prescribed_ends=False`` the two rows at the bearing's ends take their neighbours' values: there a film
     fraction is that of the surroundings, not of the film.
     """
-    theta, values = closed_ring(film.theta, values)
     if not prescribed_ends and values.shape[1] > 2:
-        values[:, 0], values[:, -1] = values[:, 1], values[:, -2]
-    across = np.linspace(film.z[0], film.z[-1], FINE[1])
-    rows = np.stack([np.interp(across, film.z, row) for row in values])
-    around = np.linspace(0.0, TURN, FINE[0])
-    return np.stack([np.interp(around, theta, column) for column in rows.T], axis=1)
+        values = np.column_stack([values[:, 1], values[:, 1:-1], values[:, -2]])
+    return resampled(film, values, np.linspace(0.0, TURN, FINE[0]), np.linspace(film.z[0], film.z[-1], FINE[1]))
 
 
 def plot_map(film: Film, field: MapField, *, title: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
@@ -146,15 +142,14 @@ def plot_map(film: Film, field: MapField, *, title: str = "", ax: Axes | None = 
     """
     values = field_values(film, field)
     unit = unit_for(field.kind, values)
-    with styled():
-        own = ax is None
-        figure, ax = open_axes(ax, SIZE, path)
+    own = ax is None
+    with picture(ax, SIZE, path) as (figure, ax):
         image = draw_map(ax, film, field, unit)
         style_ticks(figure.colorbar(image, ax=ax, label=label(field.text, unit), pad=0.02).ax)
         if own and ax.get_legend_handles_labels()[0]:
             figure.legend(loc="outside lower center", ncols=2)
         ax.set_title(headed(title, _extreme(film, field, values, unit)))
-        return finish(figure, path)
+    return figure
 
 
 def draw_map(
@@ -272,10 +267,6 @@ def plot_patch(
     InputError
         If ``ax`` is not polar.
     """
-    if ax is not None and ax.name != "polar":
-        raise InputError(
-            f"plot_pressure: ax must be polar, got {ax.name} axes; use subplots(subplot_kw={{'projection': 'polar'}})."
-        )
     unit = unit_for("pressure", pressure)
     ring = np.concatenate([phi, [2.0 * math.pi]])
     values = unit(np.concatenate([pressure, pressure[:1]]))
@@ -283,16 +274,14 @@ def plot_patch(
         # closed at the pole, half an interval from the first row
         values = np.column_stack([np.full(len(ring), values[:-1, 0].mean()), values])
         chi = np.concatenate([[0.0], chi])
-    with styled():
-        figure, ax = open_axes(ax, (COLUMN, 0.95 * COLUMN), path, projection="polar")
+    with picture(ax, (COLUMN, 0.95 * COLUMN), path, where="plot_pressure", projection="polar") as (figure, ax):
         image = ax.contourf(ring, np.degrees(chi), values.T, levels=24, cmap="viridis")
         ax.set_rlim(0.0, math.degrees(chi[-1]))
         ax.set_rgrids([k for k in range(30, 180, 30) if chi[0] < math.radians(k) < chi[-1]], fmt="%d°", color="white")
         # across from the peak
         column = np.unravel_index(pressure.argmax(), pressure.shape)[0]
         ax.set_rlabel_position(math.degrees(phi[column]) + 157.5)
-        ax.grid(True, lw=0.4, color="#D0D0D0")
-        bar = figure.colorbar(image, ax=ax, label=label("pressure", unit), pad=0.12, shrink=0.8)
-        style_ticks(bar.ax)
+        style_ticks(ax, grid=True)
+        style_ticks(figure.colorbar(image, ax=ax, label=label("pressure", unit), pad=0.12, shrink=0.8).ax)
         ax.set_title(headed(title, f"peak pressure {shown('pressure', float(pressure.max()))}"))
-        return finish(figure, path)
+    return figure

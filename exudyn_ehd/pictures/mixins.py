@@ -31,27 +31,27 @@ class FilmPictures(Titled):
 
     def plot_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the pressure, with the boundary of the unbroken film and the housing's supply areas."""
-        return self._map("PRESSURE", ax, path)
+        return self._map("pressure", ax, path)
 
     def plot_gap(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the gap, as `plot_pressure`."""
-        return self._map("GAP", ax, path)
+        return self._map("gap", ax, path)
 
     def plot_fill(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the film fraction of a mass-conserving film, as `plot_pressure`."""
-        return self._map("FILL", ax, path)
+        return self._map("fill", ax, path)
 
     def plot_temperature(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the film's temperature, as `plot_pressure`."""
-        return self._map("TEMPERATURE", ax, path)
+        return self._map("temperature", ax, path)
 
     def plot_contact_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the pressure of asperities or wall, as `plot_pressure`; of a joint's film."""
-        return self._map("CONTACT_PRESSURE", ax, path)
+        return self._map("contact_pressure", ax, path)
 
     def plot_wear_depth(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of what was worn off the bore, as `plot_pressure`; of a joint's film."""
-        return self._map("WEAR_DEPTH", ax, path)
+        return self._map("wear_depth", ax, path)
 
     def plot_bearing(
         self, *, camera: tuple[float, float] | None = None, ax: Axes | None = None, path: Target = None
@@ -68,7 +68,7 @@ class FilmPictures(Titled):
     def _map(self, field: str, ax: Axes | None, path: Target) -> Figure:
         from exudyn_ehd.pictures import maps
 
-        return maps.plot_map(self._film(), getattr(maps, field), title=self._title(), ax=ax, path=path)
+        return maps.plot_map(self._film(), maps.FIELDS[field], title=self._title(), ax=ax, path=path)
 
 
 class HistoryPictures(Titled):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
@@ -17,11 +16,11 @@ from exudyn_ehd.pictures.style import (
     GREY,
     PAGE,
     VERMILION,
-    finish,
     new_figure,
-    open_axes,
+    picture,
     style_ticks,
     styled,
+    write,
 )
 
 SIZE, PLACES, RESPONSE = (0.62 * PAGE, 0.45 * PAGE), (COLUMN, 1.12 * COLUMN), (0.62 * PAGE, 0.6 * PAGE)
@@ -48,8 +47,7 @@ def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, pa
     -------
     matplotlib Figure
     """
-    with styled():
-        figure, ax = open_axes(ax, SIZE, path)
+    with picture(ax, SIZE, path) as (figure, ax):
         speed = np.abs(table["speed"])
         x = np.broadcast_to(RPM(speed)[:, None], table["frequency"].shape)
         y, light = HERTZ(table["frequency"]), table["damping_ratio"] < OVERDAMPED
@@ -65,14 +63,13 @@ def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, pa
         ax.legend(loc="upper left")
         bar = figure.colorbar(dots, ax=ax, ticks=[-1, 0, 1])
         bar.ax.set_yticklabels(["backward", "line", "forward"])
-        bar.ax.tick_params(labelsize=matplotlib.rcParams["xtick.labelsize"])
-        return finish(figure, path)
+        style_ticks(bar.ax)
+    return figure
 
 
 def plot_stability(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, path: Target = None) -> Figure:
     """Draw logarithmic decrements of what a Campbell diagram shows; arguments as `plot_campbell`."""
-    with styled():
-        figure, ax = open_axes(ax, SIZE, path)
+    with picture(ax, SIZE, path) as (figure, ax):
         speed, values = np.abs(table["speed"]), table["log_decrement"]
         x = np.broadcast_to(RPM(speed)[:, None], values.shape)
         shown = (values < DAMPED) & (table["frequency"] < REACH * speed.max())
@@ -81,17 +78,16 @@ def plot_stability(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, p
             if np.any(part & shown):
                 ax.plot(x[part & shown], values[part & shown], ".", color=colour, label=text)
         ax.set(xlabel=label("speed", RPM), ylabel="logarithmic decrement [-]")
-        ax.grid(True, lw=0.4, color="#D0D0D0")
+        style_ticks(ax, grid=True)
         ax.legend()
-        return finish(figure, path)
+    return figure
 
 
 def plot_positions(
     speeds: np.ndarray, places: np.ndarray, names: Sequence[str], *, ax: Axes | None = None, path: Target = None
 ) -> Figure:
     """Draw the loci of journals (k, j, 2), over their clearances, over the speeds (k,)."""
-    with styled():
-        figure, ax = open_axes(ax, PLACES, path)
+    with picture(ax, PLACES, path) as (figure, ax):
         around = np.linspace(0.0, 2.0 * np.pi, 181)
         ax.plot(np.cos(around), np.sin(around), "--", color=GREY, lw=0.8, label="clearance")
         slowest = int(np.argmin(np.abs(speeds)))
@@ -101,7 +97,7 @@ def plot_positions(
             ax.plot(*places[slowest, k], "o", color=line.get_color(), label=text if k == len(names) - 1 else None)
         ax.set(xlabel="x / c [-]", ylabel="y / c [-]", aspect="equal", xticks=TICKS, yticks=TICKS)
         figure.legend(loc="outside lower center", ncols=2)
-        return finish(figure, path)
+    return figure
 
 
 def plot_response(
@@ -124,12 +120,12 @@ def plot_response(
         upper.set(ylabel=label("amplitude", unit), ylim=(0.0, None))
         lower.set(xlabel=label("speed", RPM), ylabel="phase after the\nunbalance [°]")
         for panel in (upper, lower):
-            style_ticks(panel)
-            panel.grid(True, lw=0.4, color="#D0D0D0")
+            style_ticks(panel, grid=True)
             panel.margins(x=0.0)
         upper.legend()
         figure.align_ylabels([upper, lower])
-        return finish(figure, path)
+        write(figure, path)
+    return figure
 
 
 def plot_map(
@@ -142,8 +138,7 @@ def plot_map(
     path: Target = None,
 ) -> Figure:
     """Draw threshold speeds over a parameter, stable below and unstable above, between the ``limits``."""
-    with styled():
-        figure, ax = open_axes(ax, SIZE, path)
+    with picture(ax, SIZE, path) as (figure, ax):
         text, unit = name
         order = np.argsort(values)
         x, y = unit(values[order]), RPM(np.clip(thresholds[order], *limits))
@@ -153,4 +148,4 @@ def plot_map(
         ax.set(xlabel=label(text, unit), ylabel=label("speed", RPM), ylim=RPM(np.array(limits)))
         ax.margins(x=0.0)
         ax.legend()
-        return finish(figure, path)
+    return figure

@@ -18,6 +18,7 @@ from matplotlib.backends import BackendFilter, backend_registry
 from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.records import Target
+from exudyn_ehd.status import InputError
 
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY = (
     "#0072B2",
@@ -105,29 +106,53 @@ def new_figure(size: tuple[float, float], path: Target = None) -> Figure:
     return Figure(figsize=size, layout="constrained")
 
 
-def open_axes(
-    ax: Axes | None, size: tuple[float, float], path: Target = None, *, title: str = "", **options: Any
-) -> tuple[Figure, Any]:
-    """Figure and axes to draw into: those given, or new ones of ``size`` (inch); call it inside `styled`.
+@contextmanager
+def picture(
+    ax: Axes | None,
+    size: tuple[float, float],
+    path: Target = None,
+    *,
+    title: str = "",
+    where: str = "",
+    projection: str | None = None,
+    **options: Any,
+) -> Iterator[tuple[Figure, Any]]:
+    """Draw within, in the style, into the axes given or into new ones; the figure is written behind it.
 
     Parameters
     ----------
     ax : matplotlib Axes or None
     size : (float, float)
+        Of a new figure, inch.
     path : path, optional
-        Where the figure will be written.
+        Where the figure is written; its suffix sets the format.
     title : str
         Of new axes.
+    where, projection : str
+        Name of the picture for messages, and matplotlib's name of the projection that axes must have.
     **options
         For ``Figure.add_subplot``.
+
+    Raises
+    ------
+    InputError
+        For axes of another projection.
     """
-    if ax is not None:
-        return cast(Figure, ax.figure), ax
-    figure = new_figure(size, path)
-    ax = figure.add_subplot(**options)
-    ax.set_title(title)
-    style_ticks(ax)
-    return figure, ax
+    if ax is not None and projection is not None and ax.name != projection:
+        raise InputError(
+            f"{where}: ax must be {projection}, got {ax.name} axes; use "
+            f"subplots(subplot_kw={{'projection': '{projection}'}})."
+        )
+    with styled():
+        if ax is not None:
+            figure = cast(Figure, ax.figure)
+        else:
+            figure = new_figure(size, path)
+            ax = figure.add_subplot(projection=projection, **options)
+            ax.set_title(title)
+            style_ticks(ax)
+        yield figure, ax
+        write(figure, path)
 
 
 def headed(title: str, text: str) -> str:
@@ -135,16 +160,17 @@ def headed(title: str, text: str) -> str:
     return f"{title}\n{text}" if title else text
 
 
-def style_ticks(ax: Axes) -> None:
-    """Give the ticks their style inside of `styled`: matplotlib makes most of them when it draws, outside of it."""
+def style_ticks(ax: Axes, *, grid: bool = False) -> None:
+    """Give ticks, and lines of a ``grid``, their style inside of `styled`: matplotlib makes most of them outside."""
     ax.tick_params(which="both", labelsize=matplotlib.rcParams["xtick.labelsize"])
     ax.tick_params(width=RC["xtick.major.width"])
+    if grid:
+        ax.grid(True, lw=RC["grid.linewidth"], color=RC["grid.color"])
 
 
-def finish(figure: Figure, path: Target) -> Figure:
-    """Write the figure if a path is given (its suffix sets the format), and return it."""
+def write(figure: Figure, path: Target) -> None:
+    """Write the figure if a path is given."""
     if path is not None:
         path = pathlib.Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path, dpi=RESOLUTION)
-    return figure

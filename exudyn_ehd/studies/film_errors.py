@@ -29,7 +29,7 @@ from exudyn_ehd.joint.model.impedance import ImpedanceEvaluation, ImpedanceModel
 from exudyn_ehd.joint.model.quantities import supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.static.equilibrium import whirl_threshold
-from exudyn_ehd.status import FilmError, InputError, Status, require_number
+from exudyn_ehd.status import FilmError, InputError, Status
 
 LOWEST_ORDER = 0.5
 Motions: TypeAlias = Sequence[np.ndarray] | np.ndarray
@@ -95,20 +95,21 @@ def converged(levels: Sequence[np.ndarray], *, ratio: float, formal_order: float
     Raises
     ------
     InputError
-        For anything but three finite levels, or a ratio of 1 or less.
+        For anything but three finite levels.
     """
     if len(levels) != 3 or not all(np.all(np.isfinite(level)) for level in levels):
         raise InputError(f"converged: levels must be three finite values, coarse to fine, got {levels!r}.")
-    require_number("converged: formal_order", formal_order, at_least=LOWEST_ORDER)
-    if require_number("converged: ratio", ratio) <= 1.0:
-        raise InputError(f"converged: ratio must be > 1 (levels go from coarse to fine), got {ratio!r}.")
-    require_number("converged: scale", scale, above=0.0)
     first, last = (float(np.max(np.abs(np.asarray(levels[k]) - levels[k + 1]))) / scale for k in (0, 1))
-    order = formal_order
-    if last > 0.0:
-        observed = math.log(first / last) / math.log(ratio) if first > 0.0 else LOWEST_ORDER
-        order = min(max(observed, LOWEST_ORDER), formal_order)
+    order = order_of(first, last, ratio, formal_order)
     return Converged(value=np.asarray(levels[2]), error=last / (ratio**order - 1.0), order=order)
+
+
+def order_of(first: float, last: float, ratio: float, formal_order: float) -> float:
+    """Order of a scheme from the differences between three levels, each ``ratio`` times finer than the one before."""
+    if not last > 0.0:
+        return formal_order
+    observed = math.log(first / last) / math.log(ratio) if first > 0.0 else LOWEST_ORDER
+    return min(max(observed, LOWEST_ORDER), formal_order)
 
 
 def scale_of(name: str, reference: np.ndarray) -> float:

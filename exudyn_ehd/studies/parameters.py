@@ -31,8 +31,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.progress import is_shown
 from exudyn_ehd.status import EHDError, InputError, require_integer
-from exudyn_ehd.studies import places
-from exudyn_ehd.studies.rows import Row, RowFile
+from exudyn_ehd.studies.rows import Row, RowFile, require_executor, rows_of
 from exudyn_ehd.tables import Table
 
 if TYPE_CHECKING:
@@ -131,7 +130,7 @@ class StudyTable(Table):
         InputError
             For names that the study does not have, or more than ten curves.
         """
-        from exudyn_ehd.pictures.curves import Curve, column, plot_curves
+        from exudyn_ehd.pictures.curves import column, plot_curves
 
         along = along or self.parameters[0]
         if name not in self.columns or along not in self.parameters:
@@ -156,8 +155,7 @@ class StudyTable(Table):
             )
             for k in range(len(x))
         ]
-        curves = [Curve(*values) for values in zip(texts, x, y, strict=True)]
-        return plot_curves(curves, (along, name), self.units, ax=ax, path=path)
+        return plot_curves(list(zip(texts, x, y, strict=True)), (along, name), self.units, ax=ax, path=path)
 
     def _columns(self) -> dict[str, np.ndarray]:
         return self.columns
@@ -328,7 +326,7 @@ def parameter_study(
     left = {index: point for index, point in enumerate(points) if index not in rows}
     if told and rows:
         print(f"{len(rows)} of {len(points)} rows are taken from {file}", flush=True)
-    for index, row in places.rows_of(function, left, processes, executor) if left else ():
+    for index, row in rows_of(function, left, processes, executor) if left else ():
         rows[index] = row
         if kept is not None:
             kept.add(points[index], row)
@@ -364,7 +362,7 @@ def _require_place(processes: int, executor: Executor | None, mpi: bool, hosts: 
     if executor is not None:
         if processes > 1:
             raise InputError(f"{_WHERE}: only one of processes and executor can be given, got both.")
-        places.require_executor(executor)
+        require_executor(executor)
 
 
 def _table(

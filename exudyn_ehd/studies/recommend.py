@@ -21,7 +21,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from exudyn_ehd.bearing import Cavitation, JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
@@ -291,33 +291,25 @@ def _settings(bearing: JournalBearing) -> Iterator[tuple[Film, Options]]:
 
 def _closures(bearing: JournalBearing) -> list[tuple[Options, float]]:
     """The bearing's own closure, and where it may the same with its rupture line elsewhere; what a film costs each."""
-    placed = dataclasses.replace(bearing, film=FiniteLength()).closure.line_in_cells
-    found: list[tuple[Options, float]] = [({}, LINE_COST if placed else 1.0)]
-    lined = _with_line(bearing)
-    if lined is not None and not placed:
-        found.append((lined, LINE_COST))
-    elif bearing.cavitation.line_in_cells is None:
-        found.append(({"cavitation": _placed(bearing.cavitation, False)}, 1.0))
-    return found
+    is_inside = bool(dataclasses.replace(bearing, film=FiniteLength()).closure.line_in_cells)
+    costs = {True: LINE_COST, False: 1.0}
+    found: list[tuple[Options, float]] = [({}, costs[is_inside])]
+    # a line that was put inside the cells stays there
+    stays = is_inside and bearing.cavitation.line_in_cells is not None
+    other = None if stays else _with_line(bearing, not is_inside)
+    return found if other is None else [*found, (other, costs[not is_inside])]
 
 
-def _with_line(bearing: JournalBearing) -> Options | None:
-    """The closure with its rupture line inside the cells; None where it does not go there."""
-    lined = _placed(bearing.cavitation, True)
-    if not lined.line_in_cells:
+def _with_line(bearing: JournalBearing, in_cells: bool) -> Options | None:
+    """The closure with its rupture line inside the cells or on the vertices; None where it has none or may not."""
+    if math.isinf(bearing.cavitation.cavity_pressure):
         return None
+    lined: Any = dataclasses.replace(bearing.cavitation, line_in_cells=in_cells)  # type: ignore[arg-type]
     try:
         dataclasses.replace(bearing, film=FiniteLength(), cavitation=lined)
     except InputError:
         return None
     return {"cavitation": lined}
-
-
-def _placed(closure: Cavitation, in_cells: bool) -> Cavitation:
-    """A closure with its rupture line inside the cells or on the vertices; one that has none itself."""
-    if math.isinf(closure.cavity_pressure):
-        return closure
-    return dataclasses.replace(closure, line_in_cells=in_cells)  # type: ignore[arg-type]
 
 
 def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]) -> tuple[np.ndarray, float]:
@@ -328,7 +320,7 @@ def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]
     FilmError
         If there is none, or none that carries anything.
     """
-    options: Options = _with_line(bearing) or {}
+    options: Options = _with_line(bearing, True) or {}
     levels = []
     for n, m in LEVELS:
         model = _model(dataclasses.replace(bearing, film=FiniteLength(n_theta=n, n_z=m), **options))

@@ -1,23 +1,30 @@
-"""Rows of a study: what one call returns, and the file that keeps those that are finished."""
+"""Rows of a study: their computation here or by an executor, and the file that keeps those that are finished."""
 
 from __future__ import annotations
 
 import dataclasses
 import json
-import logging
 import math
 import numbers
 import pathlib
+import pickle
 import time
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from contextlib import nullcontext
+from typing import Any, TypeAlias
 
+from exudyn_ehd.progress import without_lines
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import fingerprint
 
 Point = dict[str, Any]
 Function = Callable[[Point], Any]
 _FORMAT = "exudyn_ehd parameter_study 1"
+_WHERE = "parameter_study"
+# Largest number of parts in which rows go to an executor: with more, sending takes longer; with fewer, the slowest
+# worker ends later than the others.
+_MOST_PARTS = 512
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,24 +46,28 @@ class Row:
     seconds: float = math.nan
 
 
-def evaluated(function: Function, point: Point) -> Row:
-    """Call a function at a point; what it raises becomes the row's error, so that it does not take the others along.
+Rows: TypeAlias = Iterator[tuple[int, Row]]
+
+
+def evaluated(function: Function, points: Sequence[Point]) -> list[Row]:
+    """Call a function at points; what it raises becomes the row's error, so that it does not take the others along.
 
     The lines that runs log are left out: a study has its table.
     """
-    start, log = time.perf_counter(), logging.getLogger("exudyn_ehd")
-    level, results, error = log.level, {}, ""
-    log.setLevel(max(level, logging.WARNING))
+    return [_evaluated(function, point) for point in points]
+
+
+def _evaluated(function: Function, point: Point) -> Row:
+    start, results, error = time.perf_counter(), {}, ""
     try:
-        results = as_numbers(function(dict(point)))
+        with without_lines():
+            results = _as_numbers(function(dict(point)))
     except Exception as caught:
-        error = " ".join(f"{type(caught).__name__}: {caught}".split())
-    finally:
-        log.setLevel(level)
+        error = _in_one_line(caught)
     return Row(results, error, time.perf_counter() - start)
 
 
-def as_numbers(value: Any) -> dict[str, float]:
+def _as_numbers(value: Any) -> dict[str, float]:
     """Results of a call by name; ``value`` is the name of a single number."""
     results = value if isinstance(value, Mapping) else {"value": value}
     for name, number in results.items():
@@ -66,6 +77,79 @@ def as_numbers(value: Any) -> dict[str, float]:
                 f"{name!r}: {type(number).__name__}."
             )
     return {name: float(number) for name, number in results.items()}
+
+
+def _in_one_line(error: BaseException) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def rows_of(function: Function, points: Mapping[int, Point], processes: int, executor: Executor | None) -> Rows:
+    """Compute the rows by an executor, in processes of this machine, or one after the other in this process.
+
+    They come as ``(index, row)`` in the order in which they are finished.
+    """
+    if executor is None and processes == 1:
+        yield from ((index, evaluated(function, [point])[0]) for index, point in points.items())
+        return
+    with ProcessPoolExecutor(processes) if executor is None else nullcontext(executor) as pool:
+        yield from _on_executor(function, points, pool)
+
+
+def _on_executor(function: Function, points: Mapping[int, Point], executor: Executor) -> Rows:
+    """Compute the rows by an executor, which stays open; rows that have not begun are cancelled if the study ends.
+
+    Many rows go in parts, so that sending them takes no share of the time.
+    """
+    if isinstance(executor, ProcessPoolExecutor):
+        require_picklable(function)
+    order, size = list(points), math.ceil(len(points) / _MOST_PARTS)
+    parts: dict[Future[list[Row]], list[int]] = {}
+    try:
+        for k in range(0, len(order), size):
+            part = order[k : k + size]
+            try:
+                future = executor.submit(evaluated, function, [points[index] for index in part])
+            except RuntimeError as error:
+                # an executor that has broken, or was shut down, takes no more
+                yield from ((index, Row({}, _in_one_line(error))) for index in part)
+                continue
+            if not isinstance(future, Future):
+                raise InputError(
+                    f"{_WHERE}: executor must hand out futures of concurrent.futures, got those of {executor!r}; of a "
+                    "dask Client give client.get_executor()."
+                )
+            parts[future] = part
+        for future in as_completed(parts):
+            lost: BaseException | None = CancelledError("by the executor") if future.cancelled() else future.exception()
+            rows = future.result() if lost is None else [Row({}, _in_one_line(lost))] * len(parts[future])
+            yield from zip(parts[future], rows, strict=True)
+    finally:
+        for future in parts:
+            future.cancel()
+
+
+def require_executor(executor: object) -> None:
+    """Raise `InputError` for an object that is no executor, and for threads."""
+    if not callable(getattr(executor, "submit", None)):
+        raise InputError(
+            f"{_WHERE}: executor must have a method submit like those of concurrent.futures, got {executor!r}."
+        )
+    if isinstance(executor, ThreadPoolExecutor):
+        raise InputError(
+            f"{_WHERE}: executor must compute in processes, got {type(executor).__name__}: threads of one process take "
+            "turns in Python and share its log; use concurrent.futures.ProcessPoolExecutor(...)."
+        )
+
+
+def require_picklable(function: Any) -> None:
+    """Raise `InputError` for a function that can't be sent to other processes."""
+    try:
+        pickle.dumps(function)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise InputError(
+            f"{_WHERE}.function can't be sent to other processes ({error}); define it at the top of a module, not as a "
+            "lambda or inside another function."
+        ) from None
 
 
 class RowFile:
@@ -86,25 +170,24 @@ class RowFile:
         self._rows: dict[str, Row] = {}
         head = {"format": _FORMAT, "function": fingerprint(function)}
         text = self._path.read_bytes().decode("utf-8", "replace") if self._path.exists() else ""
-        whole = text[: text.rfind("\n") + 1]
-        lines = whole.splitlines()
-        if not lines and not text:
+        if not text:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             self._write(head)
             return
+        whole = text[: text.rfind("\n") + 1]
         try:
-            stored = [json.loads(line) for line in lines]
-            known, rows = stored[0], {_key(entry["point"]): Row(**entry["row"]) for entry in stored[1:]}
-        except (ValueError, TypeError, KeyError, IndexError):
-            known, rows = {}, {}
-        if not isinstance(known, dict) or known.get("format") != _FORMAT:
+            known, *stored = (json.loads(line) for line in whole.splitlines())
+            self._rows = {_key(entry["point"]): Row(**entry["row"]) for entry in stored}
+            is_study = known["format"] == _FORMAT
+        except (ValueError, TypeError, KeyError):
+            is_study = False
+        if not is_study:
             raise InputError(f"parameter_study.file: '{path}' holds no rows of a study; name a new file.")
         if known != head:
             raise InputError(
                 f"parameter_study.file: '{path}' holds rows of another function, or of this one before it was changed; "
                 "name a new file, or delete this one."
             )
-        self._rows = rows
         if whole != text:
             self._path.write_text(whole, encoding="utf-8")
 

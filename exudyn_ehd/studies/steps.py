@@ -32,11 +32,11 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint
-from exudyn_ehd.coupling.record.summary import without_lines
 from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SolveDynamic
+from exudyn_ehd.progress import without_lines
 from exudyn_ehd.status import EHDError, InputError, RunError, require_number, require_plausible, require_type, warn_user
-from exudyn_ehd.studies.film_errors import LOWEST_ORDER
+from exudyn_ehd.studies.film_errors import order_of
 
 FEWEST, LEVELS = 90, 7
 FEWEST_ROWS = 8
@@ -159,7 +159,9 @@ def recommend_steps(
         kept = [k for k, bound in enumerate(bounds) if bound <= error]
         if kept:
             _say_again(caught)
-            return _found(FEWEST * 2 ** kept[0], bounds[kept[0]], error, evidence)
+            steps, left = FEWEST * 2 ** kept[0], bounds[kept[0]]
+            reason = f"{steps} steps a period: the minimum film thickness within {error:g}, bound {left:.2g}"
+            return StepRecommendation(found=True, steps=steps, error=left, reason=reason, evidence=tuple(evidence))
     return StepRecommendation(
         found=False,
         reason=f"no number of steps up to {FEWEST * 2 ** (LEVELS - 3)} a period keeps the minimum film thickness "
@@ -186,17 +188,11 @@ def _require_cycle(load: ArrayLike, speed: ArrayLike) -> tuple[np.ndarray, np.nd
     return cycle, spins
 
 
-def _found(steps: int, left: float, error: float, evidence: list[str]) -> StepRecommendation:
-    reason = f"{steps} steps a period: the minimum film thickness within {error:g}, bound {left:.2g}"
-    return StepRecommendation(found=True, steps=steps, error=left, reason=reason, evidence=tuple(evidence))
-
-
 def _bounds(changes: list[float]) -> list[float]:
     """Bounds of the distances to the limit of the runs that have two finer ones, from the changes between all."""
     if len(changes) < 2 or changes[-2] > FASTEST * changes[-1]:
         return []
-    ratio = changes[-2] / changes[-1] if changes[-1] > 0.0 else 4.0
-    behind = changes[-1] / (min(max(ratio, 2.0**LOWEST_ORDER), 4.0) - 1.0)
+    behind = changes[-1] / (2.0 ** order_of(changes[-2], changes[-1], 2.0, 2.0) - 1.0)
     return [MARGIN * (sum(changes[k:]) + behind) for k in range(len(changes) - 1)]
 
 

@@ -93,9 +93,9 @@ def test_missing_fields_are_named(film):
 
 
 def test_uniform_fields_have_a_colour_range():
-    low, high = maps.colour_limits(np.full((4, 3), 40.0), maps.TEMPERATURE)
+    low, high = maps.colour_limits(np.full((4, 3), 40.0), maps.FIELDS["temperature"])
     assert low < 40.0 < high
-    low, high = maps.colour_limits(np.zeros((4, 3)), maps.PRESSURE)
+    low, high = maps.colour_limits(np.zeros((4, 3)), maps.FIELDS["pressure"])
     assert low < 0.0 < high
 
 
@@ -142,5 +142,5 @@ def test_contact_and_wear_of_a_joints_film(film):
     with pytest.raises(InputError, match=r"has no wear depth.*wear=ArchardWear"):
         film.plot_wear_depth()
     fields = SimpleNamespace(**vars(film), contact_pressure=0.01 * film.pressure, wear_depth=2e-8 * (film.gap < 1e-5))
-    for field, text in ((maps.CONTACT_PRESSURE, "contact pressure [MPa]"), (maps.WEAR_DEPTH, "wear depth [nm]")):
-        assert maps.plot_map(fields, field).axes[1].get_ylabel() == text
+    for name, text in (("contact_pressure", "contact pressure [MPa]"), ("wear_depth", "wear depth [nm]")):
+        assert maps.plot_map(fields, maps.FIELDS[name]).axes[1].get_ylabel() == text

@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt
 from matplotlib.backend_bases import FigureManagerBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from exudyn_ehd.pictures.curves import Curve, plot_curves
+from exudyn_ehd.pictures.curves import plot_curves
 from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.maps import PRESSURE, plot_map
 from exudyn_ehd.studies.parameters import StudyTable
@@ -39,7 +39,7 @@ def windows(monkeypatch):
 
 
 def test_show_shows_them_and_savefig_saves(windows, film, history, tmp_path):
-    curve = Curve("a", np.arange(3.0), np.arange(3.0))
+    curve = ("a", np.arange(3.0), np.arange(3.0))
     figures = [
         plot_orbit(history),
         plot_load(history),

@@ -4,7 +4,7 @@ Module map
 ----------
 history      quantities over accepted steps
 record       the rows of a joint's accepted steps, and histories back from files
-thinning     some of the steps, with the worst ones
+thinning     numbers and errors of steps; some of the steps, with the worst ones
 on_disk      a history in a file, for long runs
 films        films over accepted steps
 summary      a run in one line

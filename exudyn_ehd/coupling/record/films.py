@@ -42,18 +42,13 @@ class FilmRecorder:
         if math.isnan(self.first):
             self.first = time
         self.last = time
-        due = self.due + 1
-        if self.period > 0.0:
-            # 1e-9: a step that ends a rounding before the instant is meant to be there
-            due = math.floor((time - self.first) / self.period + 1e-9)
-            if due == self.due:
-                return
-        self.due = due
-        if due % self.stride:
+        # 1e-9: a step that ends a rounding before the instant is meant to be there
+        due = math.floor((time - self.first) / self.period + 1e-9) if self.period > 0.0 else self.due + 1
+        if due == self.due:
             return
-        if len(self.films) == self.frames:
+        self.due = due
+        if due % self.stride == 0 and len(self.films) == self.frames:
             self.films = self.films[::2]
             self.stride *= 2
-            if due % self.stride:
-                return
-        self.films.append(take())
+        if due % self.stride == 0:
+            self.films.append(take())

@@ -83,6 +83,9 @@ TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1,
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
 LOAD = slice(FIRST_BLOCK + BLOCKS.size, FIRST_BLOCK + BLOCKS.size + LOADS)
 WIDTH = LOAD.stop
+# Tangent's blocks in a row, of a ball what `pack_of_ball` keeps, and the numbers behind a row that is settled.
+TANGENT, PACK = slice(FIRST_BLOCK, LOAD.start), slice(FIRST_BLOCK, FIRST_BLOCK + 15)
+STEP_COUNT, STEP_ERROR = WIDTH, WIDTH + 1
 _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
@@ -96,10 +99,11 @@ COLUMNS: dict[str, int | slice] = {
     "force": slice(_WRENCH, _WRENCH + 3),
     "moment": slice(_WRENCH + 3, _WRENCH + 6),
     **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
+    "step_error": STEP_ERROR,
+    "step_count": STEP_COUNT,
 }
-# Columns of a history for every step, and for every row.
-_NAMES = (*COLUMNS, "step_error")
-_ROWS = (*_NAMES, "step_count")
+# Columns that are written as text.
+_NAMES = tuple(COLUMNS)[:-1]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -201,14 +205,18 @@ class JointHistory(History, HistoryPictures):
 
     def __getattr__(self, name: str) -> Any:
         column = self.__dict__.get("_column")
-        if column is None or name not in _ROWS:
+        if column is None or name not in COLUMNS:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
         self.__dict__[name] = values = column(name)
         return values
 
+    def __getstate__(self) -> dict[str, Any]:
+        # what is sent to other processes is read here
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
     @classmethod
     def of_columns(cls, column: Callable[[str], np.ndarray], dimensions: Mapping[str, float]) -> JointHistory:
-        """A history whose columns, by the names `_ROWS`, are made when they are asked for."""
+        """A history whose columns, by the names `COLUMNS`, are made when they are asked for."""
         history = object.__new__(cls)
         history.__dict__.update(dimensions, _column=column)
         return history
@@ -216,7 +224,7 @@ class JointHistory(History, HistoryPictures):
     @property
     def is_thinned(self) -> bool:
         """Return whether accepted steps are missing between the rows."""
-        return bool(np.any(np.diff(self.step_count) > 1))
+        return has_gaps(self.step_count)
 
     def __repr__(self) -> str:
         if not self.time.size:
@@ -253,7 +261,7 @@ class JointHistory(History, HistoryPictures):
         kept = (self.time >= start - slack) & (self.time <= end + slack)
         # columns of which a part is wanted are not kept
         known, column = self.__dict__, self.__dict__.get("_column")
-        columns = {name: (known[name] if name in known or not column else column(name))[kept] for name in _ROWS}
+        columns = {name: (known[name] if name in known or not column else column(name))[kept] for name in COLUMNS}
         return JointHistory(**columns, **{name: getattr(self, name) for name in DIMENSIONS})
 
     def save(self, path: str | pathlib.Path) -> None:
@@ -265,9 +273,8 @@ class JointHistory(History, HistoryPictures):
             Ending in ``.npz``.
         """
         require_path("JointHistory.save (to_csv writes text)", path, ".npz")
-        fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         with replacing(path, binary=True) as file:
-            np.savez_compressed(file, format=FORMAT, **fields)
+            np.savez_compressed(file, format=FORMAT, **self.__getstate__())
 
     def to_csv(self, path: str | pathlib.Path) -> None:
         """Write all columns as text, names and SI units in the first line; vectors by their components.
@@ -330,6 +337,11 @@ class JointHistory(History, HistoryPictures):
         return revolutions({name: getattr(self, name) for name in COLUMNS}, period)
 
 
+def has_gaps(step_count: np.ndarray) -> bool:
+    """Return whether accepted steps are missing between the rows of these numbers (n,)."""
+    return bool(np.any(np.diff(step_count) > 1))
+
+
 def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
     """Eccentricity ratio in the mid-plane and the largest along the length (which is at an end: it is convex)."""
     x, y, bx, by = motion[:4].tolist()
@@ -351,6 +363,6 @@ def make_row(
     row = np.empty(WIDTH)
     scalars = [quantities.get(name, math.nan) for name in _SCALARS]
     row[:FIRST_BLOCK] = [time, *motion.tolist(), *motion[:2].tolist(), *ratios, *wrench.tolist(), *scalars]
-    row[FIRST_BLOCK : LOAD.start] = np.nan if tangent is None else tangent.take(_BLOCKS)
+    row[TANGENT] = np.nan if tangent is None else tangent.take(_BLOCKS)
     row[LOAD] = np.nan if load is None else load
     return row

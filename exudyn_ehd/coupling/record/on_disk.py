@@ -1,4 +1,4 @@
-"""Rows of a record on disk, for runs whose records are too long for memory.
+"""Rows of a record on disk, for runs whose records are too long for memory, and archives of arrays.
 
 A file begins with a line of JSON that says what it is, padded to `HEAD` bytes; rows of doubles follow, each written
 whole and in order. What is there can be read at any time, also after the program was killed: a row that was cut off
@@ -13,21 +13,23 @@ import json
 import os
 import pathlib
 import secrets
-from collections.abc import Iterator, Mapping
+import zipfile
+import zlib
+from collections.abc import Mapping
 from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.coupling.record.history import TIME, WIDTH
 from exudyn_ehd.coupling.record.thinning import Every, Period
 from exudyn_ehd.status import InputError, RunError, require_type
 from exudyn_ehd.storage import require_path
 
 HEAD = 512
-# Rows read before those that are asked for.
-LEAD = 1000
-# Rows in memory while a column is read.
-PART = 4096
-FORMAT = "exudyn_ehd rows 3"
+FORMAT = "exudyn_ehd rows 4"
+# Numbers in a row, and bytes.
+WIDE = WIDTH + 2
+BYTES = 8 * WIDE
 NAME = "{name}"
 
 
@@ -76,130 +78,70 @@ class File:
         return pathlib.Path(str(self.path).replace(NAME, plain))
 
 
-class RowsOnDisk:
-    """The earlier rows of a record.
-
-    Parameters
-    ----------
-    path : path
-    joint : str
-        Its name.
-    head : dict
-        What a reader has to know.
-    """
-
-    def __init__(self, path: pathlib.Path, joint: str, head: Mapping[str, Any]) -> None:
-        self.path, self.joint, self.count = path, joint, 0
-        if path.exists() and (not path.is_file() or (path.stat().st_size and read_head(path) is None)):
-            raise InputError(
-                f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
-                "another path in File(...)."
-            )
-        self._known, self._width = dict(head), int(head["width"])
-        self._head = b""
-
-    def add(self, rows: np.ndarray, settled: int) -> None:
-        """Write rows (n, k) behind the others; those after the ``settled`` first ones may be replaced by the next call.
-
-        Raises
-        ------
-        RunError
-            If they can't be written, or the file is another joint's by now.
-        """
-        try:
-            if not self._head:
-                self._begin()
-            with open(self.path, "r+b") as file:
-                _require_head(file, self._head, self.path, self.joint)
-                file.seek(HEAD + 8 * self._width * self.count)
-                file.write(np.ascontiguousarray(rows).tobytes())
-                file.truncate()
-        except OSError as error:
-            raise RunError(
-                f"LubricatedJoint '{self.joint}': its record can't be written to '{self.path}' ({error.strerror}); "
-                "make room there, or name another path in File(...)."
-            ) from error
-        self.count += settled
-
-    def _begin(self) -> None:
-        """A new file: who still reads the old one keeps it."""
-        head = {"format": FORMAT, "record": secrets.token_hex(8), **self._known}
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        self.path.unlink(missing_ok=True)
-        self._head = (json.dumps(head).ljust(HEAD - 1) + "\n").encode()
-        self.path.write_bytes(self._head)
-
-    def rows(self, behind: np.ndarray) -> Rows:
-        """Return all settled rows for reading, with others (n, k) behind them."""
-        return Rows(behind, self.count, self.path, self.joint, self._head)
-
-    def clear(self) -> None:
-        """Begin anew at the next rows."""
-        self.count, self._head = 0, b""
-
-
-class Rows(NamedTuple):
-    """Rows in memory, and before them those of a file as it was, read when they are asked for.
+class RowsOnDisk(NamedTuple):
+    """Rows of a record in a file as they were, read when they are asked for.
 
     Attributes
     ----------
-    behind : (n, k) array
-        Rows in memory.
-    settled : int
-        Rows in the file.
     path : path
     joint : str
         Whose they are, for messages.
     head : bytes
-        Of the file.
+        Of the file; empty as long as there is none.
+    settled : int
+        Rows that no others will replace.
     """
 
-    behind: np.ndarray
-    settled: int = 0
-    path: pathlib.Path = pathlib.Path()
-    joint: str = ""
+    path: pathlib.Path
+    joint: str
     head: bytes = b""
+    settled: int = 0
 
-    @property
-    def width(self) -> int:
-        """Numbers in a row."""
-        return int(self.behind.shape[1])
+    def begin(self, known: Mapping[str, Any]) -> RowsOnDisk:
+        """Begin a new file, with a head that says what a reader has to know: who still reads the old one keeps it."""
+        head = {"format": FORMAT, "record": secrets.token_hex(8), **known}
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.unlink(missing_ok=True)
+        new = RowsOnDisk(self.path, self.joint, (json.dumps(head).ljust(HEAD - 1) + "\n").encode())
+        self.path.write_bytes(new.head)
+        return new
 
-    @property
-    def total(self) -> int:
-        """Number of rows."""
-        return self.settled + len(self.behind)
+    def add(self, rows: np.ndarray, number: int) -> RowsOnDisk:
+        """Write rows (n, WIDE) behind the others; those after the first ``number`` may be replaced by the next.
 
-    def parts(self) -> Iterator[np.ndarray]:
-        """All rows, `PART` of them at a time.
+        Raises
+        ------
+        RunError
+            If the file is another joint's by now.
+        """
+        with open(self.path, "r+b") as file:
+            self._require_head(file)
+            file.seek(HEAD + BYTES * self.settled)
+            file.write(np.ascontiguousarray(rows).tobytes())
+            file.truncate()
+        return self._replace(settled=self.settled + number)
+
+    def mapped(self) -> np.ndarray:
+        """Rows (n, WIDE) of the file, which are read where they are asked for.
 
         Raises
         ------
         RunError
             If the file is another one by now.
         """
-        left = self.settled
-        if left:
-            with open(self.path, "rb") as file:
-                _require_head(file, self.head, self.path, self.joint)
-                while left:
-                    part = np.fromfile(file, count=min(left, PART) * self.width).reshape(-1, self.width)
-                    yield part
-                    left -= len(part)
-        yield self.behind
+        if not self.settled:
+            return np.empty((0, WIDE))
+        with open(self.path, "rb") as file:
+            self._require_head(file)
+        return np.memmap(self.path, dtype=float, mode="r", offset=HEAD, shape=(self.settled, WIDE))
 
-    def column(self, where: int | slice) -> np.ndarray:
-        """One column (n,), or several (n, k)."""
-        return np.concatenate([part[:, where] for part in self.parts()])
-
-
-def _require_head(file: BinaryIO, head: bytes, path: pathlib.Path, joint: str) -> None:
-    if file.read(HEAD) != head:
-        raise RunError(
-            f"LubricatedJoint '{joint}': another record has replaced the one in '{path}'; give every "
-            f"joint a File(...) with a path of its own, or '{NAME}' in it, and read arrays of a history, or save it, "
-            "before the next run."
-        )
+    def _require_head(self, file: BinaryIO) -> None:
+        if file.read(HEAD) != self.head:
+            raise RunError(
+                f"LubricatedJoint '{self.joint}': another record has replaced the one in '{self.path}'; give every "
+                f"joint a File(...) with a path of its own, or '{NAME}' in it, and read arrays of a history, or save "
+                "it, before the next run."
+            )
 
 
 def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
@@ -212,26 +154,45 @@ def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
     return head if isinstance(head, dict) and head.get("format") == FORMAT else None
 
 
-def open_rows(path: str | pathlib.Path, width: int) -> Rows:
-    """The whole rows (n, width) that a file of `RowsOnDisk` has by now."""
+def require_own(path: pathlib.Path) -> None:
+    """Refuse a path that holds something else than a record."""
+    if path.exists() and (not path.is_file() or (path.stat().st_size and read_head(path) is None)):
+        raise InputError(
+            f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
+            "another path in File(...)."
+        )
+
+
+def read_arrays(path: str | pathlib.Path, form: str) -> dict[str, np.ndarray] | None:
+    """Arrays of a NumPy archive by name; None if it is damaged, or its "format" is another one."""
+    with open(path, "rb") as file:
+        try:
+            with np.load(file, allow_pickle=False) as data:
+                arrays = dict(data)
+        # whatever numpy finds in bytes that are no archive of arrays
+        except (
+            ValueError,
+            EOFError,
+            TypeError,
+            AttributeError,
+            NotImplementedError,
+            zipfile.BadZipFile,
+            zlib.error,
+        ):
+            return None
+    return arrays if str(arrays.pop("format", "")) == form else None
+
+
+def open_rows(path: str | pathlib.Path) -> RowsOnDisk:
+    """Open the whole rows that a file of `RowsOnDisk` has by now."""
     path = pathlib.Path(path).absolute()
     with open(path, "rb") as file:
         head = file.read(HEAD)
-    return Rows(np.empty((0, width)), _whole_rows(path, width), path, path.name, head)
+    return RowsOnDisk(path, path.name, head, (os.path.getsize(path) - HEAD) // BYTES)
 
 
-def _whole_rows(path: str | pathlib.Path, width: int) -> int:
-    return (os.path.getsize(path) - HEAD) // (8 * width)
-
-
-def read_rows(path: str | pathlib.Path, width: int, start: float, end: float) -> tuple[int, np.ndarray]:
-    """The whole rows (n, width) of a file of `RowsOnDisk` from `LEAD` rows before ``start`` to ``end``, s, and the
-    place of the first of them."""
-    whole = _whole_rows(path, width)
-    if not whole:
-        return 0, np.empty((0, width))
-    rows = np.memmap(path, dtype=float, mode="r", offset=HEAD, shape=(whole, width))
-    first, last = bisect.bisect_left(rows[:, 0], start), bisect.bisect_right(rows[:, 0], end)
+def between(rows: np.ndarray, start: float, end: float) -> np.ndarray:
+    """Copy of the rows from ``start`` to ``end``, s."""
+    first, last = bisect.bisect_left(rows[:, TIME], start), bisect.bisect_right(rows[:, TIME], end)
     # one more on either side, for times that are meant to be the limits
-    first = max(0, first - LEAD)
-    return first, np.array(rows[first : last + 1])
+    return np.array(rows[max(0, first - 1) : last + 1])

@@ -4,30 +4,47 @@ and back from files."""
 from __future__ import annotations
 
 import contextlib
+import copy
 import functools
 import math
 import pathlib
-import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.record.history import COLUMNS, DIMENSIONS, FORMAT, MINIMUM_GAP, TIME, WIDTH, JointHistory
-from exudyn_ehd.coupling.record.on_disk import Rows, RowsOnDisk, open_rows, read_head, read_rows
-from exudyn_ehd.coupling.record.thinning import STEP_COUNT, STEP_ERROR, Every, Period, Thinner, errors_of
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import FIRST, NO_ERROR
+from exudyn_ehd.coupling.record.history import (
+    COLUMNS,
+    DIMENSIONS,
+    FORMAT,
+    MINIMUM_GAP,
+    STEP_COUNT,
+    TIME,
+    WIDTH,
+    JointHistory,
+    has_gaps,
+)
+from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_arrays, read_head, require_own
+from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
+from exudyn_ehd.joint.step_error import NO_ERROR
 from exudyn_ehd.status import InputError, RunError
 from exudyn_ehd.storage import require_path
 
-# Rows in memory from which on they are thinned, or go to a file.
+# Rows in memory from which on they are settled: numbered, and thinned or written to a file.
 MOST_ROWS = 256
 
 
 class Record:
-    """Rows of accepted steps of a bearing, or the last ones behind what was kept of the others.
+    """Rows of accepted steps of a bearing.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    errors : function
+        As `errors_of`.
+    none : array
+        Error of the pose at the beginning.
 
     Attributes
     ----------
@@ -37,36 +54,30 @@ class Record:
         Minimum film thickness of all rows, m; infinite where no film has one.
     """
 
-    def __init__(self, bearing: JournalBearing) -> None:
+    def __init__(self, bearing: JournalBearing, errors: Callable = errors_of, none: np.ndarray = NO_ERROR) -> None:
         self._dimensions: dict[str, Any] = {name: float(getattr(bearing, name)) for name in DIMENSIONS}
-        self._lags = isinstance(getattr(bearing, "bush", None), ElasticLiner)
-        self._rows: list[np.ndarray] = []
-        self._thinner: Thinner | None = None
+        self._errors = functools.partial(errors, bearing), none
+        self._thinner = Thinner(None, *self._errors)
         self._disk: RowsOnDisk | None = None
-        # rows that are settled, thinned ones in memory or restored ones on their way to the file
+        # rows as they came, the last of which may be replaced; settled ones, thinned or on their way to the file
+        self._rows: list[np.ndarray] = []
         self._kept: list[np.ndarray] = []
         self.thinnest = math.inf
         self.end: np.ndarray | None = None
 
     def thin(self, rule: Every | Period) -> None:
         """Drop rows by a rule from now on."""
-        d = self._dimensions
-        self._thinner = Thinner(rule, d["radial_clearance"], d["length"], self._lags)
+        self._thinner = Thinner(rule, *self._errors)
 
     def keep_on_disk(self, path: pathlib.Path, joint: str) -> None:
         """Let all rows but the last ones go to a file of this joint."""
-        head = {"width": self.width, "names": FORMAT, "lags": self._lags, **self._dimensions}
-        self._disk = RowsOnDisk(path, joint, head)
-
-    @property
-    def width(self) -> int:
-        """Number of values in a stored row."""
-        return WIDTH if self._thinner is None else WIDTH + 2
+        require_own(path)
+        self._disk = RowsOnDisk(path, joint)
 
     @property
     def is_thinned(self) -> bool:
         """Return whether rows are dropped."""
-        return self._thinner is not None
+        return self._thinner.rule is not None
 
     def append(self, row: np.ndarray) -> None:
         """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
@@ -84,54 +95,62 @@ class Record:
     def clear(self) -> None:
         """Begin a new record."""
         self._rows, self.thinnest, self._kept, self.end = [], math.inf, [], None
-        if self._thinner is not None:
-            self._thinner.begin_anew()
+        self._thinner.begin_anew()
         if self._disk is not None:
-            self._disk.clear()
+            self._disk = RowsOnDisk(self._disk.path, self._disk.joint)
 
     def write(self, final: np.ndarray | None = None) -> None:
-        """Bring the rows to the file, if there is one, with ``final`` behind them; the last one stays in memory too.
+        """Settle the rows but the last one of a record that is thinned or in a file, there with ``final`` behind them.
 
-        Without a file drop those that a thinned record does not keep.
+        Raises
+        ------
+        RunError
+            If they can't be written.
         """
-        if (self._disk is None and self._thinner is None) or not self._rows:
+        if not self._rows or (self._disk is None and not self.is_thinned):
             return
         rows, self._rows = np.array(self._rows), self._rows[-1:]
-        self._kept.append(rows[:-1] if self._thinner is None else self._thinner.take(rows[:-1]))
-        if self._disk is not None:
-            whole = np.concatenate(self._kept)
-            self._disk.add(np.concatenate([whole, self._behind(final)]), len(whole))
-            self._kept = []
+        self._kept.append(self._thinner.take(rows[:-1]))
+        if self._disk is None:
+            return
+        whole, disk = np.concatenate(self._kept), self._disk
+        try:
+            if not disk.head:
+                self._disk = disk.begin({"names": FORMAT, **self._dimensions})
+            self._disk = self._disk.add(np.concatenate([whole, self._thinner.look(self._pending(final))]), len(whole))
+        except OSError as error:
+            raise RunError(
+                f"LubricatedJoint '{disk.joint}': its record can't be written to '{disk.path}' ({error.strerror}); "
+                "make room there, or name another path in File(...)."
+            ) from error
+        self._kept = []
 
-    def _behind(self, final: np.ndarray | None) -> np.ndarray:
-        """Rows (n, width) of what is not settled, with ``final`` behind them."""
-        rows = np.array(self._rows if final is None else [*self._rows, final]).reshape(-1, WIDTH)
-        return rows if self._thinner is None else self._thinner.look(rows)
+    def _pending(self, final: np.ndarray | None) -> np.ndarray:
+        """Rows (n, WIDTH) of what is not settled, with ``final`` behind them."""
+        return np.array(self._rows if final is None else [*self._rows, final]).reshape(-1, WIDTH)
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
-        """Copy of all rows (n, width), with ``final`` behind them if given and later."""
+        """Copy of all rows (n, WIDTH + 2), with ``final`` behind them if given and later."""
         final = None if final is None or not final[TIME] > self.last_time else final
-        return self._all_rows(final).column(slice(None))
-
-    def _all_rows(self, final: np.ndarray | None) -> Rows:
-        """All rows, those of the file still there, with ``final`` behind them."""
-        rows = np.concatenate([*self._kept, self._behind(final)])
-        return Rows(rows) if self._disk is None else self._disk.rows(rows)
+        earlier = [] if self._disk is None else [self._disk.mapped()]
+        return np.concatenate([*earlier, *self._kept, self._thinner.look(self._pending(final))])
 
     def restore(self, rows: np.ndarray) -> None:
-        """Begin with these rows (n, width)."""
-        if rows.ndim != 2 or rows.shape[1] != self.width:
-            kinds = "of a thinned record have two columns more; " if rows.shape[1:] in ((WIDTH,), (WIDTH + 2,)) else ""
+        """Begin with these rows (n, WIDTH + 2), all of them for a record of all steps.
+
+        Errors of steps begin anew behind those of a thinned record.
+        """
+        if rows.ndim != 2 or rows.shape[1] != WIDTH + 2 or (not self.is_thinned and has_gaps(rows[:, STEP_COUNT])):
             raise InputError(
-                f"LubricatedJoint.restore_state: rows must be (n, {self.width}), got {rows.shape}; {kinds}create the "
-                "joint with the record of the stored run."
+                f"LubricatedJoint.restore_state: rows must be (n, {WIDTH + 2}), got {rows.shape}, and those of a "
+                "thinned record need a thinned one; create the joint with the record of the stored run."
             )
         self.clear()
-        self._rows = list(rows[:, :WIDTH].copy())
         self.thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP], initial=math.inf))
-        if self._thinner is not None and self._rows:
-            self._kept, self._rows = [rows[:-1].copy()], self._rows[-1:]
-            self._thinner.begin_anew(rows[-1])
+        if self.is_thinned and len(rows):
+            self._kept, rows = [rows[:-1].copy()], rows[-1:]
+            self._thinner.begin_anew(rows[0])
+        self._rows = list(rows[:, :WIDTH].copy())
 
     @property
     def last_time(self) -> float:
@@ -141,36 +160,28 @@ class Record:
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """The record, with ``final`` as its last row if given: a copy, or what reads the file."""
         # where the file can't be written any more, the rows are still known
-        with contextlib.suppress(RunError):
-            self.write(final)
-        return history_of(self._all_rows(final), self._dimensions, self._lags)
+        if self._disk is not None:
+            with contextlib.suppress(RunError):
+                self.write(final)
+        disk, kept, rows, is_thinned = self._disk, list(self._kept), self._pending(final), self.is_thinned
+        # numbers and errors of the last steps are made when they are asked for
+        numbered = functools.cache(functools.partial(copy.copy(self._thinner).look, rows))
+
+        def parts(name: str) -> list[np.ndarray]:
+            last = numbered() if is_thinned or name in ("step_error", "step_count") else rows
+            return [*kept, last] if disk is None else [disk.mapped(), *kept, last]
+
+        return history_of(parts, self._dimensions)
 
 
-def history_of(rows: Rows, dimensions: Mapping[str, Any], lags: bool, first: int = 0) -> JointHistory:
-    """A history that makes its columns of rows when they are asked for.
+def history_of(parts: Callable[[str], Sequence[np.ndarray]], dimensions: Mapping[str, Any]) -> JointHistory:
+    """A history that makes its columns, of the parts with their rows (n, k), when they are asked for."""
 
-    ``lags``: the bearing is on a liner; ``first``: number of steps before the rows.
-    """
-    return JointHistory.of_columns(functools.partial(_column, rows, dimensions, lags, first), dimensions)
+    def column(name: str) -> np.ndarray:
+        values = np.concatenate([part[:, COLUMNS[name]] for part in parts(name)])
+        return values.astype(np.int64) if name == "step_count" else values
 
-
-def _column(rows: Rows, dimensions: Mapping[str, Any], lags: bool, first: int, name: str) -> np.ndarray:
-    is_numbered = rows.width > WIDTH
-    if name == "step_count":
-        return rows.column(STEP_COUNT).astype(np.int64) if is_numbered else first + np.arange(rows.total)
-    if name == "step_error":
-        return rows.column(STEP_ERROR) if is_numbered else _step_errors(rows, dimensions, lags)
-    return rows.column(COLUMNS[name])
-
-
-def _step_errors(rows: Rows, dimensions: Mapping[str, Any], lags: bool) -> np.ndarray:
-    lead, before, found = np.empty((0, rows.width)), NO_ERROR, [np.empty(0)]
-    for part in rows.parts():
-        whole = np.concatenate([lead, part])
-        errors, before = errors_of(whole, dimensions["radial_clearance"], dimensions["length"], lags, before)
-        found.append(errors[len(lead) :])
-        lead = whole[-FIRST:]
-    return np.concatenate(found)
+    return JointHistory.of_columns(column, dimensions)
 
 
 def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: float = math.inf) -> JointHistory:
@@ -180,9 +191,8 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     ----------
     path : path
     start, end : float
-        s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` no others are read but a
-        thousand before them, from which the errors of the steps are summed up. Without both the history of a `File`
-        reads each of its arrays when it is asked for.
+        s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` no others are read. Without
+        both the history of a `File` reads each of its arrays when it is asked for.
 
     Returns
     -------
@@ -206,17 +216,13 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     require_path("load_history", path)
     head = read_head(path)
     if head is not None and head["names"] == FORMAT:
-        dimensions = {name: head[name] for name in DIMENSIONS}
+        rows, dimensions = open_rows(path), {name: head[name] for name in DIMENSIONS}
         if start == -math.inf and end == math.inf:
-            return history_of(open_rows(path, head["width"]), dimensions, head["lags"])
-        first, rows = read_rows(path, head["width"], start, end)
-        return history_of(Rows(rows), dimensions, head["lags"], first).between(start, end)
-    try:
-        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
-            values = dict(data)
-    except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
-        values = {}
-    if str(values.pop("format", "")) != FORMAT:
+            return history_of(lambda _: [rows.mapped()], dimensions)
+        part = between(rows.mapped(), start, end)
+        return history_of(lambda _: [part], dimensions).between(start, end)
+    values = read_arrays(path, FORMAT)
+    if values is None:
         raise InputError(
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )

@@ -7,8 +7,6 @@ the lines go to the standard error stream.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import numpy as np
 
@@ -39,17 +37,6 @@ def is_on() -> bool:
         LOGGER.addHandler(handler)
         LOGGER.setLevel(logging.INFO)
     return LOGGER.isEnabledFor(logging.INFO)
-
-
-@contextmanager
-def without_lines() -> Iterator[None]:
-    """Runs within end without their lines."""
-    level = LOGGER.level
-    LOGGER.setLevel(logging.WARNING)
-    try:
-        yield
-    finally:
-        LOGGER.setLevel(level)
 
 
 def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> str:

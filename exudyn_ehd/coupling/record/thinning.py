@@ -1,34 +1,44 @@
-"""Records that keep some of their steps, none of the worst ones.
+"""Numbers of recorded steps and their errors, and records that keep some of their steps, none of the worst ones.
 
-Steps are put into spans. Of each the last one is kept, and those with the thinnest film, the highest pressure and the
-largest load across the axis: every row is an accepted step as it was, and the extremes of the rows are those of the
-run. A row behind the others carries two numbers more: which step it is, and the largest error of a step since the row
-before, for errors are summed over all steps before any is dropped (`exudyn_ehd.joint.step_error`).
+A row that is settled, behind which others have come, carries two numbers more: which step it is, and the largest error
+of a step since the row before. Errors are summed over all steps before any is dropped
+(`exudyn_ehd.joint.step_error`).
+
+To drop steps they are put into spans. Of each the last one is kept, and those with the thinnest film, the highest
+pressure and the largest load across the axis: every row is an accepted step as it was, and the extremes of the rows
+are those of the run.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import itertools
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import (
     COLUMNS,
     FIRST_BLOCK,
     FORCE,
     LOAD,
     MINIMUM_GAP,
+    PACK,
     PEAK_PRESSURE,
+    STEP_COUNT,
+    STEP_ERROR,
+    TANGENT,
     TIME,
     WIDTH,
 )
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, NO_ERROR, errors_behind
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.spherical.bearing import SphericalBearing
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind, errors_of_ball
 from exudyn_ehd.status import require_integer, require_number
 
-# Places behind those of a row.
-STEP_COUNT, STEP_ERROR = WIDTH, WIDTH + 1
-_BLOCKS = slice(FIRST_BLOCK, FIRST_BLOCK + BLOCKS.size)
+Errors: TypeAlias = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 # A span ends where a time meets its end to this share of it.
 ROUNDING = 1e-9
 
@@ -88,19 +98,20 @@ class Period:
 
 
 class Thinner:
-    """Drops rows of a record as they come, a few hundred at a time.
+    """Numbers the steps of a record with their errors, a few hundred rows at a time, and drops some by a rule.
 
     Parameters
     ----------
-    rule : Every or Period
-    clearance, length : float
-        Radial clearance and length of the bearing, m.
-    lags : bool
-        Whether it is on a liner.
+    rule : Every, Period or None
+        None keeps all rows.
+    errors : function
+        Errors (n,) of the steps of rows (n, WIDTH) and the error of the pose behind them, for that before them.
+    none : array
+        Error of the pose at the beginning of a record.
     """
 
-    def __init__(self, rule: Every | Period, clearance: float, length: float, lags: bool) -> None:
-        self.rule, self.bearing = rule, (clearance, length, lags)
+    def __init__(self, rule: Every | Period | None, errors: Errors, none: np.ndarray) -> None:
+        self.rule, self._errors, self._none = rule, errors, none
         self.begin_anew()
 
     def begin_anew(self, last: np.ndarray | None = None) -> None:
@@ -108,7 +119,7 @@ class Thinner:
         self.count = 0 if last is None else int(last[STEP_COUNT])
         self._known_error = np.nan if last is None else float(last[STEP_ERROR])
         # what is kept so far of the span under way; the last rows as they came, and the pose's error there
-        self._open, self._lead, self._error = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH)), NO_ERROR
+        self._open, self._lead, self._error = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH)), self._none
 
     def take(self, rows: np.ndarray) -> np.ndarray:
         """Add rows (n, WIDTH); returns those (k, WIDTH + 2) of the spans that have ended."""
@@ -125,9 +136,14 @@ class Thinner:
         return self._keep(self._number(rows)[1])[0] if len(rows) else self._open
 
     def _number(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The last rows and these, these with their two numbers behind those kept of the span, error of the pose."""
+        """The last rows and these, these with their two numbers behind those kept of the span, error of the pose.
+
+        Tangents that are not known are taken from the row before.
+        """
         whole = np.concatenate([self._lead, rows])
-        errors, error = errors_of(whole, *self.bearing, self._error)
+        last = np.maximum.accumulate(np.where(np.isfinite(whole[:, FIRST_BLOCK]), np.arange(len(whole)), -1))
+        whole[last >= 0, TANGENT] = whole[last[last >= 0], TANGENT]
+        errors, error = self._errors(whole, self._error)
         errors = errors[len(self._lead) :]
         errors[0] = np.fmax(errors[0], self._known_error)
         count = self.count + np.arange(len(rows))
@@ -135,6 +151,8 @@ class Thinner:
 
     def _keep(self, rows: np.ndarray) -> tuple[np.ndarray, int]:
         """Return the rows (n, WIDTH + 2) that are kept, and the index among them at which the last span begins."""
+        if self.rule is None:
+            return rows, len(rows)
         spans = self.rule.spans(rows[:, STEP_COUNT], rows[:, TIME])
         edges = [0, *(np.flatnonzero(np.diff(spans)) + 1).tolist(), len(rows)]
         load = np.hypot(rows[:, FORCE.start], rows[:, FORCE.start + 1])
@@ -150,19 +168,19 @@ class Thinner:
         return out, int(np.searchsorted(places, edges[-2]))
 
 
-def errors_of(
-    rows: np.ndarray, clearance: float, length: float, lags: bool, before: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Errors (n,) of the steps of rows (n, >= WIDTH), and that of the pose behind them, as `errors_behind`.
-
-    Tangents that are not known are taken from the row before, in ``rows`` themselves.
-    """
+def errors_of(bearing: JournalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Errors (n,) of the steps of a journal's rows (n, WIDTH), that of the pose behind them; see `errors_behind`."""
     motion, peak, deflection = rows[:, COLUMNS["motion"]], rows[:, COLUMNS["peak_angle"]], None
-    if lags:
+    if isinstance(getattr(bearing, "bush", None), ElasticLiner):
         size = rows[:, COLUMNS["bore_displacement"], None]
         deflection = size * np.stack((np.cos(peak), np.sin(peak)), axis=1)
-    tangent = rows[:, _BLOCKS]
-    last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0]), np.arange(len(rows)), -1))
-    rows[last >= 0, _BLOCKS] = tangent[last[last >= 0]]
-    blocks, gap = rows[:, _BLOCKS].reshape(-1, *BLOCKS.shape), rows[:, MINIMUM_GAP]
-    return errors_behind(before, rows[:, TIME], motion, blocks, gap, clearance, length, deflection, rows[:, LOAD])
+    blocks, gap = rows[:, TANGENT].reshape(-1, *BLOCKS.shape), rows[:, MINIMUM_GAP]
+    dimensions = bearing.radial_clearance, bearing.length
+    return errors_behind(before, rows[:, TIME], motion, blocks, gap, *dimensions, deflection, rows[:, LOAD])
+
+
+def errors_of_ball_in(bearing: SphericalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Errors (n,) of the steps of a ball's rows (n, WIDTH), and that of its place behind them; see `errors_of_ball`."""
+    place, velocity, _ = np.split(rows[:, COLUMNS["motion"]][:, :9], 3, axis=1)
+    known, gap, load = rows[:, PACK], rows[:, MINIMUM_GAP], rows[:, LOAD]
+    return errors_of_ball(before, rows[:, TIME], place, velocity, known, gap, bearing.radial_clearance, load)

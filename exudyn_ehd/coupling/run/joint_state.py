@@ -243,10 +243,8 @@ def check_owner(joint: Joint, state: JointState) -> None:
 
 
 def _same_modes(own: np.ndarray | None, stored: np.ndarray | None) -> bool:
-    if own is None or stored is None:
+    if own is None or stored is None or own.shape != stored.shape:
         return own is stored
-    if own.shape != stored.shape:
-        return False
     scale = np.max(np.abs(own), axis=1, keepdims=True)
     return bool(np.all(np.abs(own - stored) <= _SAME_MODES * scale))
 
@@ -256,22 +254,18 @@ def _check_memory(joint: Joint, state: JointState) -> None:
     model, memory, begin = joint.element.model, state.memory, state.begin
     bore = model.size if isinstance(model, ElasticBearingModel) else 0
     size = getattr(model, "motion_size", MOTION_SIZE + 2 * bore)
-    parts: list[tuple[str, dict[str, tuple[int, ...]], dict[str, tuple[int, ...]]]] = []
-    if memory is not None:
-        own = model.initial_history(np.zeros(size))
-        parts.append(("memory", _shapes(memory), {} if own is None else _shapes(own)))
-    if begin is not None:
-        known = min(len(np.atleast_1d(begin.misses)), len(WEIGHTS) - 1)
-        expected = {"time": (), "motion": (size,), "step": (), "misses": (known, 4 + bore), "clearance": ()}
-        parts.append(("begin", _shapes(begin), expected))
-    for what, given, expected in parts:
-        if given != expected:
+    known = 0 if begin is None else min(len(np.atleast_1d(begin.misses)), len(WEIGHTS) - 1)
+    start = StepStart(time=0.0, motion=np.zeros(size), step=0.0, misses=np.zeros((known, 4 + bore)), clearance=0.0)
+    film = model.initial_history(np.zeros(size))
+    for what, given, own in (("memory", memory, film), ("begin", begin, start)):
+        if given is not None and _shapes(given) != _shapes(own):
             raise InputError(
                 f"LubricatedJoint.restore_state: {what} of joint '{state.name}' must hold finite numbers of the shapes "
-                f"{expected}, got {given}; the file was changed, or written for another film."
+                f"{_shapes(own)}, got {_shapes(given)}; the file was changed, or written for another film."
             )
 
 
-def _shapes(part: History | StepStart) -> dict[str, tuple[int, ...]]:
-    values = {field.name: getattr(part, field.name) for field in dataclasses.fields(part)}
+def _shapes(part: History | StepStart | None) -> dict[str, tuple[int, ...]]:
+    fields = () if part is None else dataclasses.fields(part)
+    values = {field.name: getattr(part, field.name) for field in fields}
     return {name: np.shape(value) for name, value in values.items() if value is not None and np.all(np.isfinite(value))}

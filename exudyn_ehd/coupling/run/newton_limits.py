@@ -37,7 +37,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from typing import Any, TypeAlias
+from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -53,8 +53,6 @@ from exudyn_ehd.status import Status
 
 # Share of a film's gap that a step of Newton's method may close.
 SHARE = 0.5
-# Exudyn's stubs lack attributes of its solvers
-_Solver: TypeAlias = Any
 # Share of the relative tolerance times the films' forces.
 FORCE_SHARE = 0.1
 # Least part of the relative tolerance that is left.
@@ -79,7 +77,7 @@ class GapLimit:
 
     def start(self, mbs: exu.MainSystem) -> None:
         """Remember where Newton's method starts."""
-        self.before = [values.copy() for values in _state(mbs)]
+        self.before = [values.copy() for values in state_of(mbs)]
         self.behind.clear()
 
     def shorten(self, mbs: exu.MainSystem, additive: np.ndarray) -> None:
@@ -103,7 +101,7 @@ class GapLimit:
                 else:
                     allowed = allowed_part(last.bodies, after, bearing.radial_clearance, bearing.length)
                 part = min(part, allowed, self._allowed_at_end(film, last, after))
-        state = _state(mbs)
+        state = state_of(mbs)
         if part < 1.0:
             taken = np.where(additive, part, 1.0)
             for share, old, new in zip((taken, taken, taken, part), self.before, state, strict=True):
@@ -175,8 +173,8 @@ def _allowed_towards(other: np.ndarray, before: np.ndarray, after: np.ndarray, l
     return half / along if along > half else 1.0
 
 
-def _state(mbs: exu.MainSystem) -> list[np.ndarray]:
-    """Coordinates, velocities, accelerations and multipliers, as Exudyn holds them."""
+def state_of(mbs: exu.MainSystem) -> list[np.ndarray]:
+    """Coordinates of second order, velocities, accelerations and multipliers now, as Exudyn holds them: not copied."""
     state = mbs.systemData.GetSystemStateDict(CURRENT, True)
     return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt", "AECoords")]
 
@@ -188,49 +186,51 @@ class ForceTolerance:
     ----------
     films : sequence of FilmElement
         Elements of all joints of a system.
+    settings : exudyn.SimulationSettings
+        Settings of the run.
 
     Attributes
     ----------
-    bushes : list
+    bushes : list or None
         Nodal bushes of the system with the places of their coordinates in its vectors; known from the first step on.
     """
 
-    def __init__(self, films: Sequence[FilmElement]) -> None:
+    def __init__(self, films: Sequence[FilmElement], settings: exu.SimulationSettings) -> None:
+        newton = settings.timeIntegration.newton
         self.films = films
-        self.bushes: list[tuple[BushEquations, np.ndarray]] = []
-        self.given: float | None = None
-        self.relative, self.first, self.level = 0.0, 0.0, 0.0
+        self.given, self.relative = newton.absoluteTolerance, newton.relativeTolerance
+        # mode 1 measures coordinates
+        self.measures_forces = newton.residualMode == 0
+        self.bushes: list[tuple[BushEquations, np.ndarray]] | None = None
+        self.first, self.level = 0.0, 0.0
 
-    def set(self, mbs: exu.MainSystem, solver: _Solver) -> None:
+    def set(self, mbs: exu.MainSystem, solver: Any) -> None:
         """Set Newton's tolerances at the start of a step, with the films evaluated at the end of the step before."""
-        newton = solver.newton
-        if self.given is None:
-            self.given, self.relative = newton.absoluteTolerance, newton.relativeTolerance
+        if self.bushes is None:
             self.bushes = _bushes(mbs)
             for film in self.films:
                 film.steps.tolerance = self.given
+        newton = solver.newton
         newton.relativeTolerance = self.relative
-        # mode 1 measures coordinates
-        if newton.residualMode == 0:
+        if self.measures_forces:
             self.level = self._forces()
-            level = FORCE_SHARE * newton.relativeTolerance * self.level
+            level = FORCE_SHARE * self.relative * self.level
             if self.bushes:
                 state = mbs.systemData.GetSystemStateDict(START_OF_STEP, True)
                 reach = abs(state["ODE2Coords"]) + solver.it.currentStepSize * abs(state["ODE2Coords_t"])
                 level = max(level, math.hypot(*(bush.rounding(reach[at]) for bush, at in self.bushes)))
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
 
-    def limit(self, solver: _Solver, iteration: int) -> None:
+    def limit(self, solver: Any, iteration: int) -> None:
         """Set Newton's relative tolerance before an iteration, with the films evaluated in the iteration before."""
-        newton = solver.newton
-        if self.given is None or newton.residualMode != 0:
+        if not self.measures_forces:
             return
         forces = self._forces()
         if iteration == 1:
             self.first = forces
         present = max(forces, self.level)
         part = present / self.first if self.first > present else 1.0
-        newton.relativeTolerance = self.relative * max(part, LEAST_PART)
+        solver.newton.relativeTolerance = self.relative * max(part, LEAST_PART)
 
     def _forces(self) -> float:
         return math.hypot(*(force for film in self.films for force in _force(film.last)))

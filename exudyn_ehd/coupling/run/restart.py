@@ -5,16 +5,14 @@ from __future__ import annotations
 import dataclasses
 import json
 import pathlib
-import zipfile
-import zlib
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, Data
-from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP
+from exudyn_ehd.coupling.record.on_disk import read_arrays
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
@@ -22,7 +20,7 @@ from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
 
-_FORMAT = "exudyn_ehd SystemState 4"
+_FORMAT = "exudyn_ehd SystemState 5"
 Part = TypeVar("Part", History, StepStart)
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 
@@ -112,33 +110,16 @@ class SystemState:
         """Write to a NumPy file (npz), whole or not at all."""
         require_path("SystemState.save", path, ".npz")
         arrays: dict[str, Any] = dict(zip(_PARTS, self.coordinates, strict=True))
-        arrays["accelerations"] = self.accelerations
-        if self.algorithmic is not None:
-            arrays["algorithmic"] = self.algorithmic
-        heads = []
+        arrays |= {"accelerations": self.accelerations, "algorithmic": self.algorithmic}
         for k, joint in enumerate(self.joints):
-            arrays[f"{k} rows"] = joint.rows
-            if joint.modes is not None:
-                arrays[f"{k} modes"] = joint.modes
-            has = {"memory": joint.memory is not None, "begin": joint.begin is not None}
-            heads.append({"name": joint.name, "bearing": joint.bearing, "time": joint.time, **has})
-            for name, part in (("", joint.memory), ("begin ", joint.begin)):
-                for field in () if part is None else dataclasses.fields(part):
-                    value = getattr(part, field.name)
-                    if value is not None:
-                        arrays[f"{k} {name}{field.name}"] = np.asarray(value, dtype=float)
+            arrays |= {f"{k} rows": joint.rows, f"{k} modes": joint.modes}
+            for what, part in (("memory", joint.memory), ("begin", joint.begin)):
+                fields = () if part is None else dataclasses.fields(part)
+                arrays |= {f"{k} {what} {field.name}": getattr(part, field.name) for field in fields}
+        known = {name: value for name, value in arrays.items() if value is not None}
+        joints = [{"name": joint.name, "bearing": joint.bearing, "time": joint.time} for joint in self.joints]
         with replacing(path, binary=True) as file:
-            np.savez_compressed(file, format=_FORMAT, head=json.dumps({"time": self.time, "joints": heads}), **arrays)
-
-
-def judged(joints: Sequence[Joint]) -> Sequence[Joint]:
-    """Joints by whose films orbits can be judged; `InputError` if a record does not tell them."""
-    for joint in joints:
-        if joint.element.kinematics is not relative:
-            raise InputError(
-                f"SolveDynamic: joint '{joint.name}' holds a ball, whose record has no orbit; leave out until_periodic."
-            )
-    return joints
+            np.savez_compressed(file, format=_FORMAT, head=json.dumps({"time": self.time, "joints": joints}), **known)
 
 
 def load_state(path: str | pathlib.Path) -> SystemState:
@@ -156,53 +137,37 @@ def load_state(path: str | pathlib.Path) -> SystemState:
             f"SolveDynamic.restart must be a SystemState or the path of a file written by SaveState, got {path!r}."
         )
     require_path("SolveDynamic.restart", path)
-    try:
-        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
-            if "format" not in file.files or str(file["format"]) != _FORMAT:
-                raise InputError(
-                    f"SolveDynamic.restart: '{path}' holds no state of this version; write it with SaveState."
-                )
-            arrays = {name: file[name] for name in file.files}
-        head = json.loads(str(arrays["head"]))
-        joints = tuple(_joint(arrays, k, entry) for k, entry in enumerate(head["joints"]))
-        return SystemState(
-            time=float(head["time"]),
-            coordinates=tuple(arrays[name] for name in _PARTS),
-            accelerations=arrays["accelerations"],
-            algorithmic=arrays.get("algorithmic"),
-            joints=joints,
-        )
-    except InputError:
-        raise
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        ValueError,
-        EOFError,
-        TypeError,
-        AttributeError,
-        KeyError,
-        NotImplementedError,
-    ):
+    arrays = read_arrays(path, _FORMAT)
+    if arrays is None:
         raise InputError(
-            f"SolveDynamic.restart: '{path}' is damaged or holds something else; give a file written by SaveState."
-        ) from None
-
-
-def _joint(arrays: dict[str, np.ndarray], k: int, head: Data) -> JointState:
-    def read(kind: type[Part], prefix: str) -> Part:
-        stored = {field.name: arrays.get(f"{k} {prefix}{field.name}") for field in dataclasses.fields(kind)}
-        values: dict[str, Any] = {
-            name: value if value is None or value.ndim else float(value) for name, value in stored.items()
-        }
-        return kind(**values)
-
-    return JointState(
-        name=head["name"],
-        bearing=head["bearing"],
+            f"SolveDynamic.restart: '{path}' is damaged or holds no state of this version; give a file written by "
+            "SaveState."
+        )
+    head = json.loads(str(arrays["head"]))
+    return SystemState(
         time=head["time"],
-        memory=read(History, "") if head["memory"] else None,
-        rows=arrays[f"{k} rows"],
-        begin=read(StepStart, "begin ") if head["begin"] else None,
-        modes=arrays.get(f"{k} modes"),
+        coordinates=tuple(arrays[name] for name in _PARTS),
+        accelerations=arrays["accelerations"],
+        algorithmic=arrays.get("algorithmic"),
+        joints=tuple(
+            JointState(
+                **joint,
+                memory=_part(arrays, f"{k} memory ", History),
+                rows=arrays[f"{k} rows"],
+                begin=_part(arrays, f"{k} begin ", StepStart),
+                modes=arrays.get(f"{k} modes"),
+            )
+            for k, joint in enumerate(head["joints"])
+        ),
     )
+
+
+def _part(arrays: dict[str, np.ndarray], prefix: str, kind: type[Part]) -> Part | None:
+    """Memory or start of a step from its arrays; None if there are none."""
+    if not any(name.startswith(prefix) for name in arrays):
+        return None
+    stored = {field.name: arrays.get(prefix + field.name) for field in dataclasses.fields(kind)}
+    values: dict[str, Any] = {
+        name: value if value is None or value.ndim else float(value) for name, value in stored.items()
+    }
+    return kind(**values)

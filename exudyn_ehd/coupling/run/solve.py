@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext
 from functools import partial
-from typing import Any, overload
+from typing import overload
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
-from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit, free_bushes
-from exudyn_ehd.coupling.run.restart import Joint, SystemState, judged, load_state
+from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.coupling.run.newton_limits import free_bushes
+from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
+from exudyn_ehd.coupling.run.restart import SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
-from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, StepRefusal, UserFunction
+from exudyn_ehd.coupling.run.start_guess import StartGuess, refuse
 from exudyn_ehd.coupling.run.step_size import steps_by_error
-from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing, run_progress
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.coupling.watch.start_velocity import warn_of_misfit
 from exudyn_ehd.coupling.watch.step_control import StepControl
@@ -143,33 +144,35 @@ def SolveDynamic(
     """
     require_system("SolveDynamic", mbs)
     require_settings("SolveDynamic", simulationSettings)
-    going_on: AbstractContextManager[None] = nullcontext()
+    state = None
     if restart is not None:
         state = restart if isinstance(restart, SystemState) else load_state(restart)
-        going_on = _restarted(mbs, simulationSettings, state)
     else:
         require_time("SolveDynamic", simulationSettings)
     require_items(mbs)
-    implicit = options.get("solverType", exu.DynamicSolverType.GeneralizedAlpha) in _IMPLICIT
-    control = step_control("SolveDynamic", mbs, simulationSettings, stepControl, implicit=implicit)
+    time, kind = simulationSettings.timeIntegration, options.get("solverType")
+    implicit = (time.solverType if kind is None else kind) in _IMPLICIT
+    require_control("SolveDynamic", simulationSettings, stepControl, implicit=implicit)
+    joints = joints_of(mbs)
     if not implicit:
-        for element in (joint.element for joint in joints_of(mbs) if joint.element.is_massless):
+        for element in (joint.element for joint in joints if joint.element.is_massless):
             raise element.failures.no_mass()
         _refuse_inactive(mbs)
     require_type("SolveDynamic.until_periodic", until_periodic, UntilPeriodic, type(None))
-    with going_on, ExitStack() as around:
-        watch, time = None, simulationSettings.timeIntegration
-        if restart is None and mbs.systemIsConsistent:
-            elements = [(joint.name, joint.element) for joint in joints_of(mbs)]
-            states = [(name, e.motion(mbs, INITIAL), e.model.bearing) for name, e in elements]
+    with ExitStack() as around:
+        if state is not None:
+            around.enter_context(_restarted(mbs, simulationSettings, state))
+        elif mbs.systemIsConsistent:
+            states = [(j.name, j.element.motion(mbs, INITIAL), j.element.model.bearing) for j in joints]
             warn_of_misfit(states, (time.endTime - time.startTime) / time.numberOfSteps)
-        if until_periodic is not None:
-            films = [(joint.name, joint.element.steps) for joint in judged(joints_of(mbs))]
-            watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
-        around.enter_context(side_by_side("SolveDynamic", [joint.element for joint in joints_of(mbs)], threads))
-        better, progress = _better_start(mbs, simulationSettings), progress_of(mbs, simulationSettings)
-        for part in (control, better, refusing(mbs), own_errors(mbs, "SolveDynamic"), progress):
-            around.enter_context(part)
+        watch = None if until_periodic is None else Closing(joints, until_periodic, simulationSettings)
+        if watch is not None:
+            around.enter_context(hooked(mbs, "PostStep", watch.after_step))
+        around.enter_context(running("SolveDynamic", mbs, simulationSettings, stepControl, threads))
+        if implicit:
+            start = StartGuess([joint.element for joint in joints], simulationSettings)
+            around.enter_context(hooked(mbs, "PreNewtonResidual", start.begin))
+            around.enter_context(hooked(mbs, "PostNewton", start.go_on))
         # films ask the stored solver for step size, rule and whether it runs
         good = bool(mbs.SolveDynamic(simulationSettings, **options | {"storeSolver": True}))
     return good if watch is None else watch.last_cycle(mbs)
@@ -330,31 +333,38 @@ def _unheld(mbs: exu.MainSystem) -> str:
     )
 
 
-def progress_of(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> AbstractContextManager[None]:
-    """Return the context that shows a run's progress, on terminals and in notebooks."""
-    return run_progress(mbs, settings, [(joint.name, joint.element.steps) for joint in joints_of(mbs)])
-
-
-def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:
-    """The start of Newton's method for a system with joints, before the run; ``before`` is the user's own function."""
-    elements = [joint.element for joint in joints_of(mbs)]
-    bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
-    bushes = {int(node) for element in elements for node in element.bore_nodes} - bodies
-    return StartGuess(mbs, GapLimit(elements), ForceTolerance(elements), before, bushes)
-
-
-def step_control(
+@contextmanager
+def running(
     where: str,
     mbs: exu.MainSystem,
     settings: exu.SimulationSettings,
     control: StepControl | None,
-    *,
-    implicit: bool = True,
-) -> AbstractContextManager[None]:
-    """The control of the steps of a run, to run within."""
+    threads: int | None,
+) -> Iterator[None]:
+    """Let a solver run within, with this package's errors.
+
+    Films are on ``threads``, steps chosen as by ``control``, those without a film refused, and progress is shown.
+    """
+    joints = joints_of(mbs)
+    films = [joint.element for joint in joints]
+    aim = None if control is None else control.error
+    with (
+        side_by_side(where, films, threads),
+        nullcontext() if aim is None else steps_by_error(mbs, settings, films, aim),
+        hooked(mbs, "PostNewton", partial(refuse, films)),
+        own_errors(mbs, where),
+        run_progress(mbs, settings, joints),
+    ):
+        yield
+
+
+def require_control(
+    where: str, settings: exu.SimulationSettings, control: StepControl | None, *, implicit: bool = True
+) -> None:
+    """Refuse a control that is none of a run, or a run that has no use for one."""
+    require_type(f"{where}.stepControl", control, StepControl, type(None))
     if control is None:
-        return nullcontext()
-    require_type(f"{where}.stepControl", control, StepControl)
+        return
     if control.error is None:
         raise InputError(
             f"{where}.stepControl: StepControl.error is missing, the error that the steps aim at (0.02); "
@@ -365,22 +375,6 @@ def step_control(
             f"{where}.stepControl needs an implicit solver and timeIntegration.adaptiveStep=True, with which Exudyn "
             "can repeat steps; ConfigureSolver(simulationSettings) sets it."
         )
-    return steps_by_error(mbs, settings, [joint.element for joint in joints_of(mbs)], control.error)
-
-
-@contextmanager
-def _better_start(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Iterator[None]:
-    """Let Newton's method start at lasting accelerations in the run within; the user's functions come back then."""
-    with (
-        hooked(mbs, "PreNewtonResidual", lambda own: start_guess(mbs, own)) as start,
-        hooked(mbs, "PostNewton", lambda own: ConstraintJumps(mbs, settings, start, own)),
-    ):
-        yield
-
-
-def refusing(mbs: exu.MainSystem) -> AbstractContextManager[StepRefusal]:
-    """Refuse steps without a film in the run within; the user's function comes back then."""
-    return hooked(mbs, "PostNewton", lambda own: StepRefusal([joint.element for joint in joints_of(mbs)], own))
 
 
 @contextmanager
@@ -398,19 +392,19 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
     alpha = integration.generalizedAlpha
     first = [True]
 
-    def pre_step(own: Any, mbs: exu.MainSystem, t: float) -> bool:
+    def pre_step(own: Callable[..., object], mbs: exu.MainSystem, t: float) -> bool:
         if first[0]:
             # Exudyn starts with algorithmic accelerations equal to the others; these differ once a run is under way
             mbs.systemData.SetODE2Coordinates_tt(state.accelerations.tolist(), CURRENT)
             first[0] = False
-        return bool(own(mbs, t)) if own else True
+        return bool(own(mbs, t))
 
     if state.algorithmic is None:
         yield
         return
     computes, alpha.computeInitialAccelerations = alpha.computeInitialAccelerations, False
     try:
-        with hooked(mbs, "PreStep", lambda own: partial(pre_step, own)):
+        with hooked(mbs, "PreStep", pre_step):
             yield
     finally:
         alpha.computeInitialAccelerations = computes

@@ -28,7 +28,9 @@ from __future__ import annotations
 
 import time
 import weakref
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeAlias
 
 import exudyn as exu
@@ -36,20 +38,12 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.linear import SystemFactor
 from exudyn_ehd.coupling.contract import require_system
-from exudyn_ehd.coupling.element.side_by_side import side_by_side
+from exudyn_ehd.coupling.run.newton_limits import state_of
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
-from exudyn_ehd.coupling.run.solve import (
-    joints_of,
-    own_errors,
-    progress_of,
-    refusing,
-    require_items,
-    start_guess,
-    step_control,
-)
-from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
+from exudyn_ehd.coupling.run.solve import joints_of, require_control, require_items, running
+from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
-from exudyn_ehd.coupling.watch.solver_state import user_function
+from exudyn_ehd.coupling.watch.solver_state import idle, user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 from exudyn_ehd.status import InputError, require_integer, require_number
@@ -188,16 +182,15 @@ def SolveDynamicSparse(
     require_time("SolveDynamicSparse", settings)
     _require_offered(settings.timeIntegration)
     require_items(mbs)
-    control = step_control("SolveDynamicSparse", mbs, settings, stepControl)
-    shared = side_by_side("SolveDynamicSparse", [joint.element for joint in joints_of(mbs)], threads)
+    require_control("SolveDynamicSparse", settings, stepControl)
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     run = SparseRun()
-    before = user_function(mbs.GetPreNewtonResidualUserFunction())
-    matrix = SystemMatrix(mbs)
+    start = StartGuess([joint.element for joint in joints_of(mbs)], settings)
+    before = user_function(mbs, "PreNewtonResidual") or idle("PreNewtonResidual")
     loop = _Newton(
-        matrix=matrix,
-        guess=start_guess(mbs, before or None),
+        matrix=SystemMatrix(mbs),
+        guess=partial(start.begin, before),
         reuse=FactorReuse() if reuse is None else reuse,
         run=run,
     )
@@ -206,18 +199,18 @@ def SolveDynamicSparse(
     solver.SetUserFunctionNewton(mbs, weakref.proxy(loop))
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
     mbs.sys["dynamicSolver"] = solver
-    start = time.perf_counter()
+    began = time.perf_counter()
     chosen = settings.linearSolver.solverType
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        with shared, control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"), progress_of(mbs, settings):
+        with running("SolveDynamicSparse", mbs, settings, stepControl, threads):
             run.success = bool(solver.SolveSystem(mbs, settings))
             if not run.success:
                 raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")
     finally:
         settings.linearSolver.solverType = chosen
-    run.seconds = time.perf_counter() - start
+    run.seconds = time.perf_counter() - began
     return run
 
 
@@ -240,7 +233,7 @@ class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
-    guess: StartGuess
+    guess: Callable[[exu.MainSystem, float, int, int], None]
     reuse: FactorReuse
     run: SparseRun
     factor: SystemFactor | None = None
@@ -251,27 +244,23 @@ class _Newton:
     def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
         # Exudyn's Newton method forgets the multipliers of the step before, too
-        data.SetAECoordinates([0.0] * self.matrix.constraints)
+        state_of(mbs)[3][:] = 0.0
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
         error = first = solver.ComputeNewtonResidual(mbs, settings)
-        if turn > 0:
-            # a contact has opened or closed
-            self.factor = None
-        if solver.it.currentStepSize != self.step_size:
-            self.factor = None
-            self.step_size = solver.it.currentStepSize
-        if self.excess >= self.reuse.worth:
+        step, self.step_size = self.step_size, solver.it.currentStepSize
+        # in a further turn a contact has opened or closed
+        if turn > 0 or step != self.step_size or self.excess >= self.reuse.worth:
             self.factor = None
         age, renewable = 0, True
         for iteration in range(1, newton.maxIterations + 1):
             if not np.isfinite(error):
                 break
-            if self.factor is None or age >= self.reuse.maximum_iterations:
-                if not self._factorise(solver, mbs, settings):
-                    break
+            if age >= self.reuse.maximum_iterations:
+                self.factor = None
+            if self.factor is None:
                 age, renewable = 0, False
-            elif not self._renew_rest(solver, mbs, settings):
+            if not self._factorise(solver, mbs, settings):
                 break
             self._update(solver, mbs)
             solver.it.newtonStepsCount += 1
@@ -301,36 +290,29 @@ class _Newton:
         return not renewable or iteration <= FILMS_FIRST
 
     def _factorise(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
-        start = time.perf_counter()
-        self.factor = None
-        index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
-        system = self.matrix.assemble(mbs, solver, index2=index2)
-        constraints = self.matrix.constraints
-        try:
-            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0)
-        except RuntimeError:
-            return False
-        self.baseline = self.excess = 0
-        self.run.jacobians += 1
-        solver.it.newtonJacobiCount += 1
-        self.run.factor_bytes = self.factor.nbytes
-        self.run.seconds_jacobian += time.perf_counter() - start
-        return True
+        """Make the factor where there is none, else renew what is beside the meshes where only films join the two.
 
-    def _renew_rest(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        """Renew what is beside the meshes, where only films join the two; False if that is singular."""
-        assert self.factor is not None
-        if self.factor.coupled or not self.matrix.films:
+        Return False if the matrix is singular, upon which the step is rejected.
+        """
+        kept = self.factor
+        if kept is not None and (kept.coupled or not self.matrix.films):
             return True
         start = time.perf_counter()
         index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
+        system = self.matrix.assemble(mbs, solver, index2=index2, meshes=kept is None)
         try:
-            self.factor.renew_rest(self.matrix.assemble(mbs, solver, index2=index2, meshes=False))
+            if kept is not None:
+                kept.renew_rest(system)
+                return True
+            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if self.matrix.constraints else 0.0)
         except RuntimeError:
             return False
         finally:
             self.run.seconds_jacobian += time.perf_counter() - start
+        self.baseline = self.excess = 0
+        self.run.jacobians += 1
+        solver.it.newtonJacobiCount += 1
+        self.run.factor_bytes = self.factor.nbytes
         return True
 
     def _solve(self, solver: Solver, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
@@ -363,12 +345,11 @@ class _Newton:
         d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
-        data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
+        n, h = self.matrix.coordinates, self.step_size
         square = solver.newmarkBeta * h * h
         dq = d[:n]
-        places, velocities, accelerations = motion(mbs)
+        places, velocities, accelerations, multipliers = state_of(mbs)
         places -= dq
         velocities -= solver.newmarkGamma * h / square * dq
         accelerations -= dq / (solver.factJacAlgorithmic * square)
-        if len(d) > n:
-            data.SetAECoordinates((data.GetAECoordinates() - d[n:] / square).tolist())
+        multipliers -= d[n:] / square

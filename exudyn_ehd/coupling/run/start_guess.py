@@ -21,8 +21,8 @@ another; but deformations of bodies, which ring while the body moves smoothly, a
 Constraints are what it must not upset. Newton's first iteration leaves them open by some (h v)^2 / L from Exudyn's
 start and by far less from this one. Forces do not feel what is the same in every step, but a change g from one step to
 the next as m g / (beta h^2): from one start to the other m v^2 / L at any step size, as much as the inertia. So
-Newton's method goes on where the opening jumps (`ConstraintJumps`). Exudyn takes that for a contact that has opened or
-closed, and begins again at zero accelerations; here each further pass of a step starts where the last one has ended.
+Newton's method goes on where the opening jumps. Exudyn takes that for a contact that has opened or closed, and begins
+again at zero accelerations; here each further pass of a step starts where the last one has ended.
 
 Steps that converge to a film that none bears, refused before Exudyn accepts them.
 
@@ -40,95 +40,74 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, NodeIndex
+from exudyn_ehd.coupling.contract import START_OF_STEP, NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit
+from exudyn_ehd.coupling.run.newton_limits import ForceTolerance, GapLimit, state_of
 from exudyn_ehd.coupling.watch import solver_state
 
-UserFunction: TypeAlias = Callable[[exu.MainSystem, float, int, int], object]
-"""Exudyn's user function before a residual: system, time, Newton iteration, discontinuous iteration."""
+_UserFunction: TypeAlias = Callable[..., Any]
 # Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
 LARGEST_CHANGE = 0.5
 # Largest change of their change with which they go on in a line, share of their change.
 LARGEST_BEND = 0.1
 # Largest change of the opening of constraints from step to step, share of beta h^2 times the largest acceleration.
 LARGEST_JUMP = 3e-5
-# Error for Exudyn's discontinuous iterations that makes Newton's method take another pass.
-GO_ON = 1e100, -1.0
-PostNewton: TypeAlias = Callable[[exu.MainSystem, float], Sequence[float]]
-"""Exudyn's user function after Newton's method: system and time to [error, recommended step size or -1]."""
-# Beyond any tolerance of Exudyn's discontinuous iterations.
+# Beyond any tolerance of Exudyn's discontinuous iterations: Newton's method takes another pass, or a smaller step.
 REFUSED = 1e100
 
 
 class StartGuess:
-    """Pre-Newton user function of a system that sets the start of Newton's method and keeps it within the films.
+    """User functions of a run that set the start of Newton's method in each step and keep it within the films.
 
     Parameters
     ----------
-    mbs : exudyn.MainSystem
-    limit : GapLimit
-    tolerance : ForceTolerance
-    before : callable or None
-        The user's own function, called after it.
-    bushes : collection of int
-        Numbers of the nodes that hold the deformation of bushes: without inertia they follow the film at once.
+    films : sequence of FilmElement
+        Elements of all joints of a system.
+    settings : exudyn.SimulationSettings
+        Settings of the run.
     """
 
-    def __init__(
-        self,
-        mbs: exu.MainSystem,
-        limit: GapLimit,
-        tolerance: ForceTolerance,
-        before: UserFunction | None,
-        bushes: Collection[int] = (),
-    ) -> None:
-        self.limit = limit
-        self.tolerance = tolerance
-        self.before = before
-        self.old_solver = mbs.sys.get("dynamicSolver")
-        self.bushes = bushes
+    def __init__(self, films: Sequence[FilmElement], settings: exu.SimulationSettings) -> None:
+        self.limit, self.tolerance = GapLimit(films), ForceTolerance(films, settings)
+        self.by_velocities = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
+        bodies = {int(node) for film in films for side in film.sides for node in side.nodes}
+        self.bushes = {int(node) for film in films for node in getattr(film, "bore_nodes", ())} - bodies
         self.additive = self.groups = np.empty(0)
-        self.start = np.nan
-        self.attempts = 0
+        self.start, self.attempts = np.nan, 0
         self.past: list[tuple[float, np.ndarray]] = []
         self.ended: list[np.ndarray] = []
         self.guess: np.ndarray | None = None
+        # opening of the constraints at the end of the last step, and of the last pass of Newton's method
+        self.accepted = self.latest = np.zeros(1)
 
-    def __call__(self, mbs: exu.MainSystem, t: float, iteration: int, discontinuous: int) -> None:
-        solver = mbs.sys.get("dynamicSolver")
-        # a stored solver outlives its run
-        if solver is not self.old_solver and isinstance(solver, exu.MainSolverImplicitSecondOrder):
-            if iteration > 0:
-                # to shorten a step films leave the state that they were evaluated at
-                self.tolerance.limit(solver, iteration)
-                self.limit.shorten(mbs, self.additive)
-            else:
-                if discontinuous == 0:
-                    self._set_start(mbs, solver)
-                elif self.ended:
-                    for values, ended in zip(motion(mbs), self.ended, strict=True):
-                        values[:] = ended
-                self.limit.start(mbs)
-        if self.before is not None:
-            self.before(mbs, t, iteration, discontinuous)
-
-    def keep(self, mbs: exu.MainSystem) -> None:
-        """Let a further pass of the step start where this one has ended."""
-        self.ended = [values.copy() for values in motion(mbs)]
+    def begin(self, own: _UserFunction, mbs: exu.MainSystem, t: float, iteration: int, discontinuous: int) -> None:
+        """User function before a residual; the user's own is called behind it."""
+        solver = mbs.sys["dynamicSolver"]
+        if iteration > 0:
+            # to shorten a step films leave the state that they were evaluated at
+            self.tolerance.limit(solver, iteration)
+            self.limit.shorten(mbs, self.additive)
+        else:
+            if discontinuous == 0:
+                self._set_start(mbs, solver)
+            elif self.ended:
+                for values, ended in zip(state_of(mbs), self.ended, strict=False):
+                    values[:] = ended
+            self.limit.start(mbs)
+        own(mbs, t, iteration, discontinuous)
 
     def _set_start(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> None:
         data = mbs.systemData
         start = data.GetTime(START_OF_STEP)
         if not self.past:
             # not before the run: Exudyn's solver assembles a system that is not
-            self.additive, self.groups = additive_coordinates(mbs), coordinate_groups(mbs, self.bushes)
+            self.additive, self.groups = coordinates_of(mbs, self.bushes)
         if start != self.start:
             now = np.array(data.GetODE2Coordinates_tt(START_OF_STEP), dtype=float)
             self.past = [*self.past[-2:], (start, now)]
             expected = lasting(self.past, self.groups)
             self.guess = None if expected is None else expected * self.additive
-            self.start, self.attempts = start, 0
+            self.start, self.attempts, self.accepted = start, 0, self.latest
             self.tolerance.set(mbs, solver)
         self.attempts += 1
         # a step that was refused is tried from Exudyn's start and from this one in turns
@@ -136,62 +115,31 @@ class StartGuess:
             return
         h = solver.it.currentStepSize
         change = (1.0 - solver.alphaF) / (1.0 - solver.alphaM) * self.guess
-        places, velocities, accelerations = motion(mbs)
+        places, velocities, accelerations, _ = state_of(mbs)
         places += solver.newmarkBeta * h * h * change
         velocities += solver.newmarkGamma * h * change
         accelerations += self.guess
 
+    def go_on(self, own: _UserFunction, mbs: exu.MainSystem, t: float) -> list[float]:
+        """User function after Newton's method: another pass where constraints have opened or closed at a jump.
 
-class ConstraintJumps:
-    """User function after Newton's method that lets it go on where constraints have opened or closed at a jump.
-
-    Parameters
-    ----------
-    mbs : exudyn.MainSystem
-    settings : exudyn.SimulationSettings
-        Settings of the run.
-    start : StartGuess
-        Told where every pass has ended.
-    before : callable or None
-        The user's own function, called first.
-    """
-
-    def __init__(
-        self, mbs: exu.MainSystem, settings: exu.SimulationSettings, start: StartGuess, before: PostNewton | None
-    ) -> None:
-        self.start_guess, self.before = start, before
-        self.old_solver = mbs.sys.get("dynamicSolver")
-        self.by_velocities = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
-        self.start = np.nan
-        self.accepted = self.latest = np.zeros(1)
-
-    def __call__(self, mbs: exu.MainSystem, t: float) -> list[float]:
-        error, size = (0.0, -1.0) if self.before is None else self.before(mbs, t)
-        solver, data = mbs.sys.get("dynamicSolver"), mbs.systemData
-        if solver is self.old_solver or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
-            return [error, size]
-        self.start_guess.keep(mbs)
+        The user's own is called first. A further pass of the step starts where this one has ended.
+        """
+        error, size = own(mbs, t)
+        self.ended = [values.copy() for values in state_of(mbs)[:3]]
         # Exudyn's type stubs forget the method's own argument
-        known: Any = solver
-        opening = np.asarray(known.GetSystemResidual())[data.ODE2Size() + data.ODE1Size() :]
+        solver: Any = mbs.sys["dynamicSolver"]
+        data = mbs.systemData
+        opening = np.asarray(solver.GetSystemResidual())[data.ODE2Size() + data.ODE1Size() :]
         if not opening.size:
             return [error, size]
-        start = data.GetTime(START_OF_STEP)
-        if start != self.start:
-            self.start, self.accepted = start, self.latest
         self.latest = opening
         if error > 0.0 or solver.it.discontinuousIteration > 0:
             return [error, size]
         h = solver.it.currentStepSize
         reach = solver.newmarkGamma * h if self.by_velocities else solver.newmarkBeta * h * h
         largest = LARGEST_JUMP * reach * np.abs(data.GetODE2Coordinates_tt()).max(initial=0.0)
-        return list(GO_ON) if np.abs(opening - self.accepted).max() > largest else [error, size]
-
-
-def motion(mbs: exu.MainSystem) -> list[np.ndarray]:
-    """Coordinates of second order, velocities and accelerations now, not copied."""
-    state = mbs.systemData.GetSystemStateDict(CURRENT, True)
-    return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt")]
+        return [REFUSED, -1.0] if np.abs(opening - self.accepted).max() > largest else [error, size]
 
 
 def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:
@@ -228,50 +176,43 @@ def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.
     return np.where(lasts, expected, 0.0)
 
 
-def additive_coordinates(mbs: exu.MainSystem) -> np.ndarray:
-    """Return a mask (n,) of the second-order coordinates: one where displacements add, zero for Lie-group rotations."""
-    mask = np.ones(len(mbs.systemData.GetODE2Coordinates()))
-    for number in range(mbs.systemData.NumberOfNodes()):
-        node = NodeIndex(number)
-        kind = mbs.GetNode(node)["nodeType"]
-        if "LG" in kind or "LieGroup" in kind:
-            first = mbs.GetNodeODE2Index(node)
-            mask[first + 3 : first + 6] = 0.0
-    return mask
+def coordinates_of(mbs: exu.MainSystem, bushes: Collection[int]) -> tuple[np.ndarray, np.ndarray]:
+    """Mask (n,) and groups (n,) of the second-order coordinates.
 
-
-def coordinate_groups(mbs: exu.MainSystem, bushes: Collection[int]) -> np.ndarray:
-    """Group (n,) of every second-order coordinate: deformations of a body one each, everything else together."""
-    groups = np.zeros(len(mbs.systemData.GetODE2Coordinates()), dtype=np.intp)
+    The mask is one where displacements add, zero for Lie-group rotations. Deformations of a body are one group each but
+    those of ``bushes``, which follow the film at once; everything else is together.
+    """
+    size = len(mbs.systemData.GetODE2Coordinates())
+    mask, groups = np.ones(size), np.zeros(size, dtype=np.intp)
     for number in range(mbs.systemData.NumberOfNodes()):
         node = NodeIndex(number)
         values = mbs.GetNode(node)
-        if values["nodeType"] == "GenericODE2" and number not in bushes:
+        kind = values["nodeType"]
+        if "LG" in kind or "LieGroup" in kind:
+            first = mbs.GetNodeODE2Index(node)
+            mask[first + 3 : first + 6] = 0.0
+        elif kind == "GenericODE2" and number not in bushes:
             first = mbs.GetNodeODE2Index(node)
             groups[first : first + values["numberOfODE2Coordinates"]] = 1 + groups.max()
-    return groups
+    return mask, groups
 
 
-class StepRefusal:
-    """User function after Newton's method.
+def refuse(films: Sequence[FilmElement], own: _UserFunction, mbs: exu.MainSystem, t: float) -> list[float]:
+    """User function after Newton's method: a step of half the size where a film has no result.
 
     Parameters
     ----------
     films : sequence of FilmElement
         Elements of all joints of a system.
-    before : callable or None
+    own : callable
         The user's own function, called first.
+    mbs : exudyn.MainSystem
+    t : float
+        s.
     """
-
-    def __init__(self, films: Sequence[FilmElement], before: PostNewton | None) -> None:
-        self.films, self.before = films, before
-
-    def __call__(self, mbs: exu.MainSystem, t: float) -> list[float]:
-        error, size = (0.0, -1.0) if self.before is None else self.before(mbs, t)
-        if all(film.has_result() for film in self.films):
-            return [error, size]
-        solver = mbs.sys.get("dynamicSolver")
-        if solver is None or not solver_state.can_reject_step(solver):
-            return [error, size]
-        half = 0.5 * solver.it.currentStepSize
-        return [REFUSED, half if size < 0.0 else min(size, half)]
+    error, size = own(mbs, t)
+    solver = mbs.sys.get("dynamicSolver")
+    if solver is None or all(film.has_result() for film in films) or not solver_state.can_reject_step(solver):
+        return [error, size]
+    half = 0.5 * solver.it.currentStepSize
+    return [REFUSED, half if size < 0.0 else min(size, half)]

@@ -21,7 +21,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
 from typing import Any, TypeAlias
 
 import exudyn as exu
@@ -134,13 +133,8 @@ class StepSize:
         Elements of all joints.
     error : float
         Share of the minimum film thickness.
-    output : bool
+    sensors : bool
         Whether the system has sensors.
-
-    Attributes
-    ----------
-    refused : int
-        Steps that were repeated.
     """
 
     def __init__(
@@ -162,24 +156,22 @@ class StepSize:
         self.time = math.nan
         self.demand = 0.0
         self.used: float | None = None
-        self.refused = 0
 
     def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
         """User function after Newton's method and the user's own: error, and step size to repeat the step with."""
-        error, wanted = own(mbs, time) if own else (0.0, -1.0)
+        error, wanted = own(mbs, time)
         known = [used for joint in self.joints if (used := joint.used(mbs, time)) is not None]
         self.used = max(known, default=None)
         step = time - mbs.systemData.GetTime(START_OF_STEP)
         smallest = mbs.sys["dynamicSolver"].it.minStepSize
         if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + ROUNDING):
             return [error, wanted]
-        self.refused += 1
         step = min(step * max(SHRINK, self.used**-0.5), *(joint.wanted for joint in self.joints))
         return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
 
     def choose(self, own: Any, mbs: exu.MainSystem, time: float) -> bool:
         """User function after the user's own, behind an accepted step and before the first one: sets the next size."""
-        goes_on = bool(own(mbs, time)) if own else True
+        goes_on = bool(own(mbs, time))
         if not math.isnan(self.time):
             for joint in self.joints:
                 joint.accept()
@@ -223,8 +215,8 @@ def steps_by_error(
     kept = run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize
     run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = NEVER, True
     with (
-        hooked(mbs, "PostNewton", lambda own: partial(control.look, own)),
-        hooked(mbs, "PostStep", lambda own: partial(control.choose, own)),
+        hooked(mbs, "PostNewton", control.look),
+        hooked(mbs, "PostStep", control.choose),
     ):
         try:
             for film in films:

@@ -173,21 +173,17 @@ class SystemMatrix:
 def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
     """Triplets of an ObjectGenericODE2 through its own functions and matrices."""
 
-    def function(name: str) -> Callable | None:
-        value = mbs.GetObjectParameter(item, name)
-        return value["function"] if isinstance(value, dict) else None
-
-    def constant(name: str) -> csr_matrix | None:
-        matrix = as_sparse(mbs.GetObjectParameter(item, name))
-        return None if matrix is None or matrix.nnz == 0 else matrix
-
-    jacobian, mass_function = function("jacobianUserFunction"), function("massMatrixUserFunction")
-    if jacobian is None and function("forceUserFunction") is not None:
+    names = ("forceUserFunction", "jacobianUserFunction", "massMatrixUserFunction")
+    found = {name: mbs.GetObjectParameter(item, name) for name in names}
+    force, jacobian, mass = (value["function"] if isinstance(value, dict) else None for value in found.values())
+    if jacobian is None and force is not None:
         raise InputError(
             f"SolveDynamicSparse: object {int(item)} has a forceUserFunction, so it must have a jacobianUserFunction, "
             "got none; add one, or use mbs.SolveDynamic, which differentiates numerically."
         )
-    mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
+    constant = [
+        as_sparse(mbs.GetObjectParameter(item, name)) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix")
+    ]
 
     def part(mbs, factors: Factors):
         fM, fK, fD = factors[:3]
@@ -195,11 +191,11 @@ def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
         q = np.asarray(data.GetODE2Coordinates())[places]
         q_t = np.asarray(data.GetODE2Coordinates_t())[places]
         t = data.GetTime()
-        terms = [(fM, mass), (fK, stiffness), (fD, damping)]
+        terms = list(zip((fM, fK, fD), constant, strict=True))
         if jacobian is not None:
             terms.append((1.0, as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
-        if mass_function is not None:
-            terms.append((fM, as_sparse(mass_function(mbs, t, int(item), q, q_t))))
+        if mass is not None:
+            terms.append((fM, as_sparse(mass(mbs, t, int(item), q, q_t))))
         return [_placed(places, factor, matrix) for factor, matrix in terms if matrix is not None]
 
     return part

@@ -94,10 +94,6 @@ class ChatterWatch:
         self.clearance = bearing.radial_clearance
         self.lever = 0.5 * bearing.length
         self.levers = np.array(getattr(bearing, "levers", (1.0, 1.0, self.lever, self.lever)))
-        self.begin_anew()
-
-    def begin_anew(self) -> None:
-        """Forget all steps."""
         self.time = np.inf
         self.place = self.rate = np.zeros(4)
         self.error = self.largest = 0.0
@@ -117,8 +113,6 @@ class ChatterWatch:
         step, before, rate_before = time - self.time, self.place, self.rate
         self.time, self.place, self.rate = time, place, rate
         if not step > 0.0:
-            self.error = self.largest = 0.0
-            self.score = self.kicks = 0
             return False
         mismatch = place - before - 0.5 * step * (rate + rate_before)
         self.error = float(np.sqrt(mismatch @ mismatch))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeAlias, TypeVar, cast
+from functools import partial
+from typing import Any, TypeAlias, cast
 
 import exudyn as exu
 
@@ -16,7 +17,6 @@ Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | e
 Stored: TypeAlias = tuple[Solver | None, Solver | None]
 # Before the first run: not even no solver is the same object.
 NO_RUN: Stored = (cast(Solver, object()), cast(Solver, object()))
-Hook = TypeVar("Hook")
 
 
 def stored_solvers(mbs: exu.MainSystem) -> Stored:
@@ -92,28 +92,34 @@ def can_reject_step(solver: Solver | None) -> bool:
     return bool(iteration.adaptiveStep) and iteration.currentStepSize > iteration.minStepSize * (1.0 + 1e-6)
 
 
-def user_function(hook: Any) -> Any:
-    """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
-    function = hook["function"] if isinstance(hook, dict) else hook
+def user_function(mbs: exu.MainSystem, moment: str) -> Any:
+    """The user's own function at a moment of the solver, e.g. ``"PostNewton"``; 0, as Exudyn takes it, for none."""
+    found = getattr(mbs, f"Get{moment}UserFunction")()
+    function = found["function"] if isinstance(found, dict) else found
     return function if callable(function) else 0
 
 
+def idle(moment: str) -> Callable[..., Any]:
+    """Return a user function for a moment of the solver that changes nothing."""
+    return lambda *_: (0.0, -1.0) if moment == "PostNewton" else True
+
+
 @contextmanager
-def hooked(mbs: exu.MainSystem, moment: str, make: Callable[[Any], Hook]) -> Iterator[Hook]:
+def hooked(mbs: exu.MainSystem, moment: str, function: Callable[..., object]) -> Iterator[None]:
     """Put a function in the place of the user's own at a moment of the solver, within; the user's comes back then.
 
     Parameters
     ----------
+    mbs : exudyn.MainSystem
     moment : str
         As in the names of Exudyn's functions, e.g. ``"PostNewton"``.
-    make : callable
-        Gives the function for the user's own, which it has to call; None if there is none.
+    function : callable
+        It gets the function in whose place it stands, which it has to call, before Exudyn's arguments.
     """
-    own = user_function(getattr(mbs, f"Get{moment}UserFunction")())
+    own = user_function(mbs, moment)
     put = getattr(mbs, f"Set{moment}UserFunction")
-    function = make(own or None)
-    put(function)
+    put(partial(function, own or idle(moment)))
     try:
-        yield function
+        yield
     finally:
         put(own)

@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import pickle
 
 import numpy as np
 import pytest
@@ -59,6 +60,9 @@ def test_saved_histories_come_back_bit_for_bit(history, tmp_path):
         assert type(getattr(again, field.name)) is type(getattr(history, field.name))
     # nothing but the file is left
     assert list(path.parent.iterdir()) == [path]
+    sent = pickle.loads(pickle.dumps(history))
+    np.testing.assert_array_equal(sent.peak_pressure, history.peak_pressure)
+    assert sent.length == history.length
 
 
 def test_an_interrupted_save_leaves_the_old_file(history, tmp_path, monkeypatch):

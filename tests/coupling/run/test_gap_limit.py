@@ -71,9 +71,9 @@ def test_a_step_of_any_size_leaves_the_integrators_formulas(monkeypatch):
         new = [old[0] + d, old[1] + 2.0 * d / h, old[2] + 4.0 * d / h**2, old[3] + 1e9 * d]
 
         limit, states = newton_limits.GapLimit([Axis(old, new)]), [[values.copy() for values in old], new]
-        monkeypatch.setattr(newton_limits, "_state", lambda _, states=states: states[0])
+        monkeypatch.setattr(newton_limits, "state_of", lambda _, states=states: states[0])
         limit.start(None)
-        monkeypatch.setattr(newton_limits, "_state", lambda _, states=states: states[1])
+        monkeypatch.setattr(newton_limits, "state_of", lambda _, states=states: states[1])
         limit.shorten(None, np.array([1.0, 1.0, 1.0]))
         gaps = [smallest_gap(Axis.of(values)) for values in (old, new)]
         assert gaps[1] == pytest.approx((1.0 - SHARE) * gaps[0], rel=1e-6)

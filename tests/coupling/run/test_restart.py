@@ -326,7 +326,11 @@ def test_stored_memory_is_checked(tmp_path):
     with np.load(tmp_path / "good.npz") as file:
         arrays = dict(file)
     spoilt = {
-        "memory": ({"0 mass": None}, {"0 mass": np.ones((3, 3))}, {"0 void": np.full((48, 7), np.nan)}),
+        "memory": (
+            {"0 memory mass": None},
+            {"0 memory mass": np.ones((3, 3))},
+            {"0 memory void": np.full((48, 7), np.nan)},
+        ),
         "begin": ({"0 begin motion": np.zeros(4)}, {"0 begin step": None}),
     }
     for what, changes in spoilt.items():

@@ -10,7 +10,7 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.run.start_guess import additive_coordinates, lasting
+from exudyn_ehd.coupling.run.start_guess import coordinates_of, lasting
 from tests.mechanisms.exudyn_data.spatial import spatial_crank
 from tests.sampling import sample
 
@@ -198,7 +198,7 @@ def test_what_lasts():
 @pytest.mark.parametrize("node", ["Rxyz", "EP", "RotVec"])
 def test_rotations_of_lie_group_nodes_are_not_added_to(node):
     mbs, _ = crank_pin(node)
-    mask = additive_coordinates(mbs)
+    mask, _ = coordinates_of(mbs, ())
     assert np.count_nonzero(mask == 0.0) == (3 if node == "RotVec" else 0)
 
 

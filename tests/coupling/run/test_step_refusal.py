@@ -1,12 +1,13 @@
 """Converged steps without a film are halved; the user's function after Newton's method stays."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scenes
 
-from exudyn_ehd.coupling.run.start_guess import StepRefusal
+from exudyn_ehd.coupling.run.start_guess import refuse
 
 
 def falling(before, largest, own):
@@ -19,7 +20,7 @@ def falling(before, largest, own):
         iteration = mbs.sys["dynamicSolver"].it
         return iteration.currentTime < 0.055 or iteration.currentStepSize <= largest
 
-    mbs.SetPostNewtonUserFunction(StepRefusal([SimpleNamespace(has_result=has_result)], before) if own else before)
+    mbs.SetPostNewtonUserFunction(partial(refuse, [SimpleNamespace(has_result=has_result)], before) if own else before)
     mbs.SetPostStepUserFunction(lambda mbs, t: not times.append(t))
     mbs.SolveDynamic(scenes.settings(0.1, 10))
     return np.array(times)

@@ -132,6 +132,10 @@ def test_input():
         fixed.timeIntegration.adaptiveStep = False
         with pytest.raises(ehd.InputError, match="adaptiveStep"):
             solve(mbs, fixed, stepControl=CONTROL)
+    explicit = settings()
+    explicit.timeIntegration.solverType = exu.DynamicSolverType.RK44
+    with pytest.raises(ehd.InputError, match="implicit solver"):
+        ehd.SolveDynamic(mbs, explicit, stepControl=CONTROL)
     with pytest.raises(ehd.InputError, match="implicit solver"):
         ehd.SolveDynamic(mbs, settings(), stepControl=CONTROL, solverType=exu.DynamicSolverType.RK44)
 

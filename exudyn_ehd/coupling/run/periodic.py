@@ -13,15 +13,15 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
-from typing import Protocol
+from contextlib import contextmanager
 
 import exudyn as exu
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.record.history import JointHistory
-from exudyn_ehd.coupling.record.record import Record
+from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.progress import Progress, is_shown
@@ -114,55 +114,53 @@ class LastCycle:
         )
 
 
-class Steps(Protocol):
-    """Accepted steps of a joint, as this module uses them.
-
-    Attributes
-    ----------
-    record : Record
-        Record of all steps.
-    """
-
-    record: Record
-
-    def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
-        """Return the record of the steps, with the current state if ``complete``."""
-
-
 class Closing:
     """Function after a step of Exudyn that ends a run whose orbits have closed.
 
     Parameters
     ----------
-    films : sequence of pairs
-        Names of the joints and their steps.
+    joints : sequence of Joint
+        All of a system.
     aim : UntilPeriodic
-    begin : float
-        Start of the run, s.
-    after_step : function or 0
-        The user's own, called first.
+    settings : exudyn.SimulationSettings
     """
 
-    def __init__(
-        self,
-        films: Sequence[tuple[str, Steps]],
-        aim: UntilPeriodic,
-        begin: float,
-        after_step: Callable[..., object] | None,
-    ) -> None:
-        self.films, self.aim, self.begin, self.after_step = films, aim, begin, after_step
+    def __init__(self, joints: Sequence[Joint], aim: UntilPeriodic, settings: exu.SimulationSettings) -> None:
+        run, where = settings.timeIntegration, "SolveDynamic.until_periodic"
+        if not joints:
+            raise InputError(f"{where}: the system has no lubricated joints whose orbits could close.")
+        for joint in joints:
+            if joint.element.kinematics is not relative:
+                raise InputError(
+                    f"{where}: joint '{joint.name}' holds a ball, whose record has no orbit; leave out until_periodic."
+                )
+            if joint.element.steps.record.is_thinned:
+                raise InputError(
+                    f"{where} compares all steps of a cycle, and joint '{joint.name}' keeps some of them; leave out "
+                    "Every and Period of its record (File alone keeps memory small, too)."
+                )
+        if run.endTime - run.startTime < (3.0 - SAME) * aim.period:
+            raise InputError(
+                f"{where}: the run must have room for three periods of {aim.period:.6g} s, got {run.startTime:.6g} to "
+                f"{run.endTime:.6g} s; endTime says how long it may take."
+            )
+        self.films = {joint.name: joint.element.steps for joint in joints}
+        self.aim, self.begin, self.last = aim, run.startTime, run.startTime
         self.changes: list[float] = []
         self.left = math.inf
-        self.cycles = 0
-        self.last = begin
 
-    def __call__(self, mbs: exu.MainSystem, time: float) -> bool:
-        """Return whether the run goes on after the step to ``time``."""
-        goes_on = bool(self.after_step(mbs, time)) if self.after_step else True
+    def after_step(self, own: Callable[..., object], mbs: exu.MainSystem, time: float) -> bool:
+        """Return whether the run goes on after the step to ``time``; the user's function is called first."""
+        goes_on = bool(own(mbs, time))
         # joints have recorded the steps before this one
         self.look(mbs, self.last)
         self.last = time
         return goes_on and not self.closed
+
+    @property
+    def cycles(self) -> int:
+        """Number of whole cycles that were compared, the first one included."""
+        return len(self.changes) + 1
 
     @property
     def closed(self) -> bool:
@@ -171,14 +169,11 @@ class Closing:
 
     def look(self, mbs: exu.MainSystem, time: float, *, complete: bool = False) -> None:
         """Compare the cycle that has ended by ``time``, if one has; its end is the state now if ``complete``."""
-        period = self.aim.period
-        if self.closed or time < self.begin + (self.cycles + 1 - SAME) * period:
+        period, cycles = self.aim.period, self.cycles + 1
+        if self.closed or time < self.begin + (cycles - SAME) * period:
             return
-        self.cycles += 1
-        if self.cycles == 1:
-            return
-        end = self.begin + self.cycles * period
-        histories = [steps.history(mbs, complete=complete) for _, steps in self.films]
+        end = self.begin + cycles * period
+        histories = [steps.history(mbs, complete=complete) for steps in self.films.values()]
         change = max(_change(history, self.begin, end, period) for history in histories)
         quotient = change / self.changes[-1] if self.changes and self.changes[-1] > 0.0 else 1.0
         self.left = change * (quotient / (1.0 - quotient) if quotient < MOST_LEFT / (1.0 + MOST_LEFT) else MOST_LEFT)
@@ -211,29 +206,8 @@ class Closing:
             cycles=self.cycles,
             changes=np.array(self.changes),
             left=self.left,
-            histories={name: steps.history(mbs).between(start, end) for name, steps in self.films},
+            histories={name: steps.history(mbs).between(start, end) for name, steps in self.films.items()},
         )
-
-
-def closing(
-    mbs: exu.MainSystem, films: Sequence[tuple[str, Steps]], aim: UntilPeriodic, settings: exu.SimulationSettings
-) -> AbstractContextManager[Closing]:
-    """End the run within when its orbits have closed; the user's function comes back then."""
-    run = settings.timeIntegration
-    if not films:
-        raise InputError("SolveDynamic.until_periodic: the system has no lubricated joints whose orbits could close.")
-    for name, steps in films:
-        if steps.record.is_thinned:
-            raise InputError(
-                f"SolveDynamic.until_periodic compares all steps of a cycle, and joint '{name}' keeps some of them; "
-                "leave out Every and Period of its record (File alone keeps memory small, too)."
-            )
-    if run.endTime - run.startTime < (3.0 - SAME) * aim.period:
-        raise InputError(
-            f"SolveDynamic.until_periodic: the run must have room for three periods of {aim.period:.6g} s, got "
-            f"{run.startTime:.6g} to {run.endTime:.6g} s; endTime says how long it may take."
-        )
-    return hooked(mbs, "PostStep", lambda own: Closing(films, aim, run.startTime, own))
 
 
 def _change(history: JointHistory, begin: float, end: float, period: float) -> float:
@@ -259,32 +233,24 @@ def _change(history: JointHistory, begin: float, end: float, period: float) -> f
 
 
 class RunProgress:
-    """Function after a step of Exudyn.
+    """Function after a step of Exudyn that tells how far a run is.
 
     Parameters
     ----------
     settings : exudyn.SimulationSettings
-    films : sequence of pairs
-        Names of the joints and their steps.
-    after_step : function or None
-        The user's own, called first.
+    joints : sequence of Joint
     """
 
-    def __init__(
-        self,
-        settings: exu.SimulationSettings,
-        films: Sequence[tuple[str, Steps]],
-        after_step: Callable[[exu.MainSystem, float], object] | None,
-    ) -> None:
+    def __init__(self, settings: exu.SimulationSettings, joints: Sequence[Joint]) -> None:
         run = settings.timeIntegration
-        self.films, self.after_step = films, after_step
+        self.joints = joints
         self.start, self.span = run.startTime, run.endTime - run.startTime
         self.line: Progress | None = None
         self.steps, self.last = 0, (0, 0.0)
 
-    def __call__(self, mbs: exu.MainSystem, t: float) -> bool:
-        """Return whether the run goes on after the step to ``t``."""
-        goes_on = bool(self.after_step(mbs, t)) if self.after_step else True
+    def after_step(self, own: Callable[..., object], mbs: exu.MainSystem, t: float) -> bool:
+        """Return whether the run goes on after the step to ``t``, as the user's function says."""
+        goes_on = bool(own(mbs, t))
         if self.line is None:
             # kernels are compiled before the first call, which is behind the initial state
             self.line, self.last = Progress("exudyn_ehd"), (0, time.perf_counter())
@@ -304,20 +270,19 @@ class RunProgress:
 
     def _worst(self) -> str:
         """The thinnest film, in words."""
-        films = [(steps.record.thinnest, name) for name, steps in self.films]
-        gap, name = min(((gap, name) for gap, name in films if np.isfinite(gap)), default=(np.nan, ""))
-        return f", minimum film thickness {shown('length', gap)} in '{name}'" if name else ""
+        films = ((joint.element.steps.record.thinnest, joint.name) for joint in self.joints)
+        gap, name = min(films, default=(math.inf, ""))
+        return f", minimum film thickness {shown('length', gap)} in '{name}'" if math.isfinite(gap) else ""
 
 
 @contextmanager
-def run_progress(
-    mbs: exu.MainSystem, settings: exu.SimulationSettings, films: Sequence[tuple[str, Steps]]
-) -> Iterator[None]:
+def run_progress(mbs: exu.MainSystem, settings: exu.SimulationSettings, joints: Sequence[Joint]) -> Iterator[None]:
     """Show the progress of the run within, unless Exudyn's own does; the user's function comes back then."""
     if not is_shown() or settings.timeIntegration.verboseMode > 0:
         yield
         return
-    with hooked(mbs, "PostStep", lambda own: RunProgress(settings, films, own)) as progress:
+    progress = RunProgress(settings, joints)
+    with hooked(mbs, "PostStep", progress.after_step):
         try:
             yield
         finally:
