@@ -227,7 +227,7 @@ def CreateLubricatedJoint(
         require_type(f"{_WHERE}.{argument}", motion, Free, Held)
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_type(f"{_WHERE}.record", record, File, Every, Period, type(None))
-    _require_new(mbs, name)
+    require_new(mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
         require_number(f"{_WHERE}.{argument}", size, "m", above=0.0)
@@ -301,7 +301,8 @@ def _on_its_bodies(
     return bearing, housing, journal
 
 
-def _require_new(mbs: exu.MainSystem, name: str) -> None:
+def require_new(mbs: exu.MainSystem, name: str) -> None:
+    """Refuse an assembled system, and a name that another lubricated joint of it has."""
     if mbs.systemIsConsistent:
         raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
     if not isinstance(name, str):

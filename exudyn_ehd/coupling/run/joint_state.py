@@ -121,13 +121,7 @@ class Joint:
 
         See `SaveState` for the whole system.
         """
-        if not self.mbs.systemIsConsistent:
-            raise InputError(
-                f"{type(self).__name__}.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() "
-                "first."
-            )
-        self.element.require_items(self.mbs)
-        require_end(f"{type(self).__name__}.state", self.mbs, self.element.steps.solver)
+        self._require_end("state")
         time, memory, begin, rows = self.element.steps.remembered(self.mbs)
         return JointState(
             name=self.name,
@@ -138,6 +132,27 @@ class Joint:
             begin=begin,
             modes=bore_modes_of(self.element),
         )
+
+    def _require_end(self, method: str) -> None:
+        """Refuse a system before Assemble, with deleted items, or whose state was changed since its run."""
+        where = f"{type(self).__name__}.{method}"
+        if not self.mbs.systemIsConsistent:
+            raise InputError(f"{where}: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first.")
+        self.element.require_items(self.mbs)
+        require_end(where, self.mbs, self.element.steps.solver)
+
+    def _audited(self) -> JointHistory:
+        """Return the record for an audit, which needs steps, and all of them."""
+        history, where = self._recorded(), f"{type(self).__name__}.audit: joint '{self.name}'"
+        if history.time.size == 0:
+            raise InputError(f"{where} has no accepted steps yet; run a solver first.")
+        if history.is_thinned:
+            raise InputError(
+                f"{where} keeps {history.time.size} of {history.step_count[-1] + 1} states, and forces that ring, heat "
+                "and films that remember need every step: audit a shorter run without Every or Period, e.g. one that "
+                "goes on from ehd.SaveState in a model without them."
+            )
+        return history
 
     def forget(self) -> None:
         """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.

@@ -2,14 +2,15 @@
 
 Module map
 ----------
-audit        table of findings
-findings     what is said about an effect; the limits from which on each matters
-indicators   dimensionless numbers of the worst films, one per effect; those of films on the end faces
-surfaces     those of elasticity, profile, roughness and contact
-oil          those of its viscosity
-changes      films with and without an effect at the same load
+audit        table of findings, the rows that it goes through
+findings     verdict about an effect; the limits from which on each matters
+case         the audited films, to compare with those of another description at the same load
+numbers      numbers of one film that the rows read
+samples      recorded steps, their worst states, amplitudes of a motion
+surfaces     rows of elasticity, profile, roughness, contact and wear
+oil          rows of its viscosity and heat
+flow         rows of misalignment, squeeze, cavities, turbulence and inertia
+assumptions  rows of grid, time step and ringing
 switches     effects added to a description, with typical numbers, and taken away
-assumptions  the same of laminar flow, grid and time step
-samples      states of a run that the audit looks at
 ringing      forces that alternate from step to step
 """

@@ -181,7 +181,7 @@ class SphericalModel:
     bearing : SphericalBearing
     """
 
-    remembers = needs_spin = flexible = False
+    remembers = remembers_mass = needs_spin = flexible = False
     motion_size = SIZE
 
     def __init__(self, bearing: SphericalBearing) -> None:
