@@ -227,7 +227,7 @@ def CreateLubricatedJoint(
         require_type(f"{_WHERE}.{argument}", motion, Free, Held)
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_type(f"{_WHERE}.record", record, File, Every, Period, type(None))
-    require_new(mbs, name)
+    require_new(_WHERE, mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
         require_number(f"{_WHERE}.{argument}", size, "m", above=0.0)
@@ -301,15 +301,15 @@ def _on_its_bodies(
     return bearing, housing, journal
 
 
-def require_new(mbs: exu.MainSystem, name: str) -> None:
-    """Refuse an assembled system, and a name that another lubricated joint of it has."""
+def require_new(where: str, mbs: exu.MainSystem, name: str) -> None:
+    """Refuse, in the name of ``where``, an assembled system and a name that another lubricated joint of it has."""
     if mbs.systemIsConsistent:
-        raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
+        raise InputError(f"{where}: the system is assembled already; create the joint before mbs.Assemble().")
     if not isinstance(name, str):
-        raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
+        raise InputError(f"{where}.name must be a str, got {name!r}.")
     if name in {joint.name for joint in joints_of(mbs)}:
         raise InputError(
-            f"{_WHERE}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
+            f"{where}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
             "choose another."
         )
 

@@ -364,8 +364,8 @@ def CreateLubricatedSphericalJoint(
     assert bearing is not None
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_vector(f"{_WHERE}.color", color, 4)
+    require_new(_WHERE, mbs, name)
     with _in_the_name_of_this():
-        require_new(mbs, name)
         socket, ball = resolve_pair(mbs, itemNumbers)
         rotation = joint_rotation(
             socket, () if rotationMatrixAxes is not None else axis, rotationMatrixAxes, useGlobalFrame

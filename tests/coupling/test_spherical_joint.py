@@ -298,7 +298,7 @@ def test_input_is_checked():
     mbs, joint, body = pendulum()
     ground = mbs.CreateGround()
     for arguments, message in (
-        (("ball", [ground, body], [0, 0, 0], BALL), "CreateLubricatedSphericalJoint.name must be a str"),
+        (("ball", [ground, body], [0, 0, 0], BALL), "CreateLubricatedSphericalJoint.name 'ball' is taken by another"),
         (("b", [ground, ground], [0, 0, 0], BALL), "CreateLubricatedSphericalJoint.itemNumbers: both items are ground"),
         (("b", [ground, body], [0, 0], BALL), "CreateLubricatedSphericalJoint.position must be 3"),
         (("b", [ground, body], [0, 0, 0], None), "CreateLubricatedSphericalJoint.bearing must be Spherical"),

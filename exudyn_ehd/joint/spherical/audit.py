@@ -49,7 +49,7 @@ def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedS
     if record is not None:
         # a record has place, velocity and angular velocity one behind the other
         motions = np.insert(record.motion[:, :9], [3, 6], 0.0, axis=1)
-        record = replace(record, motion=motions)
+        record = replace(record, motion=motions, leakage=moved_oil(bearing, motions))
         spin = np.linalg.norm(motions[:, SPIN], axis=1)
         motions = motions[record.extremes(spin, squeeze_share(ball_sources(motions)))]
     states = [FilmState(motion) for motion in motions]
@@ -60,6 +60,14 @@ def ball_sources(motions: np.ndarray) -> Sources:
     """Sources of Reynolds' equation by motions (n, 11) of a ball."""
     place, velocity, spin = (motions[None, :, part] for part in (PLACE, VELOCITY, SPIN))
     return place, velocity, 0.5 * np.linalg.norm(np.cross(place, spin), axis=2)
+
+
+def moved_oil(b: SphericalBearing, motions: np.ndarray) -> np.ndarray:
+    """Flow (n,) that the surfaces of a ball drag along and press aside at motions (n, 11), m3/s."""
+    first, last = b.socket_angles
+    slide, velocity = (np.linalg.norm(motions[:, part], axis=1) for part in (SPIN, VELOCITY))
+    dragged = 0.5 * b.ball_radius * slide * b.radial_clearance * b.ball_radius * (last - first)
+    return np.asarray(dragged + math.pi * b.ball_radius**2 * velocity)
 
 
 class BallCase(Case):
@@ -95,41 +103,28 @@ class BallCase(Case):
         """Zeros (n,): a ball has no turns to count steps by."""
         return np.zeros(len(motions))
 
-    def leakage(self, record: RecordedSteps) -> np.ndarray:
-        """Flow (n,) that the surfaces drag along and press aside in the steps of a record, m3/s."""
-        return self._moved_oil(record.motion)
-
-    def _moved_oil(self, motions: np.ndarray) -> np.ndarray:
-        R, (first, last) = self.bearing.ball_radius, self.bearing.socket_angles
-        dragged = 0.5 * R * self.slide(motions) * self.bearing.radial_clearance * R * (last - first)
-        return np.asarray(dragged + math.pi * R**2 * np.linalg.norm(motions[:, VELOCITY], axis=1))
-
-    def own_numbers(self, found: SphericalEvaluation) -> dict[str, float]:  # type: ignore[override]
-        """Numbers of a film, those of `exudyn_ehd.joint.audit.numbers.film_numbers` that rows of balls read."""
-        film, R, motion = found.film, self.bearing.ball_radius, found.motion
+    def own_numbers(  # type: ignore[override]
+        self, found: SphericalEvaluation
+    ) -> tuple[dict[str, float], Resolution]:
+        """Numbers of a film that rows of balls read, and the resolution of its pressure peak by the grid."""
+        film, b, motion, area = found.film, self.bearing, found.motion, self.model.patch.area
         assert film is not None
-        p, area, c = film.pressure, self.model.patch.area, self.bearing.radial_clearance
-        share = area / area.sum()
+        R, p, share = b.ball_radius, film.pressure, area / area.sum()
+        i, j = divmod(int(p.argmax()), p.shape[1])
+        half = p.shape[0] // 2
+        around, along = intervals_at_half(np.roll(p[:, j], half - i), half), intervals_at_half(p[i], j)
         # half-spaces of steel under the peak on the circle of the area at half of it, ball and socket
         radius = R * math.sqrt(float(area[p >= 0.5 * p.max()].sum()) / math.pi)
-        return {
+        numbers = {
             "speed": R * float(np.linalg.norm(motion[SPIN])) + float(np.linalg.norm(motion[VELOCITY])),
-            "minimum_gap": max(found.minimum_gap, SMALLEST_GAP_SHARE * c),
-            "flow": float(self._moved_oil(motion[None])[0]),
-            "viscosity": self.bearing.lubricant.viscosity,
+            "minimum_gap": max(found.minimum_gap, SMALLEST_GAP_SHARE * b.radial_clearance),
+            "flow": float(moved_oil(b, motion[None])[0]),
+            "viscosity": b.lubricant.viscosity,
             "cavitated": float(share[~film.unbroken].sum()),
             "tension": float(share[p < TENSION].sum()),
             "compliance": 4.0 * (1.0 - STEEL["poisson_ratio"] ** 2) / STEEL["youngs_modulus"] * radius,
         }
-
-    def resolution(self, found: SphericalEvaluation) -> Resolution:  # type: ignore[override]
-        """Intervals across the pressure peak."""
-        assert found.film is not None
-        p = found.film.pressure
-        i, j = divmod(int(p.argmax()), p.shape[1])
-        half = p.shape[0] // 2
-        around, along = intervals_at_half(np.roll(p[:, j], half - i), half), intervals_at_half(p[i], j)
-        return Resolution(around, along, narrowing=1.0, growth=1.0, wanted=None)
+        return numbers, Resolution(around, along, narrowing=1.0, growth=1.0, wanted=None)
 
     def compared(self, found: SphericalEvaluation) -> tuple[float, float, float]:  # type: ignore[override]
         """Minimum film thickness, m, refined peak pressure, Pa, and loss, W."""
@@ -143,10 +138,6 @@ class BallCase(Case):
     ) -> Callable[[np.ndarray], SphericalEvaluation]:
         """Return the function of a motion (11,) that evaluates the film of another ball."""
         return other.evaluate
-
-    def slope(self, found: SphericalEvaluation) -> np.ndarray:  # type: ignore[override]
-        """Derivative (3, 3) of a film's force to the place."""
-        return found.tangent()[:3, PLACE]
 
 
 def _contact(case: Case) -> Finding:

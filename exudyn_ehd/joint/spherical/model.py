@@ -53,7 +53,7 @@ from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.solved_film import History, LimiterFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.patch import PAIRS, sphere_patch
+from exudyn_ehd.joint.spherical.patch import COMPONENTS, sphere_patch
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, quotients
 from exudyn_ehd.status import Status
 
@@ -135,6 +135,10 @@ class SphericalEvaluation:
             return np.asarray(sides.mean(axis=0))
         return self.model.tangent(self.motion, self.film)
 
+    def steady_tangent(self) -> np.ndarray:
+        """Return the tangent: nothing follows the motion of rigid surfaces."""
+        return self.tangent()
+
     def sides(self) -> np.ndarray | None:
         """One-sided derivatives (2, 6, 11) of the film of a ball at rest; None of one that has derivatives."""
         self._require_current()
@@ -143,11 +147,9 @@ class SphericalEvaluation:
         spin = float(np.linalg.norm(self.motion[SPIN])) or 1.0
         length = BESIDE * self.model.bearing.radial_clearance
         steps = np.repeat([length, 0.0, spin * length, 0.0, BESIDE * spin], [3, 1, 3, 1, 3])
-        sides = quotients(lambda motion: self.model.evaluate(motion).wrench, self.motion, steps)
-        # the same film into the model's buffers again
-        self.model.evaluate(self.motion)
-        self.model.serial = self.serial
-        return sides
+        # a model of its own keeps this film in the buffers
+        beside = SphericalModel(self.model.bearing)
+        return quotients(lambda motion: beside.evaluate(motion).wrench, self.motion, steps)
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state: m, Pa, N m, W, N."""
@@ -342,13 +344,9 @@ class SphericalModel:
 
 def _drag_of_moments(R: float) -> np.ndarray:
     """Return the map from moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
-    out = np.zeros((6, 6, 10))
-    for k in range(3):
-        turn = R * skew(np.eye(3)[k])
-        out[:3, 3:, 1 + k], out[3:, :3, 1 + k] = -turn, turn
-    for shift, scale in ((0, 1.0), (3, R**2)):
-        for i, j in PAIRS:
-            out[shift + i, shift + i, 0] = scale
-            out[shift + i, shift + j, 4 + PAIRS.index((i, j))] = -scale
-            out[shift + j, shift + i, 4 + PAIRS.index((i, j))] = -scale
-    return out.reshape(36, 10)
+
+    def drag(moments: np.ndarray) -> np.ndarray:
+        K, turn = moments[0] * np.eye(3) - moments[4:][COMPONENTS], R * skew(moments[1:4])
+        return np.block([[K, -turn], [turn, R**2 * K]])
+
+    return np.stack([drag(moments) for moments in np.eye(10)], axis=-1).reshape(36, 10)
