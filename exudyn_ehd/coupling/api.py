@@ -25,7 +25,7 @@ from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.on_disk import File
 from exudyn_ehd.coupling.record.thinning import Every, Period
-from exudyn_ehd.coupling.run.solve import joints_of, register_joint
+from exudyn_ehd.coupling.run.solve import register_joint, require_new
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.compile import compile_together
@@ -299,19 +299,6 @@ def _on_its_bodies(
 
         bearing, journal = hold_fe_journal(mbs, bearing, journal, points[1], rotation)
     return bearing, housing, journal
-
-
-def require_new(where: str, mbs: exu.MainSystem, name: str) -> None:
-    """Refuse, in the name of ``where``, an assembled system and a name that another lubricated joint of it has."""
-    if mbs.systemIsConsistent:
-        raise InputError(f"{where}: the system is assembled already; create the joint before mbs.Assemble().")
-    if not isinstance(name, str):
-        raise InputError(f"{where}.name must be a str, got {name!r}.")
-    if name in {joint.name for joint in joints_of(mbs)}:
-        raise InputError(
-            f"{where}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
-            "choose another."
-        )
 
 
 def _items_of_older_calls(

@@ -14,7 +14,6 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.api import require_new
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, ring_triangles
@@ -29,7 +28,7 @@ from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.history import FIRST_BLOCK, LOAD, JointHistory, make_row
 from exudyn_ehd.coupling.record.record import Record, history_of
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.solve import register_joint
+from exudyn_ehd.coupling.run.solve import register_joint, require_new
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing

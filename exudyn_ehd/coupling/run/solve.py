@@ -47,6 +47,19 @@ def joints_of(mbs: exu.MainSystem) -> list[Joint]:
     return [joint for joint, there in zip(joints, present, strict=True) if there]
 
 
+def require_new(where: str, mbs: exu.MainSystem, name: str) -> None:
+    """Refuse, in the name of ``where``, an assembled system and a name that another lubricated joint of it has."""
+    if mbs.systemIsConsistent:
+        raise InputError(f"{where}: the system is assembled already; create the joint before mbs.Assemble().")
+    if not isinstance(name, str):
+        raise InputError(f"{where}.name must be a str, got {name!r}.")
+    if name in {joint.name for joint in joints_of(mbs)}:
+        raise InputError(
+            f"{where}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
+            "choose another."
+        )
+
+
 def require_items(mbs: exu.MainSystem) -> None:
     """Refuse a system of which items were deleted that a joint was made on."""
     for joint in joints_of(mbs):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.audit import assumptions, flow, oil, surfaces
+from exudyn_ehd.joint.audit import assumptions, oil, surfaces
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import Finding
 from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states
@@ -26,7 +26,7 @@ _ON = {True: "on", False: "off", None: "-"}
 # Function that finds what an audit says about an effect, None where there is nothing to say.
 Row = Callable[[Case], Finding | None]
 ROWS: Mapping[str, Row] = {
-    "misalignment": flow.misalignment,
+    "misalignment": assumptions.misalignment,
     "elasticity": surfaces.elasticity,
     "journal elasticity": surfaces.journal_elasticity,
     "profile": surfaces.shape,
@@ -38,15 +38,15 @@ ROWS: Mapping[str, Row] = {
     "roughness": surfaces.roughness,
     "contact": surfaces.contact,
     "wear": surfaces.wear,
-    "squeeze": flow.squeeze,
-    "cavitation": flow.cavitation,
-    "rupture": flow.rupture,
-    "mass conservation": flow.mass_conservation,
+    "squeeze": assumptions.squeeze,
+    "cavitation": assumptions.cavitation,
+    "rupture": assumptions.rupture,
+    "mass conservation": assumptions.mass_conservation,
     "thrust faces": oil.faces_share,
     "heat of thrust faces": oil.faces_heat,
-    "Taylor vortices": flow.vortices,
-    "turbulence": flow.turbulence,
-    "fluid inertia": flow.inertia,
+    "Taylor vortices": assumptions.vortices,
+    "turbulence": assumptions.turbulence,
+    "fluid inertia": assumptions.inertia,
     "grid around": assumptions.grid_columns,
     "grid along": assumptions.grid_rows,
     "supply resolution": assumptions.supply_resolution,

@@ -20,11 +20,12 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.options import ThrustFaces
-from exudyn_ehd.joint.audit.numbers import film_numbers, recorded_numbers
 from exudyn_ehd.joint.audit.samples import (
     FilmState,
     RecordedSteps,
     Sources,
+    film_numbers,
+    recorded_numbers,
     recorded_states,
     sources,
     squeeze_rate,
@@ -41,9 +42,9 @@ from exudyn_ehd.status import FilmError, InputError, Status, require_type
 
 # From this change on an effect matters; below the second one nobody needs it.
 MATTERS, NOTHING = 0.03, 0.02
-# Search for the same load: relative unbalance, largest number of films, and longest step as a share of the minimum film
-# thickness or, where surfaces may touch, of the clearance.
-TOLERANCE, MOST_FILMS, LONGEST = 1e-3, 60, 0.3
+# Search for the same load: largest number of films; longest step as a share of the minimum film thickness or, where
+# surfaces may touch, of the clearance; step, as a share of the clearance, that is not halved again.
+MOST_FILMS, LONGEST, SHORTEST = 60, 0.6, 1e-6
 # Loads below it, over L D mu omega / psi^2, have no relative changes.
 NO_LOAD = 1e-6
 # Rounds of a time measurement; the best of them counts.
@@ -109,6 +110,8 @@ class Case:
     resolutions : list of Resolution
     axes, entries : int
         Components of the force that a film carries, and of a motion of rigid surfaces.
+    tolerance : float
+        Unbalance over the load up to which two films carry the same one.
     surface, steel : str
         Names of the surface around the film and of the deflecting steel, for messages.
     omitted : dict of str to str
@@ -120,7 +123,8 @@ class Case:
         If there is no film at any state.
     """
 
-    axes, entries, surface, steel = 2, MOTION_SIZE, "bore", "a steel ring"
+    axes, entries, tolerance = 2, MOTION_SIZE, 1e-3
+    surface, steel = "bore", "a steel ring"
     omitted: ClassVar[Mapping[str, str]] = {}
 
     def __init__(
@@ -279,11 +283,11 @@ class Case:
                 share = float(np.linalg.norm(reached.wrench[:k])) / size if count == 0 else share
             if reached is None or not np.abs(left).max() < error:
                 step = 0.5 * step
-                if np.linalg.norm(step) < TOLERANCE**2 * b.radial_clearance:
+                if np.linalg.norm(step) < SHORTEST * b.radial_clearance:
                     break
                 continue
             place, error = motion[:k].copy(), float(np.abs(left).max())
-            if error <= TOLERANCE * size:
+            if error <= self.tolerance * size:
                 return share, reached
             step, *_ = np.linalg.lstsq(reached.steady_tangent()[:k, :k], left, rcond=1e-9)
             longest = LONGEST * (b.radial_clearance if is_soft else reached.minimum_gap)

@@ -1,4 +1,4 @@
-"""Records and states of an audit: recorded steps of a joint, states to evaluate again, amplitudes of a motion."""
+"""Data of an audit: recorded steps of a joint, states to evaluate again, numbers of a motion and of a film."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.audit.switches import STEEL
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import Status
 
 # Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started: the
@@ -19,6 +20,10 @@ REPLAYED, A_TURN, TURNS = 60, 80, (3.0, 1.0)
 # Smallest amplitude that a squeezing journal is taken to have at one instant, over the clearance: with a larger one the
 # frequency of journals that pass the centre is lower, with a smaller one it is higher.
 AMPLITUDE = 0.1
+# Gauge pressure below which oil at ambient pressure would have to carry tension, Pa.
+TENSION = -1e5
+# Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
+RING_COMPLIANCE = 0.7
 # Gap of touching surfaces against which deflections count, share of the clearance.
 SMALLEST_GAP_SHARE = 1e-3
 
@@ -229,3 +234,76 @@ def squeeze_rate(by_motion: Sources, clearance: float, time: np.ndarray | None =
     amplitude = np.maximum(np.linalg.norm(place, axis=2), AMPLITUDE * clearance)
     accelerations = np.sum(velocity**2, axis=2) / amplitude
     return float(np.max(accelerations / np.maximum(strength, 1e-300)))
+
+
+def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float]:
+    """Numbers of a film, besides those that its quantities and its motion give.
+
+    Returns
+    -------
+    dict
+        ``speed`` (sliding speed of the surfaces, m/s), ``minimum_gap`` (m), ``flow``
+        (m3/s, out of the ends or out of the supply, the larger one), ``viscosity`` (smallest in the film at ambient
+        pressure, Pa s), ``rise`` (K, largest temperature of the film above that of the supply; 0 for an isothermal
+        film), ``to_bush`` and ``to_journal`` (shares of the film's heat that walls take up), ``cavitated`` and
+        ``tension`` (shares of the bore), ``tilt_loss``, ``deflection`` and ``shape`` (largest deflection of a flexible
+        surface and largest departure of the surfaces from cylinders, m), ``compliance`` (deflection of steel around the
+        film over the peak pressure, m/Pa).
+    """
+    film = evaluation.film
+    assert film is not None
+    q, s, g, b, w = evaluation.quantities(), film.solver, film.grid, model.bearing, film.journal
+    weight = g.weight / g.weight.sum()
+    unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
+    to_bush, to_journal = _wall_shares(model, film)
+    return {
+        "speed": math.hypot(g.reference_length * w.omega, w.axial_speed),
+        "minimum_gap": max(q["minimum_gap"], 1e-6 * b.radial_clearance),
+        "flow": max(q["leakage"], q.get("supply_flow", 0.0), 0.0),
+        "viscosity": _smallest_viscosity(film),
+        "rise": 0.0 if b.thermal is None else q["peak_temperature"] - b.thermal.supply_temperature,
+        "to_bush": to_bush,
+        "to_journal": to_journal,
+        "cavitated": float(np.sum(weight[~unbroken])),
+        "tension": float(np.sum(weight[film.oil.P * film.scales.pressure < TENSION])),
+        "tilt_loss": float(tilt_loss(b, w.motion[None])[0]),
+        "deflection": q.get("bore_displacement", 0.0),
+        "compliance": RING_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"],
+        "shape": _shape(film),
+    }
+
+
+def recorded_numbers(record: RecordedSteps, k: int) -> dict[str, float]:
+    """Numbers of a recorded step in place of those of its film, whose bore is settled and not in motion."""
+    return {
+        "minimum_gap": max(float(record.minimum_gap[k]), 1e-9 * float(np.max(record.minimum_gap))),
+        "peak_pressure": float(record.peak_pressure[k]),
+        "load": math.hypot(record.force[k, 0], record.force[k, 1]),
+        "contact_load": float(record.contact_load[k]),
+        "power_loss": float(record.power_loss[k]),
+        "deflection": float(record.bore_displacement[k]),
+    }
+
+
+def _wall_shares(model: BearingModel, film: SolvedFilm) -> tuple[float, float]:
+    """Shares of a film's heat that enter a bush and a journal that conduct, at the temperatures of the step's start."""
+    thermal = model.effects.thermal
+    if thermal is None or film.walls is None or film.temperature is None:
+        return 0.0, 0.0
+    balance = thermal.balance(film, film.walls.behind(film.temperature))
+    heat = max(balance["heat_in"], 1e-300)
+    return balance["bush"] / heat, balance["journal"] / heat
+
+
+def _smallest_viscosity(film: SolvedFilm) -> float:
+    """Reference viscosity of the film, thinned by shear and heat but not thickened by pressure, Pa s."""
+    b, ratio = film.parts.bearing, film.oil.ratio
+    viscosity = film.scales.pressure * b.radial_clearance**2 / (12.0 * b.journal_radius**2)
+    return viscosity * (1.0 if ratio is None else min(1.0, float(ratio.min())))
+
+
+def _shape(film: SolvedFilm) -> float:
+    """Largest height of profile and wear, of the undeformed surfaces, m."""
+    if film.extra is None or not film.extra.surfaces:
+        return 0.0
+    return float(np.ptp(np.sum(film.extra.surfaces, axis=0))) * film.parts.bearing.radial_clearance

@@ -22,8 +22,7 @@ from exudyn_ehd.joint.audit import surfaces
 from exudyn_ehd.joint.audit.audit import ROWS, Audit, Row, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
-from exudyn_ehd.joint.audit.numbers import TENSION
-from exudyn_ehd.joint.audit.samples import SMALLEST_GAP_SHARE, FilmState, RecordedSteps, Sources, squeeze_share
+from exudyn_ehd.joint.audit.samples import SMALLEST_GAP_SHARE, TENSION, FilmState, RecordedSteps, Sources, squeeze_share
 from exudyn_ehd.joint.audit.switches import STEEL, TYPICAL_ROUGHNESS
 from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
@@ -75,7 +74,9 @@ class BallCase(Case):
 
     model: SphericalModel  # type: ignore[assignment]
     bearing: SphericalBearing  # type: ignore[assignment]
-    axes, entries, surface, steel = 3, SIZE, "socket", "steel under the peak"
+    # of some directions the force of a ball knows little
+    axes, entries, tolerance = 3, SIZE, 3e-4
+    surface, steel = "socket", "steel under the peak"
     omitted: ClassVar[Mapping[str, str]] = {
         "elasticity": "even steel gives way: a ball's film is one of rigid surfaces, whose peak is too high and whose "
         "minimum film thickness is too small here.",
