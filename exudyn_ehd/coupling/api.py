@@ -25,7 +25,7 @@ from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.on_disk import File
 from exudyn_ehd.coupling.record.thinning import Every, Period
-from exudyn_ehd.coupling.run.solve import joints_of, register_joint
+from exudyn_ehd.coupling.run.solve import register_joint, require_new
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.compile import compile_together
@@ -227,7 +227,7 @@ def CreateLubricatedJoint(
         require_type(f"{_WHERE}.{argument}", motion, Free, Held)
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_type(f"{_WHERE}.record", record, File, Every, Period, type(None))
-    _require_new(mbs, name)
+    require_new(_WHERE, mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
         require_number(f"{_WHERE}.{argument}", size, "m", above=0.0)
@@ -299,16 +299,6 @@ def _on_its_bodies(
 
         bearing, journal = hold_fe_journal(mbs, bearing, journal, points[1], rotation)
     return bearing, housing, journal
-
-
-def _require_new(mbs: exu.MainSystem, name: str) -> None:
-    if not isinstance(name, str):
-        raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
-    if name in {joint.name for joint in joints_of(mbs)}:
-        raise InputError(
-            f"{_WHERE}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
-            "choose another."
-        )
 
 
 def _items_of_older_calls(

@@ -154,23 +154,10 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         InputError
             If nothing was recorded yet, or if the record is thinned (`Every`, `Period`).
         """
-        history = self._recorded()
-        if history.time.size == 0:
-            raise InputError(
-                f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
-            )
-        if history.is_thinned:
-            raise InputError(
-                f"LubricatedJoint.audit: joint '{self.name}' keeps {history.time.size} of {history.step_count[-1] + 1} "
-                "states, and forces that ring, heat and films that remember need every step: audit a shorter run "
-                "without Every or Period, e.g. one that goes on from ehd.SaveState in a model without them."
-            )
+        # imported here: runs need none of it
         from exudyn_ehd.joint.audit.audit import audit_record
-        from exudyn_ehd.joint.audit.samples import RecordedSteps
 
-        names = [field.name for field in dataclasses.fields(RecordedSteps)]
-        record = RecordedSteps(**{name: getattr(history, name) for name in names})
-        return audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
+        return audit_record(self.bearing, self._audited(), liner=liner, measure_time=measure_time)
 
     def AddSensor(
         self,

@@ -20,19 +20,20 @@ from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, r
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import OUTPUTS, reader
+from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.history import PACK, JointHistory, Quantity, make_row
+from exudyn_ehd.coupling.record.history import PACK, JointHistory, make_row
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.record.thinning import errors_of_ball_in
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.solve import joints_of, register_joint
+from exudyn_ehd.coupling.run.solve import register_joint, require_new
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
 from exudyn_ehd.joint.step_error import NO_BALL_ERROR, pack_of_ball
 from exudyn_ehd.pictures.records import shown
@@ -103,7 +104,7 @@ class SphericalFilmElement(FilmElement):
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
-class SphericalHistory:
+class SphericalHistory(FilmSteps):
     """Accepted steps of a ball joint, first the initial state, last the state now; socket's frame, SI units.
 
     Attributes
@@ -134,18 +135,11 @@ class SphericalHistory:
     (1, 3)
     """
 
-    time: np.ndarray
     place: np.ndarray
     velocity: np.ndarray
     angular_velocity: np.ndarray
-    force: np.ndarray
     torque: np.ndarray
     eccentricity_ratio: np.ndarray
-    minimum_gap: np.ndarray
-    peak_pressure: np.ndarray
-    power_loss: np.ndarray
-    contact_load: np.ndarray
-    step_error: np.ndarray
 
     def __repr__(self) -> str:
         if not self.time.size:
@@ -249,21 +243,11 @@ class LubricatedSphericalJoint(Joint):
         InputError
             If nothing was recorded yet.
         """
-        h = spherical_history(self._recorded())
-        if h.time.size == 0:
-            raise InputError(
-                f"LubricatedSphericalJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
-            )
         # imported here: runs need none of it
-        from exudyn_ehd.joint.audit.samples import RecordedSteps
         from exudyn_ehd.joint.spherical.audit import audit_ball
 
-        motion = np.zeros((h.time.size, SIZE))
-        motion[:, PLACE], motion[:, VELOCITY], motion[:, SPIN] = h.place, h.velocity, h.angular_velocity
-        unknown = np.full(h.time.size, np.nan)
-        names = [field.name for field in dataclasses.fields(RecordedSteps) if field.name != "motion"]
-        record = RecordedSteps(motion=motion, **{name: getattr(h, name, unknown) for name in names})
-        return audit_ball(self.bearing, [], record)
+        record = self._audited()
+        return audit_ball(self.bearing, record.motion, record)
 
     def AddSensor(
         self,
@@ -287,13 +271,8 @@ class LubricatedSphericalJoint(Joint):
         -------
         exudyn.SensorIndex
         """
-        asked = quantity.name if isinstance(quantity, exu.OutputVariableType) else quantity
-        if asked not in (*_QUANTITIES, *OUTPUTS):
-            raise InputError(
-                f"LubricatedSphericalJoint.AddSensor: quantity must be one of {', '.join((*_QUANTITIES, *OUTPUTS))}, "
-                f"got {quantity!r}."
-            )
-        title, read = reader(self.element, None, Quantity(asked) if asked in _QUANTITIES else asked)
+        where = "LubricatedSphericalJoint.AddSensor"
+        title, read = reader(self.element, None, quantity, _QUANTITIES, where)
         return self._add_sensor(title, read, fileName, name, writeToFile)
 
 
@@ -370,15 +349,14 @@ def CreateLubricatedSphericalJoint(
     assert bearing is not None
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_vector(f"{_WHERE}.color", color, 4)
-    if not isinstance(name, str) or name in {joint.name for joint in joints_of(mbs)}:
-        raise InputError(f"{_WHERE}.name must be a str that no other lubricated joint of the system has, got {name!r}.")
-    name = name or f"lubricated ball joint {mbs.systemData.NumberOfObjects()}"
+    require_new(_WHERE, mbs, name)
     with _in_the_name_of_this():
         socket, ball = resolve_pair(mbs, itemNumbers)
         rotation = joint_rotation(
             socket, () if rotationMatrixAxes is not None else axis, rotationMatrixAxes, useGlobalFrame
         )
         points = joint_points(socket, ball, position, useGlobalFrame)
+    name = name or f"lubricated ball joint {mbs.systemData.NumberOfObjects()}"
     sides = socket.side(points[0], rotation), ball.side(points[1], rotation)
     model = SphericalModel(bearing)
     _check_start(mbs, model, (socket, ball), sides)

@@ -9,7 +9,7 @@ spring-dampers have them; ``TorqueLocal`` of its ideal joints holds multipliers,
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import exudyn as exu
@@ -23,6 +23,7 @@ from exudyn_ehd.coupling.record.history import COLUMNS, WIDTH, Quantity
 from exudyn_ehd.status import InputError, Status
 
 _NO_ROW = np.full(WIDTH, np.nan)
+QUANTITIES = tuple(member.value for member in Quantity)
 
 
 class _State(NamedTuple):
@@ -67,34 +68,34 @@ OUTPUTS: dict[str, Callable[[_State], np.ndarray]] = {
 
 
 def reader(
-    element: FilmElement, constraint: Index | None, quantity: Quantity | exu.OutputVariableType | str
+    element: FilmElement,
+    constraint: Index | None,
+    quantity: Quantity | exu.OutputVariableType | str,
+    known: Sequence[str] = QUANTITIES,
+    where: str = "LubricatedJoint.AddSensor",
 ) -> tuple[str, Callable[[exu.MainSystem], np.ndarray]]:
     """Name of a quantity, and the function that reads it at a system's current state; nan without a film.
 
     Raises
     ------
     InputError
-        For what is no quantity.
+        In the name of ``where``, for what is none of the ``known`` quantities.
     """
-    known = [member.value for member in Quantity]
-    if isinstance(quantity, exu.OutputVariableType):
-        quantity = quantity.name
-    if isinstance(quantity, str) and quantity in OUTPUTS:
-        output = OUTPUTS[quantity]
-        return quantity, lambda mbs: output(_state(mbs, element, constraint))
-    if not isinstance(quantity, Quantity) and quantity not in known:
+    asked = getattr(quantity, "name" if isinstance(quantity, exu.OutputVariableType) else "value", quantity)
+    if isinstance(asked, str) and asked in OUTPUTS:
+        output = OUTPUTS[asked]
+        return asked, lambda mbs: output(_state(mbs, element, constraint))
+    if not isinstance(asked, str) or asked not in known:
         raise InputError(
-            "LubricatedJoint.AddSensor: quantity must be a member of Quantity or its name, one of "
-            f"{', '.join(known)}, or an exu.OutputVariableType or its name, one of {', '.join(OUTPUTS)}; got "
-            f"{quantity!r}."
+            f"{where}: quantity must be a member of Quantity or its name, one of {', '.join(known)}, or an "
+            f"exu.OutputVariableType or its name, one of {', '.join(OUTPUTS)}; got {quantity!r}."
         )
-    asked = Quantity(quantity)
 
     def read(mbs: exu.MainSystem) -> np.ndarray:
         row = element.row(*element.current(mbs))
-        return np.atleast_1d((_NO_ROW if row is None else row)[COLUMNS[asked.value]])
+        return np.atleast_1d((_NO_ROW if row is None else row)[COLUMNS[asked]])
 
-    return asked.value, read
+    return asked, read
 
 
 def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) -> _State:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
+from exudyn_ehd.joint.audit.samples import RecordedSteps
 from exudyn_ehd.joint.step_error import BLOCKS, LOADS
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History, shown
@@ -107,7 +108,7 @@ _NAMES = tuple(COLUMNS)[:-1]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class JointHistory(History, HistoryPictures):
+class JointHistory(RecordedSteps, History, HistoryPictures):
     """Accepted steps of one joint, first the initial state, last the state now.
 
     All vectors are in the joint frame (fixed in the housing, z = axis), force and moment act on the journal, moment
@@ -174,32 +175,21 @@ class JointHistory(History, HistoryPictures):
     eccentricity_ratio: np.ndarray
     largest_eccentricity_ratio: np.ndarray
     moment: np.ndarray
-    minimum_gap: np.ndarray
-    peak_pressure: np.ndarray
     friction_torque: np.ndarray
-    power_loss: np.ndarray
-    leakage: np.ndarray
-    contact_load: np.ndarray
     contact_torque: np.ndarray
     supply_flow: np.ndarray
-    film_temperature: np.ndarray
     peak_temperature: np.ndarray
     minimum_gap_angle: np.ndarray
     minimum_gap_z: np.ndarray
     peak_angle: np.ndarray
-    bore_displacement: np.ndarray
     stored_power: np.ndarray
-    bush_temperature: np.ndarray
-    journal_temperature: np.ndarray
     clearance: np.ndarray
     axial_position: np.ndarray
     thrust_force: np.ndarray
     thrust_minimum_gap: np.ndarray
     thrust_peak_pressure: np.ndarray
     thrust_torque: np.ndarray
-    thrust_power_loss: np.ndarray
     thrust_contact_load: np.ndarray
-    step_error: np.ndarray
     step_count: np.ndarray
     journal_radius: float
 

@@ -140,6 +140,19 @@ class Joint:
         self.element.require_items(self.mbs)
         require_end(where, self.mbs, self.element.steps.solver)
 
+    def _audited(self) -> JointHistory:
+        """Return the record for an audit, which needs steps, and all of them."""
+        history, where = self._recorded(), f"{type(self).__name__}.audit: joint '{self.name}'"
+        if history.time.size == 0:
+            raise InputError(f"{where} has no accepted steps yet; run a solver first.")
+        if history.is_thinned:
+            raise InputError(
+                f"{where} keeps {history.time.size} of {history.step_count[-1] + 1} states, and forces that ring, heat "
+                "and films that remember need every step: audit a shorter run without Every or Period, e.g. one that "
+                "goes on from ehd.SaveState in a model without them."
+            )
+        return history
+
     def forget(self) -> None:
         """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.
 

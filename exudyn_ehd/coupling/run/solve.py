@@ -48,6 +48,17 @@ def joints_of(mbs: exu.MainSystem) -> list[Joint]:
     return [joint for joint, there in zip(joints, present, strict=True) if there]
 
 
+def require_new(where: str, mbs: exu.MainSystem, name: str) -> None:
+    """Refuse, in the name of ``where``, a name that another lubricated joint of the system has."""
+    if not isinstance(name, str):
+        raise InputError(f"{where}.name must be a str, got {name!r}.")
+    if name in {joint.name for joint in joints_of(mbs)}:
+        raise InputError(
+            f"{where}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
+            "choose another."
+        )
+
+
 def require_items(mbs: exu.MainSystem) -> None:
     """Refuse a system of which items were deleted that a joint was made on."""
     for joint in joints_of(mbs):

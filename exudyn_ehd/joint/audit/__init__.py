@@ -2,14 +2,13 @@
 
 Module map
 ----------
-audit        table of findings
-findings     what is said about an effect; the limits from which on each matters
-indicators   dimensionless numbers of the worst films, one per effect; those of films on the end faces
-surfaces     those of elasticity, profile, roughness and contact
-oil          those of its viscosity
-changes      films with and without an effect at the same load
+audit        table of findings, the rows that it goes through
+findings     verdict about an effect; the limits from which on each matters
+case         the audited films, to compare with those of another description at the same load
+samples      recorded steps, their worst states, numbers of motions and films
+surfaces     rows of elasticity, profile, roughness, contact and wear
+oil          rows of its viscosity and heat
+assumptions  rows of the flow, grid, time step and ringing
 switches     effects added to a description, with typical numbers, and taken away
-assumptions  the same of laminar flow, grid and time step
-samples      states of a run that the audit looks at
 ringing      forces that alternate from step to step
 """

@@ -1,19 +1,31 @@
-"""Indicators of the flow and of numbers: vortices, turbulence, inertia, grid, time step, and its ringing."""
+"""Rows of the flow and of numbers: squeeze, cavities, vortices, turbulence, inertia; grid, time step, ringing."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
-from exudyn_ehd.joint.audit.changes import MATTERS
-from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding, judged
+from exudyn_ehd.joint.audit.case import MATTERS, Case
+from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.switches import laminar, on_film, refined, turbulent
+from exudyn_ehd.joint.audit.samples import squeeze_rate
+from exudyn_ehd.joint.audit.switches import (
+    cavity_pressure,
+    laminar,
+    mass_conserving,
+    refined,
+    squeezing,
+    swift_stieber,
+    turbulent,
+    two_dimensional,
+)
+from exudyn_ehd.joint.balance.resolution import Resolution
 from exudyn_ehd.joint.step_error import enough_steps
 
 # Grids this many times finer than needed cost time for nothing.
@@ -25,22 +37,93 @@ ROWS = 3.0
 # Film thicknesses across the last interval along z: the pressure there rises by int dz / h^3, which the vertices at
 # its ends know to 2 % of the film thickness on the end up to here.
 NARROWS = 1.6
-INERTIA = "rho w c^2 / mu, w of spin or squeeze"
+# Option, multiple and least number of a grid that is advised.
+SIZES = {"grid around": ("n_theta", 8, 48), "grid along": ("n_z", 2, 6)}
 
 
-def reynolds(case: Case) -> float:
+def misalignment(case: Case) -> Finding:
+    """Tilt of the journal, which every film but the impedance map includes."""
+    is_map = isinstance(case.bearing.film, ImpedanceMap)
+    return judged(
+        case,
+        "misalignment",
+        "share of the mid-plane gap lost at an end",
+        case.numbers["tilt_loss"].max(),
+        not is_map,
+        two_dimensional if is_map else None,
+        mattering="use film=FiniteLength(...), which follows the tilt.",
+    )
+
+
+def squeeze(case: Case) -> Finding:
+    """Squeeze against wedge."""
+    is_on = case.bearing.squeeze
+    return judged(
+        case,
+        "squeeze",
+        "v / (v + e omega / 2)",
+        case.numbers["squeeze_share"].max(),
+        is_on,
+        None if is_on else squeezing,
+        mattering="use squeeze=True: without it the film has no damping.",
+    )
+
+
+def cavitation(case: Case) -> Finding:
+    """Cavitated share of the surface, or tension in a film that never breaks."""
+    if not np.isinf(case.bearing.cavitation.cavity_pressure):
+        return judged(case, "cavitation", *_cavitated(case), True)
+    return judged(
+        case,
+        "cavitation",
+        f"share of the {case.surface} below -1e5 Pa",
+        case.numbers["tension"].max(),
+        False,
+        swift_stieber,
+        mattering="oil does not carry such tension: cavitation=SwiftStieber().",
+    )
+
+
+def _cavitated(case: Case) -> tuple[str, float]:
+    return f"cavitated share of the {case.surface}", case.numbers["cavitated"].max()
+
+
+def rupture(case: Case) -> Finding | None:
+    """Half Sommerfeld's rupture against Reynolds' condition."""
+    if not case.bearing.cavitation.clips:
+        return None
+    advice = "the film breaks where its pressure still falls: cavitation=SwiftStieber() keeps the flow there."
+    return judged(case, "rupture", *_cavitated(case), False, swift_stieber, mattering=advice)
+
+
+def mass_conservation(case: Case) -> Finding | None:
+    """Oil content and pressure of cavities: against a film whose cavities keep their oil."""
+    closure, effect = case.bearing.cavitation, "mass conservation"
+    if np.isinf(closure.cavity_pressure):
+        return None
+    if closure.conserves_mass:
+        needless = f"cavities hardly matter: cavitation=SwiftStieber(cavity_pressure={closure.cavity_pressure:g})."
+        return judged(case, effect, *_cavitated(case), True, swift_stieber, needless=needless)
+    pressure = cavity_pressure(case.bearing)
+    advice = (
+        f"cavities keep their oil: cavitation=ElrodAdams(cavity_pressure={pressure:g}), or at the pressure of yours."
+    )
+    return judged(case, effect, *_cavitated(case), False, mass_conserving, mattering=advice)
+
+
+def _reynolds(case: Case) -> float:
     """Largest Reynolds number of the Couette flow."""
-    b = case.bearing
-    return max(b.lubricant.density * s.speed * b.radial_clearance / s.viscosity for s in case.samples)
+    b, numbers = case.bearing, case.numbers
+    return float((b.lubricant.density * numbers["speed"] * b.radial_clearance / numbers["viscosity"]).max())
 
 
 def vortices(case: Case) -> Finding:
     """Taylor number."""
-    value = reynolds(case) * math.sqrt(case.bearing.clearance_ratio)
-    return finding(
+    return judged(
+        case,
         "Taylor vortices",
         "Re sqrt(c / R)",
-        value,
+        _reynolds(case) * math.sqrt(case.bearing.clearance_ratio),
         None if case.bearing.turbulence is None else True,
         mattering="beyond the laminar film: friction is too low here; see the row on turbulence.",
     )
@@ -48,14 +131,14 @@ def vortices(case: Case) -> Finding:
 
 def turbulence(case: Case) -> Finding:
     """Reynolds number of the Couette flow."""
-    on = case.bearing.turbulence is not None
+    is_on = case.bearing.turbulence is not None
     return judged(
         case,
         "turbulence",
         "Re = rho U c / mu",
-        reynolds(case),
-        on,
-        laminar if on else turbulent,
+        _reynolds(case),
+        is_on,
+        laminar if is_on else turbulent,
         mattering="beyond the laminar film, friction and load are too low here: turbulence=NgPan().",
         needless="the film is laminar: turbulence=None.",
     )
@@ -63,75 +146,80 @@ def turbulence(case: Case) -> Finding:
 
 def inertia(case: Case) -> Finding:
     """Reynolds number of the rate at which the flow changes: by the spin in the gap, or by the squeeze."""
-    b, r, samples = case.bearing, case.record, case.samples
-    run = None if r is None else case.films.squeeze_rate(r.motion, r.time)
-    rates = [max(s.speed / b.journal_radius, s.squeeze_rate if run is None else run) for s in samples]
-    oscillating = max(rate / s.viscosity for rate, s in zip(rates, samples, strict=True))
-    return finding(
+    b, r, numbers = case.bearing, case.record, case.numbers
+    by_squeeze = numbers["squeeze_rate"]
+    if r is not None:
+        by_squeeze = np.array(squeeze_rate(case.sources(r.motion), b.radial_clearance, r.time))
+    rate = np.maximum(numbers["speed"] / b.journal_radius, by_squeeze)
+    return judged(
+        case,
         "fluid inertia",
-        INERTIA,
-        b.lubricant.density * b.radial_clearance**2 * oscillating,
+        "rho w c^2 / mu, w of spin or squeeze",
+        b.lubricant.density * b.radial_clearance**2 * (rate / numbers["viscosity"]).max(),
         None,
         mattering="the Reynolds equation leaves the fluid's inertia out: take forces as estimates.",
     )
 
 
-def _grid(case: Case, name: str, effect: str) -> Finding | None:
-    film, along = case.bearing.sized_film, name == "n_z"
-    if isinstance(film, ImpedanceMap):
-        return None
-    limit, size, peaks = LIMITS[effect], getattr(film, name), [s.resolution for s in case.samples]
-    if along:
-        worst = max(peaks, key=lambda peak: peak.narrowing)
-        value, indicator = (
-            worst.narrowing,
-            f"growth of the film within an interval of its end, n_z = {size}",
-        )
-        across, needed = min(peak.rows for peak in peaks), ROWS
-        narrows = max(peak.growth for peak in peaks) > NARROWS
-    else:
-        worst = min(peaks, key=lambda peak: peak.columns)
-        value, indicator = worst.columns, f"intervals across the peak at half its height, n_theta = {size}"
-        across, needed, narrows = value, limit.value, False
-    sizes = {"n_theta": film.n_theta, "n_z": film.n_z}
-    default = replace(case.bearing, film=FiniteLength()).sized_film
-    plain = not narrows and across > SURELY_FINE * needed and size >= getattr(default, name)
-    change = None if plain else case.films.change(refined(**sizes | {name: 2 * size}))
-    found = replace(finding(effect, indicator, value, None), change=change)
-    coarse = found.matters
-    if change is not None and change.found and change.size > MATTERS:
-        found = replace(found, matters=True)
-    unit = 8 if name == "n_theta" else 2
-    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(across, 0.25)))
-    if found.matters:
-        wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
-        cause = "film narrows too fast towards its ends" if narrows else "pressure peak is too narrow"
-        if coarse and worst.wanted is not None:
-            # the grid that `steady` and runs name
-            return replace(found, advice=f"the {cause} for the grid: {worst.wanted!r}.", remedy=on_film(worst.wanted))
-        advice = f"the {cause} for the grid: {name}={wanted}."
-        return replace(found, advice=advice, remedy=refined(**sizes | {name: wanted}))
-    wanted = max(wanted, 48 if name == "n_theta" else 6)
-    if across > TOO_FINE * needed and wanted < size:
-        coarser = refined(**sizes | {name: wanted})
-        # a flexible bore constricts its film within less than the pressure's peak
-        loss = None if case.bearing.bush is None else case.films.change(coarser)
-        if loss is None or loss.size <= MATTERS:
-            advice = f"finer than the pressure needs: {name}={wanted} would do."
-            return replace(found, unneeded=True, advice=advice, remedy=coarser)
-    return found
-
-
 def grid_columns(case: Case) -> Finding | None:
     """Columns across the pressure peak; an impedance map has its error sampled when it is built."""
-    return _grid(case, "n_theta", "grid around")
+    worst = min(case.resolutions, key=lambda seen: seen.columns)
+    text, across = "intervals across the peak at half its height", worst.columns
+    return _grid(case, "grid around", text, across, worst, across, LIMITS["grid around"].value)
 
 
 def grid_rows(case: Case) -> Finding | None:
     """Rows next to the end where the pressure peaks; the slices of a long bearing are no grid."""
     if isinstance(case.bearing.film, LongBearing):
         return None
-    return _grid(case, "n_z", "grid along")
+    worst, text = (
+        max(case.resolutions, key=lambda seen: seen.narrowing),
+        "growth of the film within an interval of its end",
+    )
+    across, narrows = (
+        min(seen.rows for seen in case.resolutions),
+        max(seen.growth for seen in case.resolutions) > NARROWS,
+    )
+    return _grid(case, "grid along", text, worst.narrowing, worst, across, ROWS, narrows)
+
+
+def _grid(
+    case: Case,
+    effect: str,
+    indicator: str,
+    value: float,
+    worst: Resolution,
+    across: float,
+    needed: float,
+    narrows: bool = False,
+) -> Finding | None:
+    """Intervals ``across`` the peak against those that are ``needed``, and what twice as many change."""
+    film, (name, unit, fewest) = case.bearing.sized_film, SIZES[effect]
+    if isinstance(film, ImpedanceMap):
+        return None
+    size, sizes = getattr(film, name), {"n_theta": film.n_theta, "n_z": film.n_z}
+    default = getattr(replace(case.bearing, film=FiniteLength()).sized_film, name)
+    is_fine = across > SURELY_FINE * needed and size >= default and not narrows
+    change = None if is_fine else case.change(refined(**sizes | {name: 2 * size}))
+    found = replace(judged(case, effect, f"{indicator}, {name} = {size}", value, None), change=change)
+    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(across, 0.25)))
+    if found.matters or (change is not None and change.found and change.size > MATTERS):
+        cause = "film narrows too fast towards its ends" if narrows else "pressure peak is too narrow"
+        wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
+        grid, remedy = f"{name}={wanted}", refined(**sizes | {name: wanted})
+        if found.matters and worst.wanted is not None:
+            # the grid that `steady` and runs name
+            grid, remedy = repr(worst.wanted), partial(replace, film=worst.wanted)
+        return replace(found, matters=True, advice=f"the {cause} for the grid: {grid}.", remedy=remedy)
+    wanted = max(wanted, fewest)
+    if across > TOO_FINE * needed and wanted < size:
+        coarser = refined(**sizes | {name: wanted})
+        # a flexible bore constricts its film within less than the pressure's peak
+        loss = None if case.bearing.bush is None else case.change(coarser)
+        if loss is None or loss.size <= MATTERS:
+            advice = f"finer than the pressure needs: {name}={wanted} would do."
+            return replace(found, unneeded=True, advice=advice, remedy=coarser)
+    return found
 
 
 def supply_resolution(case: Case) -> Finding | None:
@@ -142,14 +230,14 @@ def supply_resolution(case: Case) -> Finding | None:
         return None
     widths = [a.diameter / b.journal_radius if isinstance(a, Hole) else a.width_angle for a in areas]
     n_theta, n_z = 2 * b.columns, 2 * film.n_z
-    return finding(
+    return judged(
+        case,
         "supply resolution",
         "intervals around on the narrowest area of supply",
         min(widths) * b.columns / (2.0 * math.pi),
         None,
+        refined(n_theta, n_z),
         mattering=f"the areas of supply are coarse on this grid: n_theta={n_theta}, n_z={n_z}.",
-        change=case.films.change(refined(n_theta, n_z)),
-        switch=refined(n_theta, n_z),
     )
 
 
@@ -158,11 +246,12 @@ def time_step(case: Case) -> Finding | None:
     record = case.record
     if record is None or not np.any(np.isfinite(record.step_error)):
         return None
-    needed = enough_steps(record.time, case.films.spin(record.motion), record.step_error)
-    return finding(
+    needed = enough_steps(record.time, case.turns(record.motion), record.step_error)
+    return judged(
+        case,
         "time step",
         "estimated error of the gap / minimum film thickness",
-        float(np.nanmax(record.step_error)),
+        np.nanmax(record.step_error),
         None,
         mattering=f"the steps are too coarse for the film: take {needed}.",
     )
@@ -173,18 +262,15 @@ def ringing(case: Case) -> Finding | None:
     record, b = case.record, case.bearing
     if record is None:
         return None
-    watch = watched(record.time, record.force[:, : case.films.axes], 2.0 * b.journal_radius * b.length)
-    when = (
-        ""
-        if watch.most == 0
-        else f", at {watch.first:.4g} s"
-        if watch.first == watch.last
-        else f", {watch.first:.4g} to {watch.last:.4g} s"
-    )
-    return finding(
+    watch = watched(record.time, record.force[:, : case.axes], 2.0 * b.journal_radius * b.length)
+    when = "" if watch.most == 0 else f", at {watch.first:.4g} s"
+    if watch.first < watch.last:
+        when = f", {watch.first:.4g} to {watch.last:.4g} s"
+    return judged(
+        case,
         "ringing",
         f"times within {WINDOW} steps that the force is thrown into alternation{when}",
-        float(watch.most),
+        watch.most,
         None,
         mattering="forces and pressures jump from step to step: run by ehd.SolveDynamic, with more steps until none is "
         "halved, or with a smaller spectral radius.",

@@ -73,10 +73,9 @@ class RingingWatch:
         """Forget all steps."""
         self.most, self.rings = 0, False
         self.first = self.last = math.nan
-        # time and force of the last steps; d with its size; sizes before those
+        # time and force of the last steps; the last three d and five before, with their sizes
         self._states: deque[tuple[float, float, float, float]] = deque(maxlen=4)
-        self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 3, maxlen=3)
-        self._earlier: deque[float] = deque([0.0] * 5, maxlen=5)
+        self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 8, maxlen=8)
         self._bursts: deque[int] = deque()
         self._throws: deque[int] = deque([-WINDOW] * MOST_THROWS, maxlen=MOST_THROWS)
         self.worst = (0.0, 0.0)
@@ -110,7 +109,6 @@ class RingingWatch:
         (t_2, x_2, y_2, z_2), (t_1, x_1, y_1, z_1) = states[-3], states[-2]
         share = (t_1 - t_2) / (time - t_2)
         dx, dy, dz = x_1 - x_2 - share * (x - x_2), y_1 - y_2 - share * (y - y_2), z_1 - z_2 - share * (z - z_2)
-        self._earlier.append(self._bends[0][3])
         self._bends.append((dx, dy, dz, math.hypot(dx, dy, dz)))
         force = math.hypot(x_1, y_1, z_1)
         if force > self.heavy and force > STRONG_SHARE * self._largest:
@@ -124,7 +122,7 @@ class RingingWatch:
         return self._is_burst() and self._count(t_1)
 
     def _zigzag(self) -> bool:
-        (ax, ay, az, a), (bx, by, bz, b), (cx, cy, cz, c) = self._bends
+        (ax, ay, az, a), (bx, by, bz, b), (cx, cy, cz, c) = list(self._bends)[-3:]
         if not (b > max(self.smallest, LARGEST_SHARE * self._largest) and a > EVEN * b and c > EVEN * b):
             return False
         if ax * bx + ay * by + az * bz > OPPOSITE * a * b or bx * cx + by * cy + bz * cz > OPPOSITE * b * c:
@@ -135,9 +133,10 @@ class RingingWatch:
     def _is_burst(self) -> bool:
         if self._bursts and self._step - self._bursts[-1] < APART:
             return False
-        strength = max(bend[3] for bend in self._bends)
+        sizes = [bend[3] for bend in self._bends]
+        strength = max(sizes[-3:])
         lasting = self._zigzags >= LASTING and strength > KEPT * self._strength
-        if not (lasting or strength > STRONGER * max(self._earlier)):
+        if not (lasting or strength > STRONGER * max(sizes[:5])):
             return False
         self._strength = strength
         return True

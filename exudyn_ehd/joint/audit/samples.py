@@ -1,4 +1,4 @@
-"""Data of an audit: recorded steps of a joint, states to evaluate again, and the numbers of one film."""
+"""Data of an audit: recorded steps of a joint, states to evaluate again, numbers of a motion and of a film."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.balance.resolution import Resolution, resolution
+from exudyn_ehd.joint.audit.switches import STEEL
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import Status
@@ -22,56 +22,62 @@ REPLAYED, A_TURN, TURNS = 60, 80, (3.0, 1.0)
 AMPLITUDE = 0.1
 # Gauge pressure below which oil at ambient pressure would have to carry tension, Pa.
 TENSION = -1e5
+# Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
+RING_COMPLIANCE = 0.7
+# Gap of touching surfaces against which deflections count, share of the clearance.
+SMALLEST_GAP_SHARE = 1e-3
+
+Sources = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Sources of Reynolds' equation by motions (n, k), at both ends of a journal or in the centre of a ball: position and
+velocity of the axis (e, n, k), m and m/s, and amplitude (e, n) of the sliding's source, m/s."""
 
 
-@dataclass(frozen=True, eq=False)
-class RecordedSteps:
-    """Accepted steps of a joint, as arrays over the steps; what a film model does not report is nan.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FilmSteps:
+    """Accepted steps of a joint with a film, as arrays over the steps; what a film model does not report is nan.
 
     Attributes
     ----------
     time : (n,) array
         s.
-    motion : (n, 10) array
-        As in `exudyn_ehd.joint.solved_film`.
     force : (n, 3) array
         N, on the journal.
-    minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature : (n,) arrays
-        m, Pa, W, m3/s, N, K.
-    bush_temperature, journal_temperature, bore_displacement : (n,) arrays
-        K, K, m.
+    minimum_gap, peak_pressure, power_loss, contact_load : (n,) arrays
+        m, Pa, W, N.
     step_error : (n,) array
         Estimated error of the gap that the time steps have made, over the minimum film thickness.
-    axial_position, thrust_power_loss : (n,) arrays
-        m, W, of films on the end faces.
     """
 
     time: np.ndarray
-    motion: np.ndarray
     force: np.ndarray
     minimum_gap: np.ndarray
     peak_pressure: np.ndarray
     power_loss: np.ndarray
-    leakage: np.ndarray
     contact_load: np.ndarray
+    step_error: np.ndarray
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RecordedSteps(FilmSteps):
+    """Accepted steps of a joint that an audit looks at.
+
+    Attributes
+    ----------
+    motion : (n, 10) array
+        As in `exudyn_ehd.joint.solved_film`.
+    leakage, film_temperature, bush_temperature, journal_temperature, bore_displacement : (n,) arrays
+        m3/s, K, K, K, m.
+    thrust_power_loss : (n,) array
+        W, of films on the end faces.
+    """
+
+    motion: np.ndarray
+    leakage: np.ndarray
     film_temperature: np.ndarray
     bush_temperature: np.ndarray
     journal_temperature: np.ndarray
     bore_displacement: np.ndarray
-    step_error: np.ndarray
-    axial_position: np.ndarray
     thrust_power_loss: np.ndarray
-
-    def worst(self, bearing: JournalBearing) -> list[int]:
-        """Steps, sorted, in which something is worst.
-
-        Minimum film thickness, highest pressure, loss, contact load and speed, largest tilt and deflection, strongest
-        squeeze.
-        """
-        tilt = np.array([tilt_loss(bearing, m) for m in self.motion])
-        squeeze = np.array([squeeze_share(bearing, m) for m in self.motion])
-        deflected = self.bore_displacement / np.maximum(self.minimum_gap, 1e-3 * bearing.radial_clearance)
-        return self.extremes(tilt, squeeze, np.abs(self.motion[:, 8]), deflected)
 
     def extremes(self, *more: np.ndarray) -> list[int]:
         """Steps, sorted, with the thinnest film, the highest pressure, loss and contact load, and the most of others.
@@ -118,7 +124,7 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
     turned = np.concatenate([[0.0], np.cumsum(np.abs(turns))])
     states: list[FilmState] = []
     reached, history, step = -1, None, 0.0
-    for k in record.worst(model.bearing):
+    for k in worst_steps(model.bearing, record):
         before = int(np.searchsorted(turned, turned[k] - TURNS[flexible] * 2.0 * math.pi))
         first = max(0, min(k - REPLAYED, before)) if model.remembers else k
         if reached < first:
@@ -166,103 +172,117 @@ def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> Histor
     return replace(history, temperature=film)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Sample:
-    """Numbers of one evaluated film.
+def worst_steps(bearing: JournalBearing, record: RecordedSteps) -> list[int]:
+    """Steps, sorted, in which something is worst.
 
-    Attributes
+    Minimum film thickness, highest pressure, loss, contact load and speed, largest tilt and deflection, strongest
+    squeeze.
+    """
+    deflected = record.bore_displacement / np.maximum(record.minimum_gap, SMALLEST_GAP_SHARE * bearing.radial_clearance)
+    squeeze = squeeze_share(sources(bearing, record.motion))
+    return record.extremes(tilt_loss(bearing, record.motion), squeeze, np.abs(record.motion[:, 8]), deflected)
+
+
+def sources(bearing: JournalBearing, motions: np.ndarray) -> Sources:
+    """Sources of Reynolds' equation by motions (n, >= 9), see `Sources`."""
+    ends = 0.5 * bearing.length * np.array([[[-1.0]], [[1.0]]])
+    place, velocity = (motions[:, k : k + 2] + ends * motions[:, k + 2 : k + 4] for k in (0, 4))
+    return place, velocity, 0.5 * np.abs(motions[:, 8]) * np.linalg.norm(place, axis=2)
+
+
+def tilt_loss(bearing: JournalBearing, motions: np.ndarray) -> np.ndarray:
+    """Share (n,) of the smallest mid-plane gap that is lost at an end of a tilted journal, 0 to 1 (rigid cylinders)."""
+    c = bearing.radial_clearance
+    middle = c - np.linalg.norm(motions[:, :2], axis=1)
+    end = c - np.linalg.norm(sources(bearing, motions)[0], axis=2).max(axis=0)
+    return np.clip((middle - end) / np.maximum(middle, 1e-3 * c), 0.0, 1.0)
+
+
+def squeeze_share(by_motion: Sources) -> np.ndarray:
+    """Share (n,) of the squeeze term among the sources of the Reynolds equation, 0 to 1: v / (v + e |omega| / 2).
+
+    v is the velocity and e the eccentricity of the journal's axis, each the largest along the bearing; the amplitudes
+    of dh/dt and (omega / 2) dh/dtheta. Of a ball v / (v + |e x w| / 2).
+    """
+    squeeze, wedge = np.linalg.norm(by_motion[1], axis=2).max(axis=0), by_motion[2].max(axis=0)
+    return squeeze / np.maximum(squeeze + wedge, 1e-300)
+
+
+def squeeze_rate(by_motion: Sources, clearance: float, time: np.ndarray | None = None) -> float:
+    """Acceleration a of the squeeze over the sources of the Reynolds equation, 1/s: a / (v + wedge), the larger end's.
+
+    Flow that swings at w between plates takes the pressure ``12 mu q / h^3 (1 + i Re / 10)``, Re = rho w h^2 / mu, up
+    to its first order in Re. So rho c^2 / mu times this rate is the Re of the squeeze, times its share of the sources
+    where the surfaces slide as well.
+
+    Parameters
     ----------
-    speed : float
-        Sliding speed of the surfaces, m/s.
-    minimum_gap, peak_pressure, load : float
-        m, Pa, N (film and contact).
-    contact_load, power_loss, flow : float
-        N, W, m3/s (out of the ends or out of the supply, the larger one; of a ball the oil that it moves).
-    viscosity : float
-        Smallest in the film at ambient pressure, Pa s.
-    rise : float
-        Largest temperature of the film above that of the supply, K; 0 for an isothermal film.
-    to_bush, to_journal : float
-        Shares of the film's heat that walls take up.
-    cavitated, tension : float
-        Shares of the bore or socket.
-    tilt_loss, squeeze_share, squeeze_rate : float
-        See the functions of these names.
-    deflection, shape : float
-        Largest deflection of a liner and largest departure of the surfaces from cylinders, m.
-    resolution : Resolution
-        Resolution of the pressure peak by the grid.
+    by_motion : Sources
+    clearance : float
+        m.
+    time : (n,) array or None
+        s, of the steps of a run, whose means count: a is the difference of the velocities before and after a step,
+        which an alternation from step to step leaves alone. None: a single state, a = v^2 / e of a circular whirl about
+        the centre.
     """
-
-    speed: float
-    minimum_gap: float
-    peak_pressure: float
-    load: float
-    contact_load: float
-    power_loss: float
-    flow: float
-    viscosity: float
-    cavitated: float
-    tension: float
-    squeeze_share: float
-    squeeze_rate: float
-    deflection: float
-    resolution: Resolution
-    rise: float = 0.0
-    to_bush: float = 0.0
-    to_journal: float = 0.0
-    tilt_loss: float = 0.0
-    shape: float = 0.0
+    place, velocity, wedge = by_motion
+    strength = np.linalg.norm(velocity, axis=2) + wedge
+    if time is not None and time.size > 2:
+        accelerations = np.linalg.norm(velocity[:, 2:] - velocity[:, :-2], axis=2) / (time[2:] - time[:-2])
+        means = [[time_mean(time[1:-1], end) for end in values] for values in (accelerations, strength[:, 1:-1])]
+        return max(a / whole if whole > 0.0 else 0.0 for a, whole in zip(*means, strict=True))
+    amplitude = np.maximum(np.linalg.norm(place, axis=2), AMPLITUDE * clearance)
+    accelerations = np.sum(velocity**2, axis=2) / amplitude
+    return float(np.max(accelerations / np.maximum(strength, 1e-300)))
 
 
-def take_sample(model: BearingModel, state: FilmState, record: RecordedSteps | None) -> Sample | None:
-    """Evaluate a state and read its numbers; None if there is no film.
+def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float]:
+    """Numbers of a film, besides those that its quantities and its motion give.
 
-    On a flexible bore, which settles here, a record has the numbers of the bore in motion.
+    Returns
+    -------
+    dict
+        ``speed`` (sliding speed of the surfaces, m/s), ``minimum_gap`` (m), ``flow``
+        (m3/s, out of the ends or out of the supply, the larger one), ``viscosity`` (smallest in the film at ambient
+        pressure, Pa s), ``rise`` (K, largest temperature of the film above that of the supply; 0 for an isothermal
+        film), ``to_bush`` and ``to_journal`` (shares of the film's heat that walls take up), ``cavitated`` and
+        ``tension`` (shares of the bore), ``tilt_loss``, ``deflection`` and ``shape`` (largest deflection of a flexible
+        surface and largest departure of the surfaces from cylinders, m), ``compliance`` (deflection of steel around the
+        film over the peak pressure, m/Pa).
     """
-    evaluation = state.evaluate(model)
     film = evaluation.film
-    if film is None:
-        return None
+    assert film is not None
     q, s, g, b, w = evaluation.quantities(), film.solver, film.grid, model.bearing, film.journal
-    pressure = film.oil.P * film.scales.pressure
     weight = g.weight / g.weight.sum()
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-    thermal = b.thermal
     to_bush, to_journal = _wall_shares(model, film)
-    sample = Sample(
-        speed=math.hypot(g.reference_length * w.omega, w.axial_speed),
-        minimum_gap=max(q["minimum_gap"], 1e-6 * b.radial_clearance),
-        peak_pressure=q["peak_pressure"],
-        load=math.hypot(evaluation.wrench[0], evaluation.wrench[1]),
-        contact_load=q["contact_load"],
-        power_loss=q["power_loss"],
-        flow=max(q["leakage"], q.get("supply_flow", 0.0), 0.0),
-        viscosity=_smallest_viscosity(film),
-        rise=0.0 if thermal is None else q["peak_temperature"] - thermal.supply_temperature,
-        to_bush=to_bush,
-        to_journal=to_journal,
-        cavitated=float(np.sum(weight[~unbroken])),
-        tension=float(np.sum(weight[pressure < TENSION])),
-        tilt_loss=tilt_loss(b, w.motion),
-        squeeze_share=squeeze_share(b, w.motion),
-        squeeze_rate=squeeze_rate(b, w.motion[None]),
-        deflection=q.get("bore_displacement", 0.0),
-        shape=_shape(film),
-        resolution=resolution(film),
-    )
-    if record is None or state.recorded is None or not model.flexible:
-        return sample
-    k = state.recorded
-    return replace(
-        sample,
-        minimum_gap=max(float(record.minimum_gap[k]), 1e-9 * float(np.max(record.minimum_gap))),
-        peak_pressure=float(record.peak_pressure[k]),
-        load=math.hypot(record.force[k, 0], record.force[k, 1]),
-        contact_load=float(record.contact_load[k]),
-        power_loss=float(record.power_loss[k]),
-        deflection=float(record.bore_displacement[k]),
-    )
+    return {
+        "speed": math.hypot(g.reference_length * w.omega, w.axial_speed),
+        "minimum_gap": max(q["minimum_gap"], 1e-6 * b.radial_clearance),
+        "flow": max(q["leakage"], q.get("supply_flow", 0.0), 0.0),
+        "viscosity": _smallest_viscosity(film),
+        "rise": 0.0 if b.thermal is None else q["peak_temperature"] - b.thermal.supply_temperature,
+        "to_bush": to_bush,
+        "to_journal": to_journal,
+        "cavitated": float(np.sum(weight[~unbroken])),
+        "tension": float(np.sum(weight[film.oil.P * film.scales.pressure < TENSION])),
+        "tilt_loss": float(tilt_loss(b, w.motion[None])[0]),
+        "deflection": q.get("bore_displacement", 0.0),
+        "compliance": RING_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"],
+        "shape": _shape(film),
+    }
+
+
+def recorded_numbers(record: RecordedSteps, k: int) -> dict[str, float]:
+    """Numbers of a recorded step in place of those of its film, whose bore is settled and not in motion."""
+    return {
+        "minimum_gap": max(float(record.minimum_gap[k]), 1e-9 * float(np.max(record.minimum_gap))),
+        "peak_pressure": float(record.peak_pressure[k]),
+        "load": math.hypot(record.force[k, 0], record.force[k, 1]),
+        "contact_load": float(record.contact_load[k]),
+        "power_loss": float(record.power_loss[k]),
+        "deflection": float(record.bore_displacement[k]),
+    }
 
 
 def _wall_shares(model: BearingModel, film: SolvedFilm) -> tuple[float, float]:
@@ -280,74 +300,6 @@ def _smallest_viscosity(film: SolvedFilm) -> float:
     b, ratio = film.parts.bearing, film.oil.ratio
     viscosity = film.scales.pressure * b.radial_clearance**2 / (12.0 * b.journal_radius**2)
     return viscosity * (1.0 if ratio is None else min(1.0, float(ratio.min())))
-
-
-def tilt_loss(bearing: JournalBearing, motion: np.ndarray) -> float:
-    """Share of the smallest mid-plane gap that is lost at an end of a tilted journal, 0 to 1 (rigid cylinders)."""
-    x, y, bx, by = motion[:4].tolist()
-    c, half = bearing.radial_clearance, 0.5 * bearing.length
-    middle = c - math.hypot(x, y)
-    end = c - max(math.hypot(x + s * half * bx, y + s * half * by) for s in (-1.0, 1.0))
-    if end >= middle:
-        return 0.0
-    return min(1.0, (middle - end) / max(middle, 1e-3 * c))
-
-
-def squeeze_share(bearing: JournalBearing, motion: np.ndarray) -> float:
-    """Share of the squeeze term among the sources of the Reynolds equation, 0 to 1: v / (v + e |omega| / 2).
-
-    v is the velocity and e the eccentricity of the journal's axis, each the largest along the bearing; the amplitudes
-    of dh/dt and (omega / 2) dh/dtheta.
-    """
-    half = 0.5 * bearing.length
-    e, v = (
-        max(math.hypot(a[0] + s * half * a[2], a[1] + s * half * a[3]) for s in (-1.0, 1.0))
-        for a in (motion[:4].tolist(), motion[4:8].tolist())
-    )
-    total = v + 0.5 * abs(float(motion[8])) * e
-    return v / total if total > 0.0 else 0.0
-
-
-def squeeze_rate(bearing: JournalBearing, motions: np.ndarray, time: np.ndarray | None = None) -> float:
-    """`rate_of_squeeze`, 1/s, of motions (n, 10), at the end of the bearing where it is the larger one."""
-    rates = []
-    for half in (-0.5 * bearing.length, 0.5 * bearing.length):
-        place, velocity = (motions[:, k : k + 2] + half * motions[:, k + 2 : k + 4] for k in (0, 4))
-        wedge = 0.5 * np.abs(motions[:, 8]) * np.linalg.norm(place, axis=1)
-        rates.append(rate_of_squeeze(place, velocity, wedge, bearing.radial_clearance, time))
-    return max(rates)
-
-
-def rate_of_squeeze(
-    place: np.ndarray, velocity: np.ndarray, wedge: np.ndarray, clearance: float, time: np.ndarray | None
-) -> float:
-    """Acceleration a of the squeeze over the sources of the Reynolds equation, 1/s: a / (v + wedge).
-
-    Flow that swings at w between plates takes the pressure ``12 mu q / h^3 (1 + i Re / 10)``, Re = rho w h^2 / mu, up
-    to its first order in Re. So rho c^2 / mu times this rate is the Re of the squeeze, times its share of the sources
-    where the surfaces slide as well.
-
-    Parameters
-    ----------
-    place, velocity : (n, k) arrays
-        Position and velocity of the axis or centre, m and m/s.
-    wedge : (n,) array
-        Amplitude of the sliding's source, m/s.
-    clearance : float
-        m.
-    time : (n,) array or None
-        s, of the steps of a run, whose means count: a is the difference of the velocities before and after a step,
-        which an alternation from step to step leaves alone. None: a single state, a = v^2 / e of a circular whirl about
-        the centre.
-    """
-    sources = np.linalg.norm(velocity, axis=1) + wedge
-    if time is not None and time.size > 2:
-        accelerations = np.linalg.norm(velocity[2:] - velocity[:-2], axis=1) / (time[2:] - time[:-2])
-        whole = time_mean(time[1:-1], sources[1:-1])
-        return time_mean(time[1:-1], accelerations) / whole if whole > 0.0 else 0.0
-    amplitude = np.maximum(np.linalg.norm(place, axis=1), AMPLITUDE * clearance)
-    accelerations = np.sum(velocity**2, axis=1) / amplitude
-    return float(np.max(accelerations / np.maximum(sources, 1e-300)))
 
 
 def _shape(film: SolvedFilm) -> float:

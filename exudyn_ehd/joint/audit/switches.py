@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from scipy.special import lambertw
+
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
@@ -129,12 +131,9 @@ def isothermal(bearing: JournalBearing) -> JournalBearing:
 def warmer(rise: float, coefficient: float) -> Switch:
     """Return a switch to the viscosity after a temperature rise, K, that the oil's own viscosity would give.
 
-    The heat is proportional to the viscosity: r = rise exp(-coefficient r).
+    The heat is proportional to the viscosity: coefficient r = coefficient rise exp(-coefficient r).
     """
-    r = 0.0
-    for _ in range(40):
-        r = 0.5 * (r + rise * math.exp(-coefficient * r))
-    return partial(_thinner, math.exp(-coefficient * r))
+    return partial(_thinner, math.exp(-float(lambertw(coefficient * rise).real)))
 
 
 def _thinner(factor: float, bearing: JournalBearing) -> JournalBearing:
@@ -195,11 +194,6 @@ def refined(n_theta: int, n_z: int) -> Switch:
     return partial(_on_grid, n_theta, n_z)
 
 
-def on_film(film: FiniteLength) -> Switch:
-    """Return a switch to another grid of the film."""
-    return partial(replace, film=film)
-
-
 def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 
@@ -210,7 +204,9 @@ rigid_journal: Switch = partial(replace, journal=None)
 isoviscous: Switch = partial(_oil, pressure_law=None)
 newtonian: Switch = partial(_oil, shear_law=None)
 smooth: Switch = partial(replace, roughness=None)
+unprofiled: Switch = partial(replace, profile=None)
 unworn: Switch = partial(replace, wear=None)
+squeezing: Switch = partial(replace, squeeze=True)
 turbulent: Switch = partial(replace, turbulence=NgPan())
 laminar: Switch = partial(replace, turbulence=None)
 two_dimensional: Switch = partial(replace, film=FiniteLength())

@@ -72,9 +72,10 @@ class SphericalBearing(Checked):
     cavitation: SwiftStieber | Gumbel | FullSommerfeld = SwiftStieber()
     contact: RegularisedWall | None = None
 
-    # what a joint's watches ask of every bearing
-    bush = yielding = thermal = asperity = roughness = wear = film = turbulence = None
+    # what a joint's watches and audits ask of every bearing
+    bush = yielding = journal = thermal = asperity = roughness = wear = film = turbulence = inlet = None
     profiles = supply = ()
+    end_pressures, squeeze = (0.0, 0.0), True
     levers = (1.0, 1.0, 1.0, 0.0)
 
     checks: ClassVar = {

@@ -43,6 +43,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -51,9 +52,9 @@ from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.solvers.edge_flows import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.solved_film import History, LimiterFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.patch import PAIRS, sphere_patch
+from exudyn_ehd.joint.spherical.patch import COMPONENTS, sphere_patch
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, quotients
 from exudyn_ehd.status import Status
 
@@ -61,6 +62,8 @@ PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
 SIZE = 11
 """Motion: place (m), 0, velocity (m/s), 0, angular velocity (rad/s); `exudyn_ehd.joint.step_rates` knows four places
 and four rates."""
+# Place (3,), velocity and angular velocity (6,) of a motion as products with it.
+_PLACE, _SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[[4, 5, 6, 8, 9, 10]]
 
 
 def skew(v: np.ndarray) -> np.ndarray:
@@ -68,8 +71,7 @@ def skew(v: np.ndarray) -> np.ndarray:
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class BallFilm:
+class BallFilm(NamedTuple):
     """A solved film; fields (n, m).
 
     Attributes
@@ -81,7 +83,6 @@ class BallFilm:
         On the ball about its centre, N m.
     contact : (3,) array
         Force of the wall in ``wrench``, N.
-    contact_pressure : largest, Pa
     drag : (6, 6) array
         Force and torque of the Couette shear by velocity and angular velocity.
     stored_power : W, taken up by the wall
@@ -95,7 +96,6 @@ class BallFilm:
     wrench: np.ndarray
     torque: np.ndarray
     contact: np.ndarray
-    contact_pressure: float
     drag: np.ndarray
     stored_power: float
     ratio: np.ndarray | float
@@ -136,6 +136,10 @@ class SphericalEvaluation:
             return np.asarray(sides.mean(axis=0))
         return self.model.tangent(self.motion, self.film)
 
+    def steady_tangent(self) -> np.ndarray:
+        """Return the tangent: nothing follows the motion of rigid surfaces."""
+        return self.tangent()
+
     def sides(self) -> np.ndarray | None:
         """One-sided derivatives (2, 6, 11) of the film of a ball at rest; None of one that has derivatives."""
         self._require_current()
@@ -144,11 +148,9 @@ class SphericalEvaluation:
         spin = float(np.linalg.norm(self.motion[SPIN])) or 1.0
         length = BESIDE * self.model.bearing.radial_clearance
         steps = np.repeat([length, 0.0, spin * length, 0.0, BESIDE * spin], [3, 1, 3, 1, 3])
-        sides = quotients(lambda motion: self.model.evaluate(motion).wrench, self.motion, steps)
-        # the same film into the model's buffers again
-        self.model.evaluate(self.motion)
-        self.model.serial = self.serial
-        return sides
+        # a model of its own keeps this film in the buffers
+        beside = SphericalModel(self.model.bearing)
+        return quotients(lambda motion: beside.evaluate(motion).wrench, self.motion, steps)
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state: m, Pa, N m, W, N."""
@@ -182,7 +184,7 @@ class SphericalModel:
     bearing : SphericalBearing
     """
 
-    remembers = needs_spin = flexible = False
+    remembers = remembers_mass = needs_spin = flexible = False
     motion_size = SIZE
 
     def __init__(self, bearing: SphericalBearing) -> None:
@@ -203,11 +205,9 @@ class SphericalModel:
         self._storage = -(p.vector / (c * p.grid.area)).reshape(3, -1)
         self._gap_slope, self._link_slope = (-n.reshape(3, -1) / c for n in (p.normals, p.link_normals))
         self._drag = -self.shear_scale * _drag_of_moments(R)
-        shape = p.grid.shape
-        self._slope, self._bend, self._face_slope = np.ones(shape), np.zeros(shape), np.ones(shape)
-        self._wall, self._wall_slope = np.zeros(shape), np.zeros(shape)
-        self._limits = False
-        self.serial = 0
+        self._closed, (self._wall, self._wall_slope) = LimiterFields(p.grid.shape), np.zeros((2, *p.grid.shape))
+        self._closed.slope[:] = self._closed.face_slope[:] = 1.0
+        self._limits, self.serial = False, 0
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""
@@ -264,18 +264,13 @@ class SphericalModel:
         s.HF[:] = 1.0 + (place @ self._link_slope).reshape(s.H.shape)
         entrained = motion[VELOCITY] + 0.5 * skew(place) @ motion[SPIN]
         s.H_t[:] = (entrained @ self._storage).reshape(s.H.shape)
-        wall = self.limiter
-        limits = wall is not None and bool(min(s.H.min(), s.HF.min()) < wall.limits_below)
-        if wall is not None and limits:
+        wall, f = self.limiter, self._closed
+        if wall is not None:
+            self._limits = bool(min(s.H.min(), s.HF.min()) < wall.limits_below)
             wall.pressure(s.H, self._wall, self._wall_slope)
-            ones = np.ones_like(s.H)
-            wall.limit(s.H, s.HF, ones, self._slope, self._bend, self._face_slope)
-            self._rate = s.H_t.copy()
-            s.H_t *= self._slope
-        elif self._limits:
-            self._wall[:] = self._wall_slope[:] = self._bend[:] = 0.0
-            self._slope[:] = self._face_slope[:] = 1.0
-        self._limits = limits
+            f.rate[:] = s.H_t
+            wall.limit(s.H, s.HF, np.ones_like(s.H), f.slope, f.bend, f.face_slope)
+            s.H_t *= f.slope
 
     def _share(self) -> np.ndarray:
         """Share (n m,) of a full film's Couette shear."""
@@ -297,7 +292,7 @@ class SphericalModel:
         s, R2, cross = self.solver, self.bearing.ball_radius**2, skew(motion[PLACE])
         velocity = motion[VELOCITY]
         normal = self._vector @ P.ravel()
-        pulled = normal if not self._limits else self._vector @ (P * self._slope).ravel()
+        pulled = normal if not self._limits else self._vector @ (P * self._closed.slope).ravel()
         contact = -R2 * (self._vector @ self._wall.ravel())
         drag = (self._drag @ (self._moments @ (self._share() * ratio / s.H.ravel()))).reshape(6, 6)
         loads = drag @ np.concatenate([velocity, motion[SPIN]])
@@ -310,7 +305,6 @@ class SphericalModel:
             wrench=np.concatenate([force, torque + cross @ force]),
             torque=torque,
             contact=contact,
-            contact_pressure=float(self._wall.max()),
             drag=drag,
             stored_power=float((self.force_scale * (normal - pulled) - contact) @ velocity),
             ratio=ratio,
@@ -319,56 +313,40 @@ class SphericalModel:
 
     def tangent(self, motion: np.ndarray, film: BallFilm) -> np.ndarray:
         """d wrench / d motion (6, 11) for the film that the solver holds."""
-        s, w = self.solver, self.solver.work
-        cross, velocity, spin = skew(motion[PLACE]), motion[VELOCITY], motion[SPIN]
-        force, R2, speeds = self.force_scale, self.bearing.ball_radius**2, np.concatenate([velocity, spin])
+        s, w, f = self.solver, self.solver.work, self._closed
+        cross, R2, force, speeds = skew(motion[PLACE]), self.bearing.ball_radius**2, self.force_scale, _SPEEDS @ motion
         # derivatives of normal and pulled (3 rows each), of Couette's loads by the viscosity (6), by adjoint solves
-        rows = self._vector if not self._limits else np.concatenate([self._vector, self._vector * self._slope.ravel()])
-        n, P = len(rows), film.pressure / self.pressure_scale
+        rows = self._vector if not self._limits else np.concatenate([self._vector, self._vector * f.slope.ravel()])
+        n, P, share = len(rows), film.pressure / self.pressure_scale, self._share()
         if self.law is not None:
             sheared = np.tensordot(self._drag.reshape(6, 6, 10), speeds, (1, 0)) @ self._moments
-            by_unknown = film.ratio_q * self._share() / s.H.ravel()
-            rows = np.concatenate([rows * film.ratio, sheared * by_unknown])
-        at = w.order[: w.count]
-        sides = s.adjoint(np.ascontiguousarray(rows[:, at] * w.active.ravel()[at]))
-        found = s.sensitivities(sides)
-        k, by_rate = len(rows), found.rate * self._slope
-        by_gap = found.cell if not self._limits else found.cell * self._slope + found.rate * self._bend * self._rate
-        by_link = found.face * self._face_slope
-        by_velocity = by_rate.reshape(k, -1) @ self._storage.T
-        by_place = by_gap.reshape(k, -1) @ self._gap_slope.T + by_link.reshape(k, -1) @ self._link_slope.T
-        by_place -= 0.5 * by_velocity @ skew(spin)
-        pressed = np.concatenate([by_place, by_velocity, 0.5 * by_velocity @ cross], axis=1)
-        normal, pulled = pressed[:3], pressed[n - 3 : n].copy()
-        pulled[:, :3] += (P * self._bend).ravel() * self._vector @ self._gap_slope.T
-        thinner = -self._share() * film.ratio * self._slope.ravel() / s.H.ravel() ** 2
+            rows = np.concatenate([rows * film.ratio, sheared * (film.ratio_q * share / s.H.ravel())])
+        at, k = w.order[: w.count], len(rows)
+        found = s.sensitivities(s.adjoint(np.ascontiguousarray(rows[:, at] * w.active.ravel()[at])))
+        by_gap = found.cell if not self._limits else found.cell * f.slope + found.rate * f.bend * f.rate
+        by_place = by_gap.reshape(k, -1) @ self._gap_slope.T
+        by_place += (found.face * f.face_slope).reshape(k, -1) @ self._link_slope.T
+        by_entrained = (found.rate * f.slope).reshape(k, -1) @ self._storage.T
+        entrained = _SPEEDS[:3] + 0.5 * (cross @ _SPEEDS[3:] - skew(motion[SPIN]) @ _PLACE)
+        pressed = by_place @ _PLACE + by_entrained @ entrained
+        pulled = pressed[n - 3 : n] + (P * f.bend).ravel() * self._vector @ self._gap_slope.T @ _PLACE
+        thinner = -share * film.ratio * f.slope.ravel() / s.H.ravel() ** 2
         drag = self._drag @ (self._moments @ (thinner * self._gap_slope).T)
-        out = np.empty((6, 9))
-        out[:, :3] = np.tensordot(drag.reshape(6, 6, 3), speeds, (1, 0))
-        out[:, 3:] = film.drag
+        out = film.drag @ _SPEEDS + np.tensordot(drag.reshape(6, 6, 3), speeds, (1, 0)) @ _PLACE
         if self.law is not None:
             out += pressed[n:]
-        out[:3] -= force * normal
-        out[:3, :3] -= R2 * (self._vector * self._wall_slope.ravel()) @ self._gap_slope.T
-        out[3:] += 0.5 * force * cross @ pulled
-        out[3:, :3] -= 0.5 * force * skew(self._vector @ (P * self._slope).ravel())
+        out[:3] -= force * pressed[:3] + R2 * (self._vector * self._wall_slope.ravel()) @ self._gap_slope.T @ _PLACE
+        out[3:] += 0.5 * force * (cross @ pulled - skew(self._vector @ (P * f.slope).ravel()) @ _PLACE)
         # from the ball's centre to O
-        out[3:] += cross @ out[:3]
-        out[3:, :3] -= skew(film.wrench[:3])
-        whole = np.zeros((6, SIZE))
-        whole[:, PLACE], whole[:, VELOCITY], whole[:, SPIN] = out[:, :3], out[:, 3:6], out[:, 6:]
-        return whole
+        out[3:] += cross @ out[:3] - skew(film.wrench[:3]) @ _PLACE
+        return np.asarray(out)
 
 
 def _drag_of_moments(R: float) -> np.ndarray:
     """Return the map from moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
-    out = np.zeros((6, 6, 10))
-    for k in range(3):
-        turn = R * skew(np.eye(3)[k])
-        out[:3, 3:, 1 + k], out[3:, :3, 1 + k] = -turn, turn
-    for shift, scale in ((0, 1.0), (3, R**2)):
-        for i, j in PAIRS:
-            out[shift + i, shift + i, 0] = scale
-            out[shift + i, shift + j, 4 + PAIRS.index((i, j))] = -scale
-            out[shift + j, shift + i, 4 + PAIRS.index((i, j))] = -scale
-    return out.reshape(36, 10)
+
+    def drag(moments: np.ndarray) -> np.ndarray:
+        K, turn = moments[0] * np.eye(3) - moments[4:][COMPONENTS], R * skew(moments[1:4])
+        return np.block([[K, -turn], [turn, R**2 * K]])
+
+    return np.stack([drag(moments) for moments in np.eye(10)], axis=-1).reshape(36, 10)

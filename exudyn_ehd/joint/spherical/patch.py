@@ -27,8 +27,8 @@ from exudyn_ehd.film.grid import FilmGrid
 
 # Of the rows, 0 is uniform.
 STRETCH = 0.75
-# Components of the symmetric second moments.
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+# Rows of the six second moments xx, yy, zz, xy, xz, yz in the symmetric matrix of them.
+COMPONENTS = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class SpherePatch:
     vector : (3, n, m) array
         Integral of the normal over each control volume.
     tensor : (6, n, m) array
-        Integrals of the products `PAIRS` of its components.
+        Integrals of the products of its components, in the order of `COMPONENTS`.
     """
 
     grid: FilmGrid

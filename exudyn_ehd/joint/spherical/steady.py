@@ -83,7 +83,7 @@ class SphericalResult:
         # imported here: films need none of it
         from exudyn_ehd.joint.spherical.audit import audit_ball
 
-        return audit_ball(self.bearing, [self.motion])
+        return audit_ball(self.bearing, self.motion[None])
 
     def plot_pressure(self, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
         """The pressure on the socket, seen along its axis; colatitudes in degrees outwards. See `FilmPictures`."""

@@ -13,7 +13,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.audit.audit import Audit, audit_states
+from exudyn_ehd.joint.audit.audit import Audit, audit_of
+from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload
@@ -153,7 +154,7 @@ class SteadyResult(Film, FilmPictures):
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
         state = FilmState(self.motion, history_at(model, self.motion, "audit", near))
-        return audit_states(model, [state], liner=liner, measure_time=measure_time)
+        return audit_of(Case(model, [state], liner=liner, measure_time=measure_time))
 
 
 def steady(

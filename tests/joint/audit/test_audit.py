@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.audit import findings
 from exudyn_ehd.joint.audit.audit import audit_record
-from exudyn_ehd.joint.audit.samples import RecordedSteps, squeeze_rate, squeeze_share, tilt_loss
+from exudyn_ehd.joint.audit.case import Case, Change
+from exudyn_ehd.joint.audit.findings import LIMITS
+from exudyn_ehd.joint.audit.samples import RecordedSteps, sources, squeeze_rate, squeeze_share, tilt_loss, worst_steps
 from exudyn_ehd.joint.audit.switches import steel_ring
 from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.model.build import build_model
@@ -137,9 +138,17 @@ def test_effects_with_which_no_film_carries_the_load_are_named():
     assert law.matters and not law.change.found and law.change.size == math.inf
     assert law.advice.endswith("No film was found that carries this load then.")
     assert "no film" in str(found).split("\n\n")[0] and "no film found that carries the same load" in str(law.change)
-    # an effect without which no film is found is not called needless, however small its indicator
-    without = findings.finding("contact", "", 0.0, True, needless="asperity=None.", change=law.change)
-    assert not without.unneeded and not without.advice
+
+
+def test_an_effect_without_which_no_film_is_found_is_not_called_needless(monkeypatch):
+    """However small its indicator."""
+    made = bearing(asperity=ASPERITY)
+    lost = Change(load=math.nan, minimum_gap=math.nan, peak_pressure=math.nan, power_loss=math.nan)
+    assert audit(made)["contact"].unneeded
+    monkeypatch.setitem(LIMITS, "contact", LIMITS["contact"]._replace(nothing=0.0))
+    monkeypatch.setattr(Case, "change", lambda case, switch: lost)
+    found = audit(made)["contact"]
+    assert found.change is lost and not found.unneeded and not found.advice
 
 
 # Cases that a cavitated share times a squeeze share called nothing: light and heavy, on the move and at rest.
@@ -325,9 +334,9 @@ def test_heat_that_halves_the_viscosity_is_not_solved_without(eps, monkeypatch):
     for speed in (10.0, 100.0, 900.0):
         plain = audit(bearing(**ON["heating"]), eps=eps, speed=speed)["heating"]
         with monkeypatch.context() as patch:
-            patch.setattr(findings, "PLAINLY_MUCH_ON", {})
+            patch.setitem(LIMITS, "heating", LIMITS["heating"]._replace(much_on=math.inf))
             solved = audit(bearing(**ON["heating"]), eps=eps, speed=speed)["heating"]
-        much = plain.value > findings.PLAINLY_MUCH_ON["heating"]
+        much = plain.value > LIMITS["heating"].much_on
         assert (plain.change is None) == much
         assert plain.matters == solved.matters
         if much:
@@ -406,10 +415,9 @@ def test_unknown_effect_lists_the_known_ones():
 def record(made, motion, time):
     films = [build_model(made).evaluate(m) for m in motion]
     q, force = [film.quantities() for film in films], np.array([film.wrench[:3] for film in films])
-    names = [f.name for f in dataclasses.fields(RecordedSteps)][3:]
-    return RecordedSteps(
-        time=time, motion=motion, force=force, **{n: np.array([row.get(n, np.nan) for row in q]) for n in names}
-    )
+    known = {"time": time, "motion": motion, "force": force}
+    names = [f.name for f in dataclasses.fields(RecordedSteps) if f.name not in known]
+    return RecordedSteps(**known, **{n: np.array([row.get(n, np.nan) for row in q]) for n in names})
 
 
 def orbit(n, radius=0.6, whirl=150.0):
@@ -468,16 +476,16 @@ def test_dampers_have_the_inertia_of_their_squeeze():
         speed = w * np.column_stack((-axes[0] * np.sin(w * t), axes[1] * np.cos(w * t)))
         first, per = (2, 0.5 * made.length) if tilted else (0, 1.0)
         motion[:, first : first + 2], motion[:, first + 4 : first + 6] = swing / per, speed / per
-        assert squeeze_rate(made, motion, t) == pytest.approx(w, rel=0.01)
+        assert squeeze_rate(sources(made, motion), c, t) == pytest.approx(w, rel=0.01)
         # velocities that an integrator throws to and fro from step to step count as velocities alone
         thrown = motion.copy()
         thrown[:, first + 4 : first + 6] += 0.3 * w * axes / per * (-1.0) ** np.arange(401)[:, None]
-        assert 0.8 * w < squeeze_rate(made, thrown, t) < 1.01 * w
+        assert 0.8 * w < squeeze_rate(sources(made, thrown), c, t) < 1.01 * w
         # beside a wedge: by the share of the squeeze in the sources
         motion[:, 8] = rng.uniform(-4.0, 4.0) * w
         moving, wedge = np.linalg.norm(speed, axis=1), 0.5 * abs(motion[0, 8]) * np.linalg.norm(swing, axis=1)
         share = np.trapezoid(moving, t) / np.trapezoid(moving + wedge, t)
-        assert squeeze_rate(made, motion, t) == pytest.approx(w * share, rel=0.01)
+        assert squeeze_rate(sources(made, motion), c, t) == pytest.approx(w * share, rel=0.01)
 
 
 def test_worst_states_are_found():
@@ -486,19 +494,19 @@ def test_worst_states_are_found():
     motion[7, :2] *= 1.5
     motion[11, 2] = 5e-4
     motion[15, 8] = 2000.0
-    assert {7, 11, 15} <= set(record(made, motion, time).worst(made))
+    assert {7, 11, 15} <= set(worst_steps(made, record(made, motion, time)))
 
 
 def test_tilt_and_squeeze_shares():
     made = bearing()
-    motion = np.zeros(10)
-    assert tilt_loss(made, motion) == squeeze_share(made, motion) == 0.0
-    motion[:3] = 0.5 * C, 0.0, 0.1 * C / 0.01
+    motion = np.zeros((1, 10))
+    assert tilt_loss(made, motion) == squeeze_share(sources(made, motion)) == 0.0
+    motion[0, :3] = 0.5 * C, 0.0, 0.1 * C / 0.01
     assert tilt_loss(made, motion) == pytest.approx(0.2)
-    motion[4] = 1e-3
-    assert squeeze_share(made, motion) == 1.0  # nothing turns
-    motion[8] = 2e-3 / (0.6 * C)
-    assert squeeze_share(made, motion) == pytest.approx(0.5)
+    motion[0, 4] = 1e-3
+    assert squeeze_share(sources(made, motion)) == 1.0  # nothing turns
+    motion[0, 8] = 2e-3 / (0.6 * C)
+    assert squeeze_share(sources(made, motion)) == pytest.approx(0.5)
 
 
 def test_intervals_at_half_height():

@@ -8,7 +8,8 @@ import pytest
 from scipy.optimize import root
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.audit import squeeze_rate, squeeze_share
+from exudyn_ehd.joint.audit.samples import squeeze_rate, squeeze_share
+from exudyn_ehd.joint.spherical.audit import ball_sources
 from exudyn_ehd.joint.spherical.model import PLACE, SphericalModel
 
 R, C = 0.015, 30e-6
@@ -157,9 +158,9 @@ def test_what_a_ball_can_not_have_is_told():
 
 def test_shares_of_the_squeeze():
     motion = SphericalModel(bearing()).evaluate(np.zeros(11)).motion
-    assert squeeze_share(motion) == 0.0
+    assert squeeze_share(ball_sources(motion[None])) == 0.0
     motion[:3], motion[4:7], motion[8:] = (1e-5, 0, 0), (0, 0, 1e-4), (0, 20.0, 0)
-    assert squeeze_share(motion) == pytest.approx(0.5)
+    assert squeeze_share(ball_sources(motion[None])) == pytest.approx(0.5)
 
 
 def test_inertia_of_the_squeeze():
@@ -175,7 +176,7 @@ def test_inertia_of_the_squeeze():
     found = film.audit()["fluid inertia"]
     assert found.value == pytest.approx(expected, rel=1e-9) and found.matters
     # differences over two of 200 steps
-    assert squeeze_rate(ball, motion, t) == pytest.approx(w, rel=1e-3)
+    assert squeeze_rate(ball_sources(motion), c, t) == pytest.approx(w, rel=1e-3)
 
 
 def test_a_place_without_a_film():

@@ -1,0 +1,331 @@
+"""Subject of an audit: the audited films of a bearing, their numbers, and the changes by another description of it.
+
+Changes are computed, not guessed. At a steady state the journal of the other bearing is moved to where its film carries
+the same load; minimum film thickness, peak pressure and loss are compared there, the load at the same position. The
+films of a record that remember are compared at the same motion with the same memory, where the peak is related to the
+load, and the minimum film thickness estimated from it: a film pressed together carries about 1 / h^2.
+"""
+
+from __future__ import annotations
+
+import math
+import timeit
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.thrust.options import ThrustFaces
+from exudyn_ehd.joint.audit.samples import (
+    FilmState,
+    RecordedSteps,
+    Sources,
+    film_numbers,
+    recorded_numbers,
+    recorded_states,
+    sources,
+    squeeze_rate,
+    squeeze_share,
+)
+from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
+from exudyn_ehd.joint.balance.film import evaluate_at
+from exudyn_ehd.joint.balance.resolution import Resolution, resolution
+from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
+from exudyn_ehd.status import FilmError, InputError, Status, require_type
+
+# From this change on an effect matters; below the second one nobody needs it.
+MATTERS, NOTHING = 0.03, 0.02
+# Search for the same load: largest number of films; longest step as a share of the minimum film thickness or, where
+# surfaces may touch, of the clearance; step, as a share of the clearance, that is not halved again.
+MOST_FILMS, LONGEST, SHORTEST = 60, 0.6, 1e-6
+# Loads below it, over L D mu omega / psi^2, have no relative changes.
+NO_LOAD = 1e-6
+# Rounds of a time measurement; the best of them counts.
+ROUNDS = 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """Changes by another description, relative to the bearing as it is, at the state where they are largest.
+
+    Attributes
+    ----------
+    load : float
+        Change at the same position or motion; nan if there is no such film.
+    minimum_gap, peak_pressure, power_loss : float
+        Changes at the same load; nan if no film was found that carries it.
+    """
+
+    load: float
+    minimum_gap: float
+    peak_pressure: float
+    power_loss: float
+
+    @property
+    def found(self) -> bool:
+        """Return whether a film was found that carries the same load."""
+        return not math.isnan(self.minimum_gap)
+
+    @property
+    def size(self) -> float:
+        """Largest change at the same load; inf without a film."""
+        return max(abs(self.minimum_gap), abs(self.peak_pressure), abs(self.power_loss)) if self.found else math.inf
+
+    def __str__(self) -> str:
+        load = "" if math.isnan(self.load) else f"load {self.load:+.1%} at the same position; "
+        if not self.found:
+            return f"{load}no film found that carries the same load"
+        rest = f"minimum film thickness {self.minimum_gap:+.1%}, peak {self.peak_pressure:+.1%}"
+        return f"{load}{rest}, loss {self.power_loss:+.1%} at the same load"
+
+
+class Case:
+    """Films of a journal bearing at some states; bearings that move otherwise have a subclass.
+
+    Parameters
+    ----------
+    model : BearingModel
+    states : sequence of FilmState
+    record : RecordedSteps, optional
+        Record that the states come from; it adds how often contacts acted, mean heating and the time step.
+    liner : ElasticLiner, optional
+        Liner whose elasticity is assessed, for bearings without one.
+    faces : ThrustFaces, optional
+        Thrust faces in the record; the bearing is that of the journal's film alone.
+    measure_time : bool
+        Measure the share of the time that every effect takes which is on and can be left out.
+
+    Attributes
+    ----------
+    bearing : JournalBearing
+    numbers : dict of str to (n,) arrays
+        Numbers of the films, see `film_numbers`.
+    resolutions : list of Resolution
+    axes, entries : int
+        Components of the force that a film carries, and of a motion of rigid surfaces.
+    tolerance : float
+        Unbalance over the load up to which two films carry the same one.
+    surface, steel : str
+        Names of the surface around the film and of the deflecting steel, for messages.
+    omitted : dict of str to str
+        Effects that no such bearing can have, with advice.
+
+    Raises
+    ------
+    FilmError
+        If there is no film at any state.
+    """
+
+    axes, entries, tolerance = 2, MOTION_SIZE, 1e-3
+    surface, steel = "bore", "a steel ring"
+    omitted: ClassVar[Mapping[str, str]] = {}
+
+    def __init__(
+        self,
+        model: BearingModel,
+        states: Sequence[FilmState],
+        record: RecordedSteps | None = None,
+        *,
+        liner: ElasticLiner | None = None,
+        faces: ThrustFaces | None = None,
+        measure_time: bool = False,
+    ) -> None:
+        require_type("audit: liner", liner, ElasticLiner, type(None))
+        self.bearing, self.model, self.states, self.record = model.bearing, model, states, record
+        self.liner, self.faces, self.measures_time = liner, faces, measure_time
+        films = [found for state in states if (found := self._film(state)) is not None]
+        if not films:
+            raise FilmError(
+                "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result "
+                "of `steady`."
+            )
+        self.numbers = {name: np.array([row[name] for row, _ in films]) for name in films[0][0]}
+        self.resolutions = [seen for _, seen in films]
+        is_map = isinstance(model.bearing.film, ImpedanceMap)
+        # a map has no field to compare
+        self._own = self.build(two_dimensional(model.bearing)) if is_map else model
+
+    def _film(self, state: FilmState) -> tuple[dict[str, float], Resolution] | None:
+        """Evaluate a state and read its numbers; None if there is no film."""
+        evaluation = state.evaluate(self.model)
+        if evaluation.film is None:
+            return None
+        q, by_motion = evaluation.quantities(), self.sources(evaluation.motion[None])
+        numbers = {name: q[name] for name in ("peak_pressure", "contact_load", "power_loss")}
+        numbers["load"] = float(np.linalg.norm(evaluation.wrench[: self.axes]))
+        numbers["squeeze_share"] = float(squeeze_share(by_motion)[0])
+        numbers["squeeze_rate"] = squeeze_rate(by_motion, self.bearing.radial_clearance)
+        own, seen = self.own_numbers(evaluation)
+        numbers |= own
+        if self.record is not None and state.recorded is not None and self.model.flexible:
+            numbers |= recorded_numbers(self.record, state.recorded)
+        return numbers, seen
+
+    def build(self, bearing: JournalBearing) -> BearingModel:
+        """Model of another bearing, with the grid's start of this one."""
+        return build_study_model(bearing, float(self.model.grid.x[0]))
+
+    def sources(self, motions: np.ndarray) -> Sources:
+        """Sources of Reynolds' equation by motions (n, k)."""
+        return sources(self.bearing, motions)
+
+    def slide(self, motions: np.ndarray) -> np.ndarray:
+        """Size (n,) of the relative spin of motions (n, k), rad/s."""
+        return np.abs(motions[:, 8])
+
+    def turns(self, motions: np.ndarray) -> np.ndarray:
+        """Spin (n,) of motions (n, k) in whose turns steps are counted, rad/s."""
+        return motions[:, 8]
+
+    def own_numbers(self, evaluation: Evaluation) -> tuple[dict[str, float], Resolution]:
+        """Numbers of a film as by `film_numbers`, and the resolution of its pressure peak by the grid."""
+        assert evaluation.film is not None
+        return film_numbers(self.model, evaluation), resolution(evaluation.film)
+
+    def compared(self, evaluation: Evaluation) -> tuple[float, float, float]:
+        """Minimum film thickness, m, refined peak pressure, Pa, and loss, W, of a film."""
+        q = evaluation.quantities()
+        return q["minimum_gap"], q["peak_pressure"], q["power_loss"]
+
+    def steady(self, other: BearingModel, mine: FilmState) -> Callable[[np.ndarray], Evaluation]:
+        """Return the function of a motion (10,) that evaluates the steady film of another bearing.
+
+        The temperature is held where both have the same: what else changes it is of second order; one that is a field
+        settles anew on another grid.
+        """
+        thermal, known, near = other.bearing.thermal, mine.history, None
+        if known is not None and thermal is not None and thermal == self._own.bearing.thermal:
+            held = known.temperature
+            if other.grid.shape == self._own.grid.shape or not isinstance(held, np.ndarray):
+                return lambda motion: other.evaluate_steady(motion, History(temperature=held))
+
+        def settled(motion: np.ndarray) -> Evaluation:
+            """Evaluate the film at its own temperature, which that of the film before helps to find."""
+            nonlocal near
+            evaluation, found = evaluate_at(other, motion, "audit", near)
+            near = found.history
+            return evaluation
+
+        return settled
+
+    def change(self, switch: Switch) -> Change | None:
+        """Worst change by a switch; None where no state could be compared."""
+        own, record = self._own, self.record
+        try:
+            other = self.build(switch(own.bearing))
+        except InputError:
+            return None
+        states: Sequence[FilmState] = self.states
+        remembers = record is not None and (other.remembers or own.remembers or own.needs_spin)
+        # without a memory of its own it takes that of this one
+        gains = other.remembers_mass and not own.remembers_mass
+        if record is not None and remembers and (gains or other.grid.shape != own.grid.shape):
+            if other.flexible:  # tens of steps before every state, each a search for the bore's balance: seconds
+                return None
+            states = recorded_states(other, record)
+        found = [self._at(other, mine, its, remembers) for mine, its in zip(self.states, states, strict=True)]
+        changes = [change for change in found if change is not None]
+        return max(changes, key=lambda change: change.size, default=None)
+
+    def _at(self, other: BearingModel, mine: FilmState, its: FilmState, remembers: bool) -> Change | None:
+        film = mine.evaluate(self._own)
+        if film.status is not Status.CONVERGED:
+            return None
+        force, own, motion = film.wrench[: self.axes].copy(), self.compared(film), mine.motion[None]
+        size, b, reached = float(np.linalg.norm(force)), self.bearing, None
+        rates = np.linalg.norm(self.sources(motion)[1], axis=2).max() / b.radial_clearance
+        if not size > NO_LOAD * b.reference_force(float(self.slide(motion)[0] + rates)):
+            return None
+        if remembers:
+            reached = other.evaluate_steady(its.motion[: self.entries], its.history, its.step, its.spin)
+            if reached.status is not Status.CONVERGED:
+                return None
+            share = max(float(np.linalg.norm(reached.wrench[: self.axes])) / size, 1e-12)
+        else:
+            if other.flexible and other.bearing.bush is b.bush and other.bearing.journal is b.journal:
+                other.evaluate(mine.motion, mine.history)  # the search for its bore's shape starts from this one's
+            share, reached = self._carrying(other, mine, force, size)
+        if reached is None:
+            return Change(load=share - 1.0, minimum_gap=math.nan, peak_pressure=math.nan, power_loss=math.nan)
+        pairs = zip(self.compared(reached), own, strict=True)
+        gap, peak, loss = (new / old if old > 0.0 else 1.0 for new, old in pairs)
+        if remembers:  # a step that can't be taken again elsewhere
+            gap, peak = gap * math.sqrt(share), peak / share
+        return Change(load=share - 1.0, minimum_gap=gap - 1.0, peak_pressure=peak - 1.0, power_loss=loss - 1.0)
+
+    def _carrying(
+        self, other: BearingModel, mine: FilmState, force: np.ndarray, size: float
+    ) -> tuple[float, Evaluation | None]:
+        """Load of another bearing's film at a state over its own, and its film with the same force; nan, None without.
+
+        Newton's method for the place; a step is halved until it reaches a film nearer to the force.
+        """
+        steady, k, b, motion = self.steady(other, mine), force.size, other.bearing, mine.motion[: self.entries].copy()
+        is_soft, share = other.flexible or b.contact is not None or b.asperity is not None, math.nan
+        # from the centre the first step leads to the state's own place, or to a film on the way there
+        place, step, error = np.zeros(k), motion[:k].copy(), math.inf
+        for count in range(MOST_FILMS):
+            motion[:k] = place + step
+            try:
+                reached = steady(motion.copy())
+            except FilmError:
+                reached = None
+            left = np.full(k, math.inf)
+            if reached is not None and reached.status is Status.CONVERGED:
+                left = force - reached.wrench[:k]
+                share = float(np.linalg.norm(reached.wrench[:k])) / size if count == 0 else share
+            if reached is None or not np.abs(left).max() < error:
+                step = 0.5 * step
+                if np.linalg.norm(step) < SHORTEST * b.radial_clearance:
+                    break
+                continue
+            place, error = motion[:k].copy(), float(np.abs(left).max())
+            if error <= self.tolerance * size:
+                return share, reached
+            step, *_ = np.linalg.lstsq(reached.steady_tangent()[:k, :k], left, rcond=1e-9)
+            longest = LONGEST * (b.radial_clearance if is_soft else reached.minimum_gap)
+            step *= min(1.0, longest / max(float(np.linalg.norm(step)), 1e-300))
+        return share, None
+
+    def time_share(self, switch: Switch) -> float | None:
+        """Share of the time of evaluations with tangent that goes into an effect that a switch leaves out.
+
+        None if no film does without it, or time is not measured.
+        """
+        if not self.measures_time:
+            return None
+        model, plain = self.model, self.build(switch(self.bearing))
+        # a history serves both: a model without an effect does not read what belongs to it
+        pairs = [(s, replace(s, motion=_known_to(plain, s.motion))) for s in self.states]
+        both = [(s, t) for s, t in pairs if s.evaluate(model).status is t.evaluate(plain).status is Status.CONVERGED]
+        if not both:
+            return None
+        with_it, without_it = (_seconds(m, states) for m, states in zip((model, plain), zip(*both), strict=True))
+        return max(0.0, 1.0 - without_it / with_it)
+
+
+def _known_to(model: BearingModel, motion: np.ndarray) -> np.ndarray:
+    """A motion without the coordinates and rates of bore or journal that ``model`` does not have."""
+    q, q_t = np.split(motion[MOTION_SIZE:], 2)
+    size = model.size if isinstance(model, ElasticBearingModel) else 0
+    kept = slice(size) if model.bearing.bush is not None else slice(q.size - size, None)
+    return np.concatenate((motion[:MOTION_SIZE], q[kept], q_t[kept]))
+
+
+def _seconds(model: BearingModel, states: Sequence[FilmState]) -> float:
+    """Time of evaluations with tangent and history, s."""
+
+    def films() -> None:
+        for state in states:
+            evaluation = state.evaluate(model)
+            evaluation.tangent()
+            evaluation.history()
+
+    return min(timeit.repeat(films, number=1, repeat=ROUNDS))
