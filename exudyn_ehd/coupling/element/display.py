@@ -72,7 +72,7 @@ class FilmDisplay:
             return
         self.bore = (film.bore.displacement - film.bore.of_journal) * clearance
         self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
-        modes = getattr(model.bore, "modes", None)
+        modes: Any = getattr(model.bore, "modes", None)
         # finite-element bodies show themselves
         if hasattr(modes, "mesh"):
             self.bush = np.tensordot(film.bore.coordinates[: modes.count], modes.displacements, 1)

@@ -79,7 +79,7 @@ class FilmSystem:
         shape, self.kind = grid.shape, kind
         self.fields = np.zeros((15, *shape))
         self.term_fields = self.fields[:10]
-        self.terms = FilmTerms(*self.term_fields, grid.fixed)
+        self.terms = FilmTerms(*(*self.term_fields, grid.fixed))
         self.kx, self.kz, self.fx, self.fz = self.term_fields[:4]
         self.b, self.H, self.HF, self.H_t, self.pressure = self.fields[10:]
         self.H[:] = self.HF[:] = 1.0
