@@ -134,10 +134,7 @@ class AcceptedSteps:
         # the element holds its steps: without a circle it goes as soon as its system does
         self.film: Film = weakref.proxy(film)
         self.start = self.began = np.nan
-        self.solvers = solver_state.NO_RUN
         self.solver: solver_state.Solver | None = None
-        self.memory: History | None = None
-        self.begin: StepStart | None = None
         self.control: GapWatch | None = None
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
@@ -158,7 +155,8 @@ class AcceptedSteps:
         # coordinates and memory where the run began
         self._first: list[float] = []
         self._first_memory: History | None = None
-        self.memory = self.begin = None
+        self.memory: History | None = None
+        self.begin: StepStart | None = None
         self.start = np.nan
         self.record.clear()
         # the next run is a new one, whatever was run before
