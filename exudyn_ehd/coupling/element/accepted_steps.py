@@ -104,7 +104,8 @@ class AcceptedSteps:
     solver : object or None
         The one of them that is at work.
     memory : History or None
-        Memory of the film at ``start``; None for a film that remembers nothing, or is steady.
+        Memory of the film at ``start``, which waits while a static solver is at work; None for a film that remembers
+        nothing.
     asked : (float, list of float)
         Time and coordinates for which a solver has asked last.
     begin : StepStart or None
@@ -133,10 +134,7 @@ class AcceptedSteps:
         # the element holds its steps: without a circle it goes as soon as its system does
         self.film: Film = weakref.proxy(film)
         self.start = self.began = np.nan
-        self.solvers = solver_state.NO_RUN
         self.solver: solver_state.Solver | None = None
-        self.memory: History | None = None
-        self.begin: StepStart | None = None
         self.control: GapWatch | None = None
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
@@ -154,11 +152,11 @@ class AcceptedSteps:
     def forget(self) -> None:
         """Let the next run start with a new record and a film that remembers nothing."""
         self._resumed: tuple[float, History | None, StepStart | None] | None = None
-        # coordinates and memory where the run began, and the memory that waits while a static solver is at work
+        # coordinates and memory where the run began
         self._first: list[float] = []
         self._first_memory: History | None = None
-        self._aside: History | None = None
-        self.memory = self.begin = None
+        self.memory: History | None = None
+        self.begin: StepStart | None = None
         self.start = np.nan
         self.record.clear()
         # the next run is a new one, whatever was run before
@@ -230,8 +228,8 @@ class AcceptedSteps:
         self._watch_anew(mbs)
         self.film.outer.begin(self.solver)
         self.tangent = self.tolerance = None
-        self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
-        self._first, self._first_memory, self.began = place, memory, start
+        self.memory = self._first_memory = memory
+        self._first, self.began = place, start
         if not resumed and not goes_on:
             self.record.clear()
             if self.recorder is not None:
@@ -259,7 +257,7 @@ class AcceptedSteps:
         Sets start and begin of its first step; that of a run which continues the last one in time is the last step
         itself, whose end is still to be accepted.
         """
-        film, memory, last = self.film, self.memory if self._uses_memory else self._aside, self.start
+        film, memory, last = self.film, self.memory, self.start
         if self._resumed is not None:
             (time, memory, begin), self._resumed = self._resumed, None
             self.start, self.begin = start, begin if start == time else None
@@ -296,7 +294,7 @@ class AcceptedSteps:
             raise failures.no_film(start, trial, explicit=False)
         if row is not None and (absurd := failures.absurd(start, row, trial)) is not None:
             raise absurd
-        self._cool = failures.check_heat(start, trial, self.memory, self._cool)
+        self._cool = failures.check_heat(start, trial, self.film_memory, self._cool)
         if self._may_starve and self.memory is not None and (lost := poor_films.lost_share(self.memory)) > 0.0:
             self._may_starve = False
             poor_films.warn_of_starvation(failures.name, start, lost)
@@ -326,6 +324,11 @@ class AcceptedSteps:
             warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)
 
     @property
+    def film_memory(self) -> History | None:
+        """Memory of the film in the run under way; None of a steady film."""
+        return self.memory if self._uses_memory else None
+
+    @property
     def is_idle(self) -> bool:
         """Return whether no solver is running; False after a run that an exception has ended."""
         return solver_state.is_finished(self.solver)
@@ -345,7 +348,7 @@ class AcceptedSteps:
         """Time of the last accepted state, the film's memory there, where the next step begins, and the record."""
         time, trial, _ = self.look_at_accepted(mbs)
         self.film.outer.take(mbs, self._accepted, trial)
-        row, memory = self.film.row(time, trial), self.memory if self._uses_memory else self._aside
+        row, memory = self.film.row(time, trial), self.memory
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
             memory = trial.found.history()

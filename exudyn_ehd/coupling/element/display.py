@@ -74,7 +74,7 @@ class FilmDisplay:
         self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
         modes: Any = getattr(model.bore, "modes", None)
         # finite-element bodies show themselves
-        if hasattr(modes, "mesh"):
+        if modes is not None and hasattr(modes, "mesh"):
             self.bush = np.tensordot(film.bore.coordinates[: modes.count], modes.displacements, 1)
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:

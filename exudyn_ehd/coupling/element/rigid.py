@@ -187,7 +187,7 @@ class FilmElement:
         # a list compares as a whole; other callers than Exudyn may hand over arrays
         q, q_t = list(q), list(q_t)
         # before the start of the step (a linearisation about the initial state after a run) nothing is remembered
-        memory = self.steps.memory if time >= self.steps.start else None
+        memory = self.steps.film_memory if time >= self.steps.start else None
         step = 0.0 if memory is None else time - self.steps.start
         begin = self.steps.begin if stepping else None
         if begin is not None and not time > begin.time:
