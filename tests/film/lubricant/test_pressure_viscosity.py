@@ -58,7 +58,7 @@ def test_barus_round_trip():
     p, r, r_q = inverse(law, law.transform(expected))
     np.testing.assert_allclose(p, expected, rtol=1e-13)  # rounding times the viscosity ratio
     np.testing.assert_allclose(r, np.exp(ALPHA * expected), rtol=1e-13)
-    np.testing.assert_allclose(r_q, ALPHA * np.exp(2.0 * ALPHA * expected), rtol=1e-10)  # of the spline: two digits less
+    np.testing.assert_allclose(r_q, ALPHA * np.exp(2.0 * ALPHA * expected), rtol=1e-10)  # of the spline
 
 
 @pytest.mark.parametrize("mu", [0.005, 0.04, 0.3])
