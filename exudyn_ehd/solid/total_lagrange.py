@@ -54,13 +54,13 @@ class SaintVenantKirchhoff(Checked):
     checks: ClassVar = {
         "youngs_modulus": POSITIVE,
         "density": POSITIVE,
-        "poisson_ratio": partial(
-            require_number,
-            above=-1.0,
-            below=0.5,
-            hint="an incompressible bush needs another element, 0.49 is the sensible limit of this one.",
-        ),
+        "poisson_ratio": partial(require_number, above=-1.0),
     }
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        hint = "an incompressible bush needs another element, 0.49 is the sensible limit of this one."
+        require_number(f"{type(self).__name__}.poisson_ratio", self.poisson_ratio, below=0.5, hint=hint)
 
     @property
     def lame(self) -> tuple[float, float]:

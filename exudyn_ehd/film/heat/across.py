@@ -123,7 +123,7 @@ def surfaces(
     Arguments as for `exudyn_ehd.film.heat.energy.passed`; (2, n, m, 4) each.
     """
     inside = np.array([[6.0, -10.0, 0.0, 0.0], [6.0, 10.0, 0.0, 0.0]])
-    T, through = passed(kappa, area, outward, inside, 9.0, -3.0)
+    T, through = (np.ascontiguousarray(np.moveaxis(x, 1, -1)) for x in passed(kappa, area, outward, inside, 9.0, -3.0))
     tilt = (kappa * area)[..., None] * (np.array([0.0, 20.0, 0.0, 0.0]) - 10.0 * (T[1] - T[0]))
     return T, through, np.stack((through[0] + through[1], tilt))
 

@@ -167,7 +167,7 @@ def passed(
     own: float,
     other: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Temperatures of both surfaces, and heat into them, W, (2, n, m, f) each.
+    """Temperatures of both surfaces, and heat into them, W, (2, f, n, m) each.
 
     They are linear in f temperatures, of which the last two lie outside both surfaces. Into surface a the film passes
     ``q_a = kappa (inside[a] . temperatures - own s_a - other s_b)``; a surface with a coefficient has
@@ -183,26 +183,27 @@ def passed(
         Zero for the temperatures outside.
     own, other : float
     """
-    k = kappa[..., None]
     meets = [0.0 if U is None else 1.0 for U in outward]
     given = [1.0 if U is None else U for U in outward]
-    diagonal = [own * k * meet + U for meet, U in zip(meets, given, strict=True)]
-    known = k * np.array(meets)[:, None, None, None] * inside[:, None, None]
-    known[0, ..., -2], known[1, ..., -1] = given
-    determinant = diagonal[0] * diagonal[1] - (other * k) ** 2 * meets[0] * meets[1]
-    s = np.stack([(diagonal[1 - a] * known[a] - other * k * meets[a] * known[1 - a]) / determinant for a in (0, 1)])
-    return s, k * area[..., None] * (inside[:, None, None] - own * s - other * s[::-1])
+    diagonal = [own * kappa * meet + U for meet, U in zip(meets, given, strict=True)]
+    inner = inside[:, :, None, None]
+    known = kappa * (np.array(meets)[:, None, None, None] * inner)
+    known[0, -2], known[1, -1] = given
+    determinant = diagonal[0] * diagonal[1] - (other * kappa) ** 2 * (meets[0] * meets[1])
+    near, far = [d / determinant for d in diagonal[::-1]], other * kappa / determinant
+    s = np.array([near[a] * known[a] - (meets[a] * far) * known[1 - a] for a in (0, 1)])
+    return s, kappa * area * (inner - own * s - other * s[::-1])
 
 
 def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
-    """Heat into both surfaces, W per kelvin of a film's mean temperature and of those outside, (2, n, m, 3).
+    """Heat into both surfaces, W per kelvin of a film's mean temperature and of those outside, (2, 3, n, m).
 
     Parameters as for `passed`; ``kappa`` None: the coefficients act on the mean temperature.
     """
     if kappa is not None and outward != (0.0, 0.0):
         return passed(kappa, area, outward, np.array([[6.0, 0.0, 0.0]] * 2), 4.0, 2.0)[1]
-    out = np.zeros((2, *area.shape, 3))
+    out = np.zeros((2, 3, *area.shape))
     for a, U in enumerate(outward):
-        out[a, ..., 0] = (U or 0.0) * area
-        out[a, ..., 1 + a] = -out[a, ..., 0]
+        out[a, 0] = (U or 0.0) * area
+        out[a, 1 + a] = -out[a, 0]
     return out

@@ -19,11 +19,11 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.lubricant.pressure_viscosity import (
+    BEYOND,
     LARGEST_PRESSURE,
     PressureLaw,
     PressureTransform,
     expand,
-    hermite_inverse,
     interval_at,
     quintic,
 )
@@ -62,7 +62,7 @@ class DensityTable(NamedTuple):
     Attributes
     ----------
     exponent, q, table, bucket, bucket_scale
-        Spline of p(q), as for `hermite_inverse`.
+        Spline of p(q), as for `exudyn_ehd.film.lubricant.pressure_viscosity.hermite_inverse`.
     ratio : (intervals, 7) array
         `quintic` spline of rho(q) in the same intervals.
     lowest, highest : float
@@ -171,7 +171,7 @@ class DensityField:
 
     def at(self, pressure: float) -> float:
         """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""
-        return float(density_taylor(pressure * self.scale, self.law.kernel_table)[0])
+        return float(density_of(pressure * self.scale, self.law.kernel_table))
 
 
 class CompressibleLaw(PressureTransform):
@@ -223,23 +223,28 @@ class CompressibleLaw(PressureTransform):
 
 
 @njit(cache=True, inline="always")
-def density_taylor(q, law):
-    """Density ratio at a transformed pressure q, Pa, within the law's range; s = dp/dq and ds/dq, 1/Pa; the first to
-    fourth coefficient of Taylor's polynomial of the density about q."""
+def law_at(q, law):
+    """Pressure p, Pa, and density ratio at a transformed pressure q, Pa, within the law's range; s = dp/dq and ds/dq,
+    1/Pa; the first to fourth coefficient of Taylor's polynomial of the density about q."""
     if q > 0.0:
         low, t = interval_at(q, law.q, law.table, law.bucket, law.bucket_scale)
-        _, s, half, _, _ = expand(law.table, low, t)
+        p, s, half, _, _ = expand(law.table, low, t)
         rho, r1, r2, r3, r4 = expand(law.ratio, low, t)
-        return rho, s, 2.0 * half, r1, r2, r3, r4
-    # exp(a p) with p = -ln(1 - k q) / k
+        return p, rho, s, 2.0 * half, r1, r2, r3, r4
     a, k = law.a, law.exponent
-    s = 1.0 / (1.0 - k * q)
-    rho = np.exp(-a / k * np.log1p(-k * q))
+    p, s = -np.log1p(-k * q) / k, 1.0 / (1.0 - k * q)
+    rho = np.exp(a * p)
     r1 = a * s * rho
     r2 = (a + k) / 2.0 * s * r1
     r3 = (a + 2.0 * k) / 3.0 * s * r2
     r4 = (a + 3.0 * k) / 4.0 * s * r3
-    return rho, s, k * s * s, r1, r2, r3, r4
+    return p, rho, s, k * s * s, r1, r2, r3, r4
+
+
+@njit(cache=True)
+def density_of(q, law):
+    """Density ratio at a transformed pressure q, Pa, within the law's range."""
+    return law_at(q, law)[1]
 
 
 @njit(cache=True)
@@ -250,14 +255,13 @@ def viscosity_of_transformed(q, law, p_out, ratio_out, ratio_q_out):
     if not q.min() > law.lowest:
         p_out[:] = ratio_out[:] = ratio_q_out[:] = np.nan
         return False
-    inside = hermite_inverse(
-        q, law.exponent, law.q, law.table, law.bucket, law.bucket_scale, p_out, ratio_out, ratio_q_out
-    )
+    inside = True
     for i in range(n):
         for j in range(m):
-            inside = inside and q[i, j] < law.highest
-            rho, _, _, rho_q, _, _, _ = density_taylor(min(q[i, j], law.highest), law)
-            by_density = ratio_out[i, j] * rho_q if q[i, j] < law.highest else 0.0
-            ratio_q_out[i, j] = ratio_q_out[i, j] * rho + by_density
-            ratio_out[i, j] *= rho
+            x = q[i, j]
+            p, rho, s, s_q, rho_q, _, _, _ = law_at(min(x, law.highest), law)
+            if not x < law.highest:
+                inside = False
+                p, s, s_q, rho_q = p + BEYOND * (x - law.highest), BEYOND, 0.0, 0.0
+            p_out[i, j], ratio_out[i, j], ratio_q_out[i, j] = p, s * rho, s_q * rho + s * rho_q
     return inside

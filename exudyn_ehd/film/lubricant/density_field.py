@@ -11,7 +11,7 @@ the density stays.
 
 from numba import njit
 
-from exudyn_ehd.film.lubricant.density import density_taylor
+from exudyn_ehd.film.lubricant.density import law_at
 
 # Change of dp/dq, and an eighth of that of the density's slope, as shares, up to which Taylor's polynomial about a
 # known value is the law: to 1e-14 in the density, which the balance is solved with, and 1e-10 in its slope.
@@ -44,7 +44,7 @@ def look_up(x, scale, lowest, highest, law, near, known):
         q = _within(x[c], lowest, highest) * scale
         if abs(q - known[0, c]) <= near * known[8, c] and (q > 0.0) == (known[0, c] > 0.0):
             continue
-        rho, s, s_q, r1, r2, r3, r4 = density_taylor(q, law)
+        _, rho, s, s_q, r1, r2, r3, r4 = law_at(q, law)
         known[0, c], known[1, c], known[2, c], known[3, c] = q, rho, s, s_q
         known[4, c], known[5, c], known[6, c], known[7, c] = r1, r2, r3, r4
         known[8, c] = NEAR * min(s / abs(s_q), 4.0 * r1 / abs(r2))

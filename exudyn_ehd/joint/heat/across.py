@@ -91,7 +91,8 @@ class PairBalance(HeatBalance):
 
     def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
         assert kappa is not None
-        self.surface, self.through, lost = surfaces(kappa, area, outward)
+        self.surface, through, lost = surfaces(kappa, area, outward)
+        self.through = np.moveaxis(through, -1, 1)
         self.own = lost / self.scale
 
     def _carry(self, field: FluidityField, old: np.ndarray) -> None:
@@ -158,7 +159,7 @@ class PairBalance(HeatBalance):
 
     def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
         """Heat into both sides (n, m), W."""
-        return list(_of(self.through, _fields(x, at)))
+        return list(_of(np.moveaxis(self.through, 1, -1), _fields(x, at)))
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
         """Blocks (n, 4 m) of a state."""

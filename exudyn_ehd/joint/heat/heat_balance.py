@@ -31,7 +31,7 @@ class HeatBalance:
     ----------
     scale : float
         W/K per scaled flow, the unit of the equations.
-    through : (2, n, m, f) array
+    through : (2, f, n, m) array
         Heat into both sides, W, per kelvin of a vertex's unknowns and, last, of the temperatures outside.
     by : (2, 2, n, m) array
         Heat that each of the temperatures outside gives to both sides, at held unknowns, W/K.
@@ -47,7 +47,7 @@ class HeatBalance:
         self.store = area * self.flows.content / step if step > 0.0 else np.zeros(shape)
         self.follows = thermal.follows(self.old, heat / self.scale, self.store)
         self._pass(*between)
-        self.by = np.moveaxis(-self.through[..., -2:], -1, 1)
+        self.by = -self.through[:, -2:]
 
     def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
         self.through = passage(kappa, area, outward)
@@ -66,7 +66,7 @@ class HeatBalance:
 
     def solve(self) -> None:
         """Factor the system, which `between` and `change` use."""
-        flows, store, walls = self.flows, self.store, self.through[..., 0].sum(axis=0) / self.scale
+        flows, store, walls = self.flows, self.store, self.through[:, 0].sum(axis=0) / self.scale
         rigid = STAGNANT * self.largest()
         diagonal = self.follows + store + flows.entering + flows.found + walls + rigid
         held = store if self.step > 0.0 else np.full(store.shape, np.inf)
@@ -107,7 +107,7 @@ class HeatBalance:
     def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
         """Heat into both sides (n, m), W."""
         outside = self.by[:, 0] * at[0] + self.by[:, 1] * at[1]
-        return list(self.through[..., 0] * x - outside)
+        return list(self.through[:, 0] * x - outside)
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
         """Blocks of the film in a state."""

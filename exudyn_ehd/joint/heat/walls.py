@@ -5,7 +5,7 @@ bore outward, and the journal's, from its surface inward and the same in every r
 
 Film, bush and journal of a step are one linear system. The walls are condensed onto their surfaces, heat that they
 take by temperature there, `exudyn_ehd.film.heat.conduction`; what the film gives there follows from its own system,
-which is factored once, and from `exudyn_ehd.film.heat.conduction`.
+which is factored once, and from `exudyn_ehd.film.heat.energy`.
 """
 
 from __future__ import annotations

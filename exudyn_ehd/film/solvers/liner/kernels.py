@@ -5,7 +5,7 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.oil_line import curve_of
 from exudyn_ehd.film.cavitation.states import take_sink
-from exudyn_ehd.film.lubricant.density import density_taylor
+from exudyn_ehd.film.lubricant.density import law_at
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
 from exudyn_ehd.film.solvers.liner.elements import (
     Rates,
@@ -26,7 +26,7 @@ def density_of_load(load_fields, P, scale, law, rho_out, rho_P_out):
     x, drive = P.reshape(-1), load.drive.reshape(-1)
     rho, rho_P = rho_out.reshape(-1), rho_P_out.reshape(-1)
     for c in range(x.size):
-        rho[c], _, _, by, _, _, _ = density_taylor(drive[c] * scale, law)
+        _, rho[c], _, _, by, _, _, _ = law_at(drive[c] * scale, law)
         rho_P[c] = by * scale if x[c] == drive[c] else 0.0
 
 
