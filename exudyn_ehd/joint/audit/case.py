@@ -195,11 +195,13 @@ class Case:
         return q["minimum_gap"], q["peak_pressure"], q["power_loss"]
 
     def steady(self, other: BearingModel, mine: FilmState) -> Callable[[np.ndarray], Evaluation]:
-        """Return the function of a motion (10,) that evaluates the steady film of another bearing.
+        """Return the function of a motion of rigid surfaces that evaluates the steady film of another bearing.
 
         The temperature is held where both have the same: what else changes it is of second order; one that is a field
         settles anew on another grid.
         """
+        if not (other.remembers or other.flexible):
+            return other.evaluate
         thermal, known, near = other.bearing.thermal, mine.history, None
         if known is not None and thermal is not None and thermal == self._own.bearing.thermal:
             held = known.temperature

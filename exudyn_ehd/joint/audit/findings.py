@@ -195,9 +195,9 @@ def judged(
     unneeded = on is True and needless is not None and is_idle and not matters
     if unneeded and needless is not None:
         advice = needless
-    elif matters and not on:
-        no_film = " No film was found that carries this load then."
-        advice = mattering if not mattering or change is None or change.found else mattering + no_film
+    elif matters and not on and mattering:
+        is_lost = change is not None and not change.found
+        advice = f"{mattering} No film was found that carries this load then." if is_lost else mattering
     return Finding(
         effect=effect,
         indicator=indicator,

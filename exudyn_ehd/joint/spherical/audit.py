@@ -9,7 +9,7 @@ have, are judged by their numbers alone: such a row has no remedy but what its a
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import ClassVar
@@ -133,12 +133,6 @@ class BallCase(Case):
         grid, chi = found.model.grid, found.model.patch.chi
         peak = refined_peak(found.film.pressure, grid.fixed, grid.x, chi, True)[0]
         return found.minimum_gap, peak, found.quantities()["power_loss"]
-
-    def steady(  # type: ignore[override]
-        self, other: SphericalModel, mine: FilmState
-    ) -> Callable[[np.ndarray], SphericalEvaluation]:
-        """Return the function of a motion (11,) that evaluates the film of another ball."""
-        return other.evaluate
 
 
 def _contact(case: Case) -> Finding:
