@@ -25,7 +25,7 @@ from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import FilmError, Status
 
 NAMES = (
     "axial_position",
@@ -85,6 +85,15 @@ class ThrustEvaluation:
         damping = -float(self.tangent()[2, 9])
         uneven = sum(face.side * float(face.tangent()[2, 3]) for face in self.model.faces if is_at_rest(face))
         return math.nan if abs(uneven) > 2.0 * LARGEST_SPREAD * damping else damping
+
+    def require_film(self, where: str) -> None:
+        """Raise `FilmError` in the name of ``where`` if a face has no film."""
+        if self.status is not Status.CONVERGED:
+            gap, (bx, by) = min(state.minimum_gap for state in self.states), self.motion[2:4]
+            raise FilmError(
+                f"{where}: {self.status.name} on a thrust face at the axial position {self.position:.4g} m, tilt = "
+                f"({bx:.3g}, {by:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
+            )
 
     def quantities(self) -> Mapping[str, float]:
         """Scalars by the names of `NAMES`.
@@ -177,15 +186,6 @@ def is_at_rest(face: FaceFilm) -> bool:
         return False
     cavity = float(face.known[2])
     return math.isfinite(cavity) and bool(np.abs(face.solver.pressure - cavity).max() <= source + 1e-12 * abs(cavity))
-
-
-def no_film(found: ThrustEvaluation, where: str) -> str:
-    """Return the message for an evaluation without a film at a given position; it begins with ``where``."""
-    gap, (bx, by) = min(state.minimum_gap for state in found.states), found.motion[2:4]
-    return (
-        f"{where}: {found.status.name} on a thrust face at the axial position {found.position:.4g} m, tilt = "
-        f"({bx:.3g}, {by:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
-    )
 
 
 def face_motion(motion: np.ndarray, position: float, height: float) -> np.ndarray:

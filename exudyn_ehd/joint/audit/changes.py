@@ -18,11 +18,11 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, squeeze_rate
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
-from exudyn_ehd.joint.balance.position import Carried, LoadSearch
+from exudyn_ehd.joint.balance.newton import Balance
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.quantities import refined_peak
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.status import FilmError, InputError, Status
 
 # From this change on an effect matters; below the second one nobody needs it.
@@ -180,46 +180,25 @@ class Comparison:
             held = None
         if other.flexible and other.bearing.bush is own.bush and other.bearing.journal is own.journal:
             other.evaluate(mine.motion, held)  # the search for its bore's shape starts from this one's
-        search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)
-        motion = mine.motion[:MOTION_SIZE]
+        motion, placed = mine.motion[:MOTION_SIZE], Balance(other, "audit", held=held)
+        load, temperature = math.nan, placed.temperature_of(None)
         try:
-            load = float(np.hypot(*search.at(motion).evaluation.wrench[:2]))
+            there = placed.solve(motion, temperature)
+            load, temperature = float(np.hypot(*there.evaluation.wrench[:2])), there.temperature
         except FilmError:
-            load = math.nan
-        return load, _same_load(search, motion)
+            pass
+        return load, _same_load(Balance(other, "audit", -force, held=held, effort=EFFORT), motion, temperature)
 
 
-class _HeldSearch(LoadSearch):
-    """Search at the temperature of a history."""
-
-    def __init__(self, model: BearingModel, force: np.ndarray, history: History) -> None:
-        super().__init__(model, force, "audit", EFFORT)
-        self._held = History(temperature=history.temperature)
-
-    def at(self, motion: np.ndarray) -> Carried:
-        """The steady film at a motion (10,), which is kept."""
-        self.count += 1
-        evaluation = self.model.evaluate_steady(motion, self._held)
-        if evaluation.film is None or evaluation.status is not Status.CONVERGED:
-            raise FilmError(f"audit: {evaluation.status.name}")
-        unbalance = evaluation.wrench[:2] + self.force
-        return Carried(motion.copy(), evaluation, evaluation.film, unbalance, evaluation.steady_tangent())
-
-    def _learnt(self, place: Carried, reached: Carried) -> Carried:
-        return reached
-
-
-def _same_load(search: LoadSearch, motion: np.ndarray) -> Evaluation | None:
+def _same_load(balance: Balance, motion: np.ndarray, temperature: np.ndarray) -> Evaluation | None:
     """The film that carries the load, near a motion; None if it is not found."""
     for start in STARTS:
         trial = motion.copy()
         trial[:2] *= start
         try:
-            found = search.newton(search.at(trial), TOLERANCE, MOST_STEPS)
+            found = balance.solve(trial, temperature, TOLERANCE)
         except FilmError:
             continue
-        if search.residual(found) <= TOLERANCE:
-            if found.film.serial != search.model.parts.evaluations.count:
-                found = search.at(found.motion)
+        if balance.is_balanced(found, TOLERANCE):
             return found.evaluation
     return None
