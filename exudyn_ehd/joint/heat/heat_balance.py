@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.heat.conduction import Passage
 from exudyn_ehd.film.heat.energy import transport_slopes
-from exudyn_ehd.joint.heat.power import OilFlows
-from exudyn_ehd.joint.heat.temperature import HeatedFilm, temperature_of
+from exudyn_ehd.joint.heat.power import OilFlows, heat_of
+from exudyn_ehd.joint.heat.temperature import temperature_of
 from exudyn_ehd.joint.solved_film import SolvedFilm
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.heat.walls import FilmTemperature
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
 STAGNANT = 1e-14
@@ -22,50 +27,66 @@ MIXED = 1e4
 PassageData = tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | None]]
 
 
-class EvenPassage(Passage):
-    """`Passage` of a film of one temperature over its height, between surfaces with coefficients, W/(m2 K)."""
-
-    def __init__(self, area: np.ndarray, coefficients: tuple[float | None, float | None]) -> None:
-        self.to = [(U or 0.0) * area for U in coefficients]
-        self.by = [[self.to[0], np.zeros_like(area)], [np.zeros_like(area), self.to[1]]]
-        self.transfer = self.to[0] + self.to[1]
-
-
 class HeatBalance:
-    """Energy equation of a film's mean temperature between surfaces that have temperatures outside, K.
+    """Energy equations of a film between surfaces that have temperatures outside, K.
 
-    Over a step, or in the steady state with a step of 0. ``at`` lists the temperatures of both sides as (n, 1) or (1,
-    1) arrays. Unknowns are temperatures (n, m), K.
+    Over a step, or in the steady state with a step of 0. Unknowns are k fields (k, n, m), K: here the mean temperature
+    alone. ``at`` lists the temperatures of both sides as (n, 1) or (1, 1) arrays. What is linear in all of them has a
+    last axis of k + 2.
 
     Attributes
     ----------
     scale : float
         W/K per scaled flow, the unit of the equations.
-    by : lists of lists of (n, m) arrays
-        Heat that the temperatures outside give to both sides, at held unknowns, W/K.
+    through : (2, n, m, k + 2) array
+        Heat into both sides, W.
+    own : (k, n, m, k + 2) array
+        Scaled heat that leaves the vertices, without that over the links.
+    given, brings : (k, n, m) arrays
+        Scaled heat besides it, and what oil of unit temperature adds that a cavitation model finds.
+    ends : (2, 2, k, n, m, k + 2) array or empty list
+        Scaled heat over the links in theta and z by their own and the next vertex, where it depends on what is outside.
+    takes : two arrays
+        Temperature of the oil that leaves, and of that which a cavitation model loses.
     """
 
-    def __init__(self, thermal: HeatedFilm, film: SolvedFilm, step: float, passage: PassageData) -> None:
-        area, shape, heat = film.solver.area, film.grid.shape, thermal.heat(film)
+    unknowns = 1
+
+    def __init__(self, thermal: FilmTemperature, film: SolvedFilm, step: float) -> None:
+        area, shape = film.solver.area, film.grid.shape
         self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
-        self.old = temperature_of(film)
+        self.old, self.heat = temperature_of(film), heat_of(film)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
-        self.heat, self.flows = heat, OilFlows(film, thermal.carry_over)
+        self.flows = OilFlows(film, thermal.carry_over)
         self.weight = self.flows.lost / (self.flows.total_lost or 1.0)
         self.store = area * self.flows.content / step if step > 0.0 else np.zeros(shape)
-        self.follows = thermal.follows(self.old, heat / self.scale, self.store)
-        self._pass(*passage)
+        self.held = self.store if step > 0.0 else np.full(shape, np.inf)
+        self.follows = thermal.follows(self.old, self.heat / self.scale, self.store)
+        self.largest = max(self.flows.largest, float(self.store.max()))
+        self.band = thermal.band(shape, self.unknowns)
+        self._assemble(*thermal.passage(film))
+        self.band.factor()
+        if self.flows.back > 0.0:
+            self.returning = self.band.solve(self.flows.back * self.brings)
 
-    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
-        if kappa is None or outward == (0.0, 0.0):
-            self.passage: Passage = EvenPassage(area, outward)
-        else:
-            self.passage = Passage(kappa, area, outward)
-        self.by = self.passage.by
-
-    def largest(self) -> float:
-        """Largest of the flows and of the storage."""
-        return max(self.flows.largest, float(self.store.max()))
+    def _assemble(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        """Set the arrays of the equations, and fill their band."""
+        flows, self.ends, self.brings = self.flows, [], self.flows.found[None]
+        self.takes = (np.array([1.0, 0.0, 0.0]),) * 2
+        self.through = passage(kappa, area, outward)
+        self.own = self.through.sum(axis=0)[None] / self.scale
+        kept = self.store + STAGNANT * self.largest + self.follows
+        diagonal = kept + flows.entering + flows.found + self.own[0, ..., 0]
+        slopes, links = np.empty((5, self.store.size)), (flows.x, flows.z)
+        transport_slopes(*links, diagonal, self.old, self.film.grid.link_z, self.held, slopes)
+        if flows.areas:
+            stirred = self.stirred()
+            slopes[:4:2] += stirred.reshape(2, -1)
+            slopes[1:4:2] -= stirred.reshape(2, -1)
+            links = links[0] + stirred[0], links[1] + stirred[1]  # also where nothing flows
+        band = self.band
+        assemble(*links, slopes, band.number, band.order, band.size, band.lower, band.upper)
+        self.given = (self.heat / self.scale + kept * (self.old - self.supply))[None]
 
     def stirred(self) -> np.ndarray:
         """Exchange (2, n, m) over the links in theta and z that mixes the supply areas."""
@@ -75,57 +96,76 @@ class HeatBalance:
             links[1, :, :-1] += area[:, :-1] & area[:, 1:]
         return MIXED * self.flows.largest * links
 
-    def solve(self) -> None:
-        """Factor the system, which `between` and `change` use."""
-        flows, store, walls = self.flows, self.store, self.passage.transfer / self.scale
-        rigid = STAGNANT * self.largest()
-        diagonal = self.follows + store + flows.entering + flows.found + walls + rigid
-        held = store if self.step > 0.0 else np.full(store.shape, np.inf)
-        slopes, links = np.empty((5, store.size)), (flows.x, flows.z)
-        transport_slopes(*links, diagonal, self.old, self.film.grid.link_z, held, slopes)
-        if flows.areas:
-            stirred = self.stirred()
-            slopes[:4:2] += stirred.reshape(2, -1)
-            slopes[1:4:2] -= stirred.reshape(2, -1)
-            links = links[0] + stirred[0], links[1] + stirred[1]  # also where nothing flows
-        self.band = band = self.thermal.band(store.shape, 1)
-        assemble(*links, slopes, band.number, band.order, band.size, band.lower, band.upper)
-        band.factor()
-        self.given = self.heat / self.scale + (store + rigid + self.follows) * (self.old - self.supply)
-
     def between(self, at: list[np.ndarray]) -> np.ndarray:
         """Unknowns with temperatures ``at`` outside."""
-        gain = self.passage.gain([a - self.supply for a in at]) / self.scale
-        T0, self.returning = self.band.solve(np.array([self.given + gain, self.flows.back * self.flows.found]))
-        mixed = 0.0
-        if self.flows.back > 0.0:
-            mixed = float(np.sum(self.weight * T0)) / (1.0 - float(np.sum(self.weight * self.returning)))
-        return self.supply + T0 + mixed * self.returning
+        x = self._answer(self.given, [a - self.supply for a in at])
+        x[0] += self.supply
+        return x
 
     def change(self, at: list[np.ndarray]) -> np.ndarray:
-        """Change of `between`, which has been asked for, by a change outside."""
-        change = self.band.solve(self.passage.gain(at)[None] / self.scale)[0]
+        """Change of `between` by a change outside."""
+        return self._answer(np.zeros_like(self.given), at)
+
+    def _answer(self, given: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+        """Unknowns with rises ``at`` outside."""
+        outside = fields_of(np.zeros_like(given), at)
+        rest = given - linear(self.own, outside)
+        for axis, (own, other) in enumerate(self.ends):
+            flow = linear(own, outside) + linear(other, np.roll(outside, -1, axis))
+            rest -= flow - np.roll(flow, 1, axis + 1)
+        x = self.band.solve(rest)
         if self.flows.back > 0.0:
-            mixed = float(np.sum(self.weight * change)) / (1.0 - float(np.sum(self.weight * self.returning)))
-            change += mixed * self.returning
-        return change
+            back = self._mixed(fields_of(self.returning, [np.zeros((1, 1))] * 2))
+            x = x + self._mixed(fields_of(x, at)) / (1.0 - back) * self.returning
+        return x
+
+    def _mixed(self, fields: np.ndarray) -> float:
+        """Temperature of all oil that is lost, mixed."""
+        return float(np.sum(self.weight * linear(self.takes[1], fields)))
 
     def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
         """Heat into both sides (n, m), W."""
-        return self.passage.heat(x, at)
+        return list(linear(self.through, fields_of(x, at)))
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-        """Blocks of the film in a state."""
-        return x
+        """Blocks (n, ...) of the film in a state."""
+        return x[0]
 
-    def totals(self, T: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
-        """Heat in, convected and stored, W, with these temperatures at the end."""
-        rise, area, flows = T - self.supply, self.film.solver.area, self.flows
-        mixed = float(np.sum(self.weight * rise))
-        stored = float(np.sum(self.store * (T - self.old))) if self.step > 0.0 else 0.0
-        convected = float(np.sum((flows.leaving + flows.lost) * rise)) - flows.back * mixed * flows.total_found
+    def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
+        """Heat in, convected and stored, W, with these unknowns at the end."""
+        levels = np.array([self.supply, *[0.0] * (self.unknowns - 1), self.supply, self.supply])
+        rise, flows, moved = fields_of(x, at) - levels, self.flows, x[0] - self.old
+        leaving, lost = (linear(takes, rise) for takes in self.takes)
+        convected = float(np.sum(flows.leaving * leaving + flows.lost * lost))
+        convected -= flows.back * self._mixed(rise) * flows.total_found
+        stored = float(np.sum(self.store * moved + self.film.solver.area * flows.rate * rise[..., 0]))
         return {
-            "heat_in": float(np.sum(self.heat - self.scale * self.follows * (T - self.old))),
+            "heat_in": float(np.sum(self.heat - self.scale * self.follows * moved)),
             "convected": self.scale * convected,
-            "stored": self.scale * (stored + float(np.sum(area * flows.rate * rise))),
+            "stored": self.scale * stored,
         }
+
+
+def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
+    """Heat into both sides (2, n, m, 3), W, per kelvin of a film's mean temperature and of those outside.
+
+    A film without a conductivity has one temperature over its height.
+    """
+    if kappa is None or outward == (0.0, 0.0):
+        through = np.zeros((2, *area.shape, 3))
+        for side, U in enumerate(outward):
+            through[side, ..., 0] = (U or 0.0) * area
+            through[side, ..., 1 + side] = -through[side, ..., 0]
+        return through
+    known = Passage(kappa, area, outward)
+    return np.array([np.stack((known.to[a], -known.by[a][0], -known.by[a][1]), axis=-1) for a in (0, 1)])
+
+
+def fields_of(x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+    """Unknowns (k, n, m) and temperatures outside both surfaces as (n, m, k + 2)."""
+    return np.stack([*x, *(np.broadcast_to(a, x.shape[1:]) for a in at)], axis=-1)
+
+
+def linear(coefficients: np.ndarray, fields: np.ndarray) -> np.ndarray:
+    """Values (..., n, m) of what is linear in fields (n, m, c)."""
+    return np.einsum("...c,...c", coefficients, fields)
