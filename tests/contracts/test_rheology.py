@@ -164,7 +164,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         monkeypatch.setattr(f"exudyn_ehd.film.lubricant.{target}", forbidden)
     monkeypatch.setattr("exudyn_ehd.film.lubricant.pressure_viscosity.BarusPressure.inverse", forbidden)
     for target in (
-        "heat.temperature._Temperature.viscosity_ratio",
+        "heat.temperature.OilTemperature.viscosity_ratio",
         "heat.power.film_flows",
         "balance.film._target",
     ):

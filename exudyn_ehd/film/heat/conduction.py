@@ -173,47 +173,31 @@ class Rings:
         return np.column_stack((surface, inside))
 
 
-class Passage:
-    """Linear in the mean temperature and in what both sides have: ``q_a = to[a] T - sum over b of by[a][b] T_b``.
+def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
+    """Heat into both surfaces (2, n, m, 3), W, per kelvin of the mean temperature and of those outside.
 
-    A side of a given coefficient has ``q = U (s - T_wall)``, one that conducts by itself ``s = T_wall``.
+    A surface of a given coefficient has ``q = U (s - T_outside)``, one that conducts by itself ``s = T_outside``.
 
     Parameters
     ----------
     kappa, area : (n, m) arrays
-        k / h, W/(m2 K), and m2 of the vertices.
-    coefficients : (float or None, float or None)
-        U of both sides, W/(m2 K); None: the surface has the wall's temperature.
-
-    Attributes
-    ----------
-    to, by : lists of (n, m) arrays, lists of such lists
-        W/K.
-    transfer : (n, m) array
-        Of both sides together, W/K.
+        k / h, W/(m2 K), and m2 of the vertices; without a kappa the film has one temperature over its height.
+    outward : (float or None, float or None)
+        U of both surfaces, W/(m2 K); None: the surface has the temperature outside.
     """
-
-    def __init__(self, kappa: np.ndarray, area: np.ndarray, coefficients: tuple[float | None, float | None]) -> None:
-        # rows of both surfaces: own s_a + 2 kappa meets s_b = 6 kappa meets T + given T_a
-        own = [np.ones_like(kappa) if U is None else 4.0 * kappa + U for U in coefficients]
-        meets = [0.0 if U is None else 1.0 for U in coefficients]
-        given = [1.0 if U is None else U for U in coefficients]
-        determinant = own[0] * own[1] - 4.0 * kappa**2 * meets[0] * meets[1]
-        self.to, self.by = [], []
-        surface, mean = [], []
-        for a, b in ((0, 1), (1, 0)):
-            mean.append(6.0 * kappa * (own[b] * meets[a] - 2.0 * kappa * meets[a] * meets[b]) / determinant)
-            parts = [own[b] * given[a] / determinant, -2.0 * kappa * meets[a] * given[b] / determinant]
-            surface.append(parts if a == 0 else parts[::-1])
-        for a, b in ((0, 1), (1, 0)):
-            self.to.append(area * kappa * (6.0 - 4.0 * mean[a] - 2.0 * mean[b]))
-            self.by.append([area * kappa * (4.0 * surface[a][k] + 2.0 * surface[b][k]) for k in (0, 1)])
-        self.transfer = self.to[0] + self.to[1]
-
-    def gain(self, at: list[np.ndarray]) -> np.ndarray:
-        """Heat (n, m) from both sides at the temperatures ``at`` into a film of temperature 0, W."""
-        return sum((self.by[0][k] + self.by[1][k]) * at[k] for k in (0, 1))
-
-    def heat(self, T: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
-        """Heat into both sides (n, m), W."""
-        return [self.to[a] * T - self.by[a][0] * at[0] - self.by[a][1] * at[1] for a in (0, 1)]
+    if kappa is None or outward == (0.0, 0.0):
+        rows = np.array([[1.0, -1.0, 0.0], [1.0, 0.0, -1.0]])[..., None, None]
+        return np.moveaxis([(U or 0.0) * row * area for U, row in zip(outward, rows, strict=True)], 1, -1)
+    meets = [0.0 if U is None else 1.0 for U in outward]
+    given = [1.0 if U is None else U for U in outward]
+    # rows of both surfaces: own s_a + 2 kappa meets s_b = known
+    own = [4.0 * kappa * meet + U for meet, U in zip(meets, given, strict=True)]
+    known = np.zeros((2, 3, *kappa.shape))
+    for side in (0, 1):
+        known[side, 0] = 6.0 * kappa * meets[side]
+        known[side, 1 + side] = given[side]
+    determinant = own[0] * own[1] - 4.0 * kappa * kappa * meets[0] * meets[1]
+    s = np.array([(own[1 - a] * known[a] - 2.0 * kappa * meets[a] * known[1 - a]) / determinant for a in (0, 1)])
+    through = -4.0 * s - 2.0 * s[::-1]
+    through[:, 0] += 6.0
+    return np.moveaxis(kappa * area * through, 1, -1)

@@ -28,7 +28,7 @@ from exudyn_ehd.film.heat.across import (
 from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT, HeatBalance, fields_of, linear
+from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.power import dropped, sheared
 from exudyn_ehd.joint.heat.temperature import ViscosityField
 from exudyn_ehd.joint.heat.walls import FilmTemperature
@@ -103,13 +103,14 @@ class PairBalance(HeatBalance):
         limiter = start_heights(old), film.grid.link_z, self.held
         made = flows.found - flows.lost
         below = flows.outside[..., None] * own.pressed_below + made[..., None] * own.slides_below
-        content, self.ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
+        content, ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
         for axis, (k, whole, fluid) in enumerate(((y.kx, flows.x, field.along), (y.kz, flows.z, field.across))):
             driven = k * (q - np.roll(q, -1, axis))
-            carry(axis, driven, whole - driven, flow_shapes(fluid), at, limiter, self.ends[axis], below, content)
+            carry(axis, driven, whole - driven, flow_shapes(fluid), at, limiter, ends[axis], below, content)
         stirred = self.stirred()
-        self.ends[:, 0, 0, ..., 0] += stirred
-        self.ends[:, 1, 0, ..., 0] -= stirred
+        ends[:, 0, 0, ..., 0] += stirred
+        ends[:, 1, 0, ..., 0] -= stirred
+        self.ends = ends
         leaves, loses = (weighed(flow, at) for flow in (own.pressed, own.slides))
         if flows.areas:
             # what areas take is mixed over the height
@@ -123,7 +124,7 @@ class PairBalance(HeatBalance):
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
         """Blocks (n, 4 m) of a state."""
-        return np.hstack([x[0], x[0] + x[1], *linear(self.surface, fields_of(x, at))])
+        return np.hstack([x[0], x[0] + x[1], *linear(self.surface, [*x, *at])])
 
 
 class CubicTemperature(FilmTemperature):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.heat.conduction import Passage
+from exudyn_ehd.film.heat.conduction import passage
 from exudyn_ehd.film.heat.energy import transport_slopes
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of
 from exudyn_ehd.joint.heat.temperature import temperature_of
@@ -71,7 +72,8 @@ class HeatBalance:
 
     def _assemble(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
         """Set the arrays of the equations, and fill their band."""
-        flows, self.ends, self.brings = self.flows, [], self.flows.found[None]
+        flows, self.brings = self.flows, self.flows.found[None]
+        self.ends: Sequence[np.ndarray] = ()
         self.takes = (np.array([1.0, 0.0, 0.0]),) * 2
         self.through = passage(kappa, area, outward)
         self.own = self.through.sum(axis=0)[None] / self.scale
@@ -108,24 +110,22 @@ class HeatBalance:
 
     def _answer(self, given: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
         """Unknowns with rises ``at`` outside."""
-        outside = fields_of(np.zeros_like(given), at)
-        rest = given - linear(self.own, outside)
+        rest = given - linear(self.own[..., -2:], at)
         for axis, (own, other) in enumerate(self.ends):
-            flow = linear(own, outside) + linear(other, np.roll(outside, -1, axis))
+            flow = linear(own[..., -2:], at) + linear(other[..., -2:], [np.roll(a, -1, axis) for a in at])
             rest -= flow - np.roll(flow, 1, axis + 1)
         x = self.band.solve(rest)
         if self.flows.back > 0.0:
-            back = self._mixed(fields_of(self.returning, [np.zeros((1, 1))] * 2))
-            x = x + self._mixed(fields_of(x, at)) / (1.0 - back) * self.returning
+            x = x + self._mixed([*x, *at]) / (1.0 - self._mixed([*self.returning, 0.0, 0.0])) * self.returning
         return x
 
-    def _mixed(self, fields: np.ndarray) -> float:
+    def _mixed(self, fields: Sequence[np.ndarray | float]) -> float:
         """Temperature of all oil that is lost, mixed."""
         return float(np.sum(self.weight * linear(self.takes[1], fields)))
 
     def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
         """Heat into both sides (n, m), W."""
-        return list(linear(self.through, fields_of(x, at)))
+        return list(linear(self.through, [*x, *at]))
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
         """Blocks (n, ...) of the film in a state."""
@@ -133,12 +133,13 @@ class HeatBalance:
 
     def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
         """Heat in, convected and stored, W, with these unknowns at the end."""
-        levels = np.array([self.supply, *[0.0] * (self.unknowns - 1), self.supply, self.supply])
-        rise, flows, moved = fields_of(x, at) - levels, self.flows, x[0] - self.old
+        levels = (self.supply, *[0.0] * (self.unknowns - 1), self.supply, self.supply)
+        rise = [field - level for field, level in zip([*x, *at], levels, strict=True)]
+        flows, moved = self.flows, x[0] - self.old
         leaving, lost = (linear(takes, rise) for takes in self.takes)
         convected = float(np.sum(flows.leaving * leaving + flows.lost * lost))
         convected -= flows.back * self._mixed(rise) * flows.total_found
-        stored = float(np.sum(self.store * moved + self.film.solver.area * flows.rate * rise[..., 0]))
+        stored = float(np.sum(self.store * moved + self.film.solver.area * flows.rate * rise[0]))
         return {
             "heat_in": float(np.sum(self.heat - self.scale * self.follows * moved)),
             "convected": self.scale * convected,
@@ -146,26 +147,6 @@ class HeatBalance:
         }
 
 
-def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
-    """Heat into both sides (2, n, m, 3), W, per kelvin of a film's mean temperature and of those outside.
-
-    A film without a conductivity has one temperature over its height.
-    """
-    if kappa is None or outward == (0.0, 0.0):
-        through = np.zeros((2, *area.shape, 3))
-        for side, U in enumerate(outward):
-            through[side, ..., 0] = (U or 0.0) * area
-            through[side, ..., 1 + side] = -through[side, ..., 0]
-        return through
-    known = Passage(kappa, area, outward)
-    return np.array([np.stack((known.to[a], -known.by[a][0], -known.by[a][1]), axis=-1) for a in (0, 1)])
-
-
-def fields_of(x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-    """Unknowns (k, n, m) and temperatures outside both surfaces as (n, m, k + 2)."""
-    return np.stack([*x, *(np.broadcast_to(a, x.shape[1:]) for a in at)], axis=-1)
-
-
-def linear(coefficients: np.ndarray, fields: np.ndarray) -> np.ndarray:
-    """Values (..., n, m) of what is linear in fields (n, m, c)."""
-    return np.einsum("...c,...c", coefficients, fields)
+def linear(coefficients: np.ndarray, fields: Sequence[np.ndarray | float]) -> np.ndarray:
+    """Values (..., n, m) of what is linear in fields (n, m), one for each of the coefficients' last axis."""
+    return np.asarray(sum(coefficients[..., k] * field for k, field in enumerate(fields)))

@@ -96,6 +96,7 @@ class FilmTemperature(OilTemperature):
         self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
         self.grows = any(wall.expands > 0.0 for wall in self.conducting)
         self._last: np.ndarray | None = None
+        self._last_split: np.ndarray | None = None
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, m + k) state, K, at the start of a motion."""
@@ -119,17 +120,19 @@ class FilmTemperature(OilTemperature):
         """The film's own temperatures (n, m) of a state, and its walls; None where nothing stands behind the film's."""
         if self.size == self.shape[1]:
             return temperature, None
-        T = np.asarray(temperature)
-        bush, journal = self.sides
-        walls = Walls(
-            None if bush is None else bush.of(T),
-            None if journal is None else journal.of(T)[0],
-            None if bush is None else bush.rings.radii,
-            None if journal is None else journal.rings.radii,
-            self.clearance + self.opening(T),
-            self._across(T),
-        )
-        return np.ascontiguousarray(T[:, : self.shape[1]]), walls
+        if temperature is not self._last_split:
+            self._last_split = T = np.asarray(temperature)
+            bush, journal = self.sides
+            walls = Walls(
+                None if bush is None else bush.of(T),
+                None if journal is None else journal.of(T)[0],
+                None if bush is None else bush.rings.radii,
+                None if journal is None else journal.rings.radii,
+                self.clearance + self.opening(T),
+                self._across(T),
+            )
+            self._parts = np.ascontiguousarray(T[:, : self.shape[1]]), walls
+        return self._parts
 
     def _across(self, state: np.ndarray) -> np.ndarray | None:
         """Tilt and both surfaces' temperatures (3, n, m), K; None with one mean temperature."""
