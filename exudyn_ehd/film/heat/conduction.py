@@ -187,7 +187,7 @@ def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | N
     """
     if kappa is None or outward == (0.0, 0.0):
         rows = np.array([[1.0, -1.0, 0.0], [1.0, 0.0, -1.0]])[..., None, None]
-        return np.moveaxis([(U or 0.0) * row * area for U, row in zip(outward, rows, strict=True)], 1, -1)
+        return np.moveaxis(np.array([U or 0.0 for U in outward])[:, None, None, None] * rows * area, 1, -1)
     meets = [0.0 if U is None else 1.0 for U in outward]
     given = [1.0 if U is None else U for U in outward]
     # rows of both surfaces: own s_a + 2 kappa meets s_b = known

@@ -70,11 +70,9 @@ class PairBalance(HeatBalance):
     Parameters
     ----------
     thermal : CubicTemperature
-    film, step
+    film, step, passage, band
         As for `HeatBalance`.
     """
-
-    unknowns = 2
 
     def _assemble(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
         film, thermal = self.film, self.thermal
@@ -138,7 +136,7 @@ class CubicTemperature(FilmTemperature):
         Takes the viscosity of the temperatures to the film.
     """
 
-    blocks = 4
+    blocks, fields = 4, 2
 
     def __init__(
         self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]
@@ -169,7 +167,7 @@ class CubicTemperature(FilmTemperature):
 
     def equations(self, film: SolvedFilm, step: float) -> PairBalance:
         """Return the equations of a solved film over a step, s; 0: steady state."""
-        return PairBalance(self, film, step)
+        return PairBalance(self, film, step, self.passage(film), self.band)
 
     def _blocks(self, state: np.ndarray) -> np.ndarray:
         """Mean, tilt and both surfaces (4, n, m) of a state."""

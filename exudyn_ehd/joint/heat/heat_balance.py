@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.heat.conduction import passage
+from exudyn_ehd.film.heat.conduction import passage as passage_of
 from exudyn_ehd.film.heat.energy import transport_slopes
+from exudyn_ehd.joint.heat.band import BandSolver
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of
-from exudyn_ehd.joint.heat.temperature import temperature_of
+from exudyn_ehd.joint.heat.temperature import OilTemperature, temperature_of
 from exudyn_ehd.joint.solved_film import SolvedFilm
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.heat.walls import FilmTemperature
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
 STAGNANT = 1e-14
@@ -51,11 +48,11 @@ class HeatBalance:
         Temperature of the oil that leaves, and of that which a cavitation model loses.
     """
 
-    unknowns = 1
-
-    def __init__(self, thermal: FilmTemperature, film: SolvedFilm, step: float) -> None:
+    def __init__(
+        self, thermal: OilTemperature, film: SolvedFilm, step: float, passage: PassageData, band: BandSolver
+    ) -> None:
         area, shape = film.solver.area, film.grid.shape
-        self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
+        self.film, self.step, self.supply, self.thermal, self.band = film, step, thermal.supply, thermal, band
         self.old, self.heat = temperature_of(film), heat_of(film)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
         self.flows = OilFlows(film, thermal.carry_over)
@@ -64,18 +61,17 @@ class HeatBalance:
         self.held = self.store if step > 0.0 else np.full(shape, np.inf)
         self.follows = thermal.follows(self.old, self.heat / self.scale, self.store)
         self.largest = max(self.flows.largest, float(self.store.max()))
-        self.band = thermal.band(shape, self.unknowns)
-        self._assemble(*thermal.passage(film))
-        self.band.factor()
+        self._assemble(*passage)
+        band.factor()
         if self.flows.back > 0.0:
             self.returning = self.band.solve(self.flows.back * self.brings)
 
     def _assemble(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
         """Set the arrays of the equations, and fill their band."""
         flows, self.brings = self.flows, self.flows.found[None]
-        self.ends: Sequence[np.ndarray] = ()
+        self.ends: Sequence[np.ndarray] | np.ndarray = ()
         self.takes = (np.array([1.0, 0.0, 0.0]),) * 2
-        self.through = passage(kappa, area, outward)
+        self.through = passage_of(kappa, area, outward)
         self.own = self.through.sum(axis=0)[None] / self.scale
         kept = self.store + STAGNANT * self.largest + self.follows
         diagonal = kept + flows.entering + flows.found + self.own[0, ..., 0]
@@ -133,7 +129,7 @@ class HeatBalance:
 
     def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
         """Heat in, convected and stored, W, with these unknowns at the end."""
-        levels = (self.supply, *[0.0] * (self.unknowns - 1), self.supply, self.supply)
+        levels = (self.supply, *[0.0] * (len(x) - 1), self.supply, self.supply)
         rise = [field - level for field, level in zip([*x, *at], levels, strict=True)]
         flows, moved = self.flows, x[0] - self.old
         leaving, lost = (linear(takes, rise) for takes in self.takes)

@@ -10,8 +10,7 @@ which is factored once, and from `exudyn_ehd.film.heat.conduction`.
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
@@ -73,7 +72,8 @@ class FilmTemperature(OilTemperature):
         Shape of the film's grid.
     """
 
-    blocks = 1
+    # of a state, and unknowns at each vertex
+    blocks, fields = 1, 1
 
     def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]):
         super().__init__(spec, bearing.lubricant)
@@ -81,7 +81,6 @@ class FilmTemperature(OilTemperature):
         bush, journal = self._or_supply(spec.bush_temperature), self._or_supply(spec.journal_temperature)
         self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
         self.transfer = spec.bush_coefficient + spec.journal_coefficient
-        self.band: Callable[[tuple[int, int], int], BandSolver] = functools.cache(BandSolver)
         R, L = bearing.journal_radius, bearing.length
         self.sides: list[_Wall | None] = [None, None]
         end = self.blocks * shape[1]
@@ -97,6 +96,11 @@ class FilmTemperature(OilTemperature):
         self.grows = any(wall.expands > 0.0 for wall in self.conducting)
         self._last: np.ndarray | None = None
         self._last_split: np.ndarray | None = None
+
+    @cached_property
+    def band(self) -> BandSolver:
+        """Banded systems of the film's unknowns."""
+        return BandSolver(self.shape, self.fields)
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, m + k) state, K, at the start of a motion."""
@@ -226,7 +230,7 @@ class FilmTemperature(OilTemperature):
 
     def equations(self, film: SolvedFilm, step: float) -> HeatBalance:
         """Return the equations of a solved film over a step, s; 0: steady state."""
-        return HeatBalance(self, film, step)
+        return HeatBalance(self, film, step, self.passage(film), self.band)
 
     def passage(self, film: SolvedFilm) -> PassageData:
         """Return the passage of heat from a solved film to both sides."""
