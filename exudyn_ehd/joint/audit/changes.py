@@ -27,9 +27,9 @@ from exudyn_ehd.status import FilmError, InputError, Status
 
 # From this change on an effect matters; below the second one nobody needs it.
 MATTERS, NOTHING = 0.03, 0.02
-# Search for the same load: relative unbalance, largest numbers of film solves and of steps from each start, and the
-# starts as shares of the eccentricity.
-TOLERANCE, EFFORT, MOST_STEPS, STARTS = 1e-3, 600, 15, (1.0, 0.95, 0.7)
+# Search for the same load: relative unbalance, largest number of film solves, and the starts as shares of the
+# eccentricity.
+TOLERANCE, EFFORT, STARTS = 1e-3, 600, (1.0, 0.95, 0.7)
 # Loads below it, over L D mu omega / psi^2, have no relative changes.
 NO_LOAD = 1e-6
 

@@ -21,7 +21,7 @@ from exudyn_ehd.film.peak import refined_peak
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.joint.audit import assumptions, indicators, oil, surfaces
 from exudyn_ehd.joint.audit.audit import Audit, Kind, audit_states
-from exudyn_ehd.joint.audit.changes import MOST_STEPS, STARTS, TOLERANCE, Comparison
+from exudyn_ehd.joint.audit.changes import STARTS, TOLERANCE, Comparison
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, Limit, finding
 from exudyn_ehd.joint.audit.indicators import Indicator
 from exudyn_ehd.joint.audit.samples import TENSION, FilmState, RecordedSteps, Sample, rate_of_squeeze
@@ -42,8 +42,8 @@ from exudyn_ehd.status import Status
 TOUCHING, THIN = 4.0, 0.1
 # Intervals across a ball's pressure peak from which on its load is within 1 %.
 ACROSS = {"columns": Limit(4.0, "intervals", below=True), "rows": Limit(3.0, "intervals", below=True)}
-# Largest step towards the same load, as a share of the minimum film thickness.
-STRIDE = 0.3
+# Largest step towards the same load, as a share of the minimum film thickness, and largest number of films tried.
+STRIDE, MOST_FILMS = 0.3, 30
 
 
 def audit_ball(bearing: SphericalBearing, motions: Sequence[np.ndarray], record: RecordedSteps | None = None) -> Audit:
@@ -165,7 +165,7 @@ def _same_load(model: SphericalModel, motion: np.ndarray, force: np.ndarray) -> 
     for start in STARTS:
         place, found = motion[PLACE] * start, None
         step, error = np.zeros(3), math.inf
-        for _ in range(2 * MOST_STEPS):
+        for _ in range(MOST_FILMS):
             trial = motion.copy()
             trial[PLACE] = place + step
             new = model.evaluate(trial)

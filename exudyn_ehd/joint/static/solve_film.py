@@ -15,7 +15,6 @@ from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.model.effects import transform_law
-from exudyn_ehd.joint.seams import PressureLaw
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import (
     FilmError,
@@ -154,7 +153,10 @@ def solve_film(
         mass = history / c
         rate = (H - mass) / step
     law = transform_law(lubricant)
-    solver = _any_gap_solver(grid, closure, law, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
+    effects = (SteppedGap(H),) if stepped_gap else ()
+    density = law if isinstance(law, CompressibleLaw) else None
+    solver = FilmSolver(grid, closure, squeeze=rate is not None, flux_effects=effects, density=density)
+    solver.pressure_scale = scale
     solver.H[:] = H
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
     if rate is not None:
@@ -183,16 +185,6 @@ def solve_film(
         fill=fill,
         content=fill * gap * solver.rho,
     )
-
-
-def _any_gap_solver(
-    grid: FilmGrid, closure: Closure, law: PressureLaw | None, squeeze: bool, steps: SteppedGap | None, scale: float
-) -> FilmSolver:
-    density = law if isinstance(law, CompressibleLaw) else None
-    effects = () if steps is None else (steps,)
-    solver = FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects, density=density)
-    solver.pressure_scale = scale
-    return solver
 
 
 def _check_kinds(grid: object, lubricant: Lubricant, cavitation: object, stepped_gap: bool) -> None:
