@@ -120,7 +120,7 @@ def surfaces(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Temperatures of both surfaces, heat into them, W, and what conduction takes off heat and tilt, W.
 
-    Arguments as for `exudyn_ehd.film.heat.conduction.passage`; (2, n, m, 4) each.
+    Arguments as for `exudyn_ehd.film.heat.conduction.through_surfaces`; (2, n, m, 4) each.
     """
     k, known = kappa[..., None], np.zeros((2, *kappa.shape, 4))
     inside = np.array([[6.0, -10.0, 0.0, 0.0], [6.0, 10.0, 0.0, 0.0]])

@@ -173,7 +173,9 @@ class Rings:
         return np.column_stack((surface, inside))
 
 
-def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
+def through_surfaces(
+    kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]
+) -> np.ndarray:
     """Heat into both surfaces (2, n, m, 3), W, per kelvin of the mean temperature and of those outside.
 
     A surface of a given coefficient has ``q = U (s - T_outside)``, one that conducts by itself ``s = T_outside``.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.heat.conduction import passage as passage_of
+from exudyn_ehd.film.heat.conduction import through_surfaces
 from exudyn_ehd.film.heat.energy import transport_slopes
 from exudyn_ehd.joint.heat.band import BandSolver
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of
@@ -28,9 +28,9 @@ PassageData = tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | N
 class HeatBalance:
     """Energy equations of a film between surfaces that have temperatures outside, K.
 
-    Over a step, or in the steady state with a step of 0. Unknowns are k fields (k, n, m), K: here the mean temperature
-    alone. ``at`` lists the temperatures of both sides as (n, 1) or (1, 1) arrays. What is linear in all of them has a
-    last axis of k + 2.
+    Over a step, or in the steady state with a step of 0. The unknowns are k fields (k, n, m), K: here the mean
+    temperature alone. ``at`` lists the temperatures of both sides as (n, 1) or (1, 1) arrays. Coefficients of all of
+    them have a last axis of k + 2.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class HeatBalance:
         Scaled heat that leaves the vertices, without that over the links.
     given, brings : (k, n, m) arrays
         Scaled heat besides it, and what oil of unit temperature adds that a cavitation model finds.
-    ends : (2, 2, k, n, m, k + 2) array or empty list
+    ends : (2, 2, k, n, m, k + 2) array, or empty
         Scaled heat over the links in theta and z by their own and the next vertex, where it depends on what is outside.
     takes : two arrays
         Temperature of the oil that leaves, and of that which a cavitation model loses.
@@ -71,7 +71,7 @@ class HeatBalance:
         flows, self.brings = self.flows, self.flows.found[None]
         self.ends: Sequence[np.ndarray] | np.ndarray = ()
         self.takes = (np.array([1.0, 0.0, 0.0]),) * 2
-        self.through = passage_of(kappa, area, outward)
+        self.through = through_surfaces(kappa, area, outward)
         self.own = self.through.sum(axis=0)[None] / self.scale
         kept = self.store + STAGNANT * self.largest + self.follows
         diagonal = kept + flows.entering + flows.found + self.own[0, ..., 0]
