@@ -265,11 +265,9 @@ class FilmTemperature(OilTemperature):
         ``through`` (2, n, m, 2): per kelvin of both sides.
         """
         (bush, both), (_, journal) = np.moveaxis(through.sum(axis=2), -1, 1)
-        if self.sides[1] is None:
-            return np.diag(bush)
-        if self.sides[0] is None:
-            return journal.sum(keepdims=True)[None]
-        return np.block([[np.diag(bush), both[:, None]], [both, journal.sum()]])
+        whole = np.block([[np.diag(bush), both[:, None]], [both, journal.sum()]])
+        known = np.repeat([wall is not None for wall in self.sides], (bush.size, 1))
+        return whole[np.ix_(known, known)]
 
 
 class Growth:
