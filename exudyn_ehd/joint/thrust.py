@@ -24,7 +24,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import FilmError, Status
 
 SIZE, PLACE = 11, 10
 """Entries of the motion, and the axial position's among them."""
@@ -75,6 +75,11 @@ class ThrustEvaluation:
         damping = -float(self.tangent()[2, 9])
         uneven = sum(face.side * float(face.tangent()[2, 3]) for face in self.model.faces if is_at_rest(face))
         return math.nan if abs(uneven) > 2.0 * LARGEST_SPREAD * damping else damping
+
+    def require_film(self, where: str) -> None:
+        """Raise `FilmError` in the name of ``where`` if a face has no film."""
+        if self.status is not Status.CONVERGED:
+            raise FilmError(no_film(self, where))
 
     def quantities(self) -> Mapping[str, float]:
         """Scalars by their names in histories, SI units.

@@ -163,9 +163,9 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
     for target in ("shear_thinning.ShearThinning.apply", "shear_thinning.ShearThinning.factor"):
         monkeypatch.setattr(f"exudyn_ehd.film.lubricant.{target}", forbidden)
     for target in (
-        "heat.temperature._Temperature.viscosity_ratio",
+        "heat.temperature.OilTemperature.viscosity_ratio",
         "heat.power.film_flows",
-        "balance.film._target",
+        "balance.newton.foreseen",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
     for model in (expected, make(cavitation=cavitation)):

@@ -195,15 +195,16 @@ def passed(
     return s, kappa * area * (inner - own * s - other * s[::-1])
 
 
-def passage(kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> np.ndarray:
-    """Heat into both surfaces, W per kelvin of a film's mean temperature and of those outside, (2, 3, n, m).
+def through_surfaces(
+    kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]
+) -> np.ndarray:
+    """Heat into both surfaces (2, n, m, 3), W, per kelvin of a film's mean temperature and of those outside.
 
     Parameters as for `passed`; ``kappa`` None: the coefficients act on the mean temperature.
     """
     if kappa is not None and outward != (0.0, 0.0):
-        return passed(kappa, area, outward, np.array([[6.0, 0.0, 0.0]] * 2), 4.0, 2.0)[1]
-    out = np.zeros((2, 3, *area.shape))
-    for a, U in enumerate(outward):
-        out[a, 0] = (U or 0.0) * area
-        out[a, 1 + a] = -out[a, 0]
-    return out
+        through = passed(kappa, area, outward, np.array([[6.0, 0.0, 0.0]] * 2), 4.0, 2.0)[1]
+    else:
+        rows = np.array([[1.0, -1.0, 0.0], [1.0, 0.0, -1.0]])[..., None, None]
+        through = np.array([U or 0.0 for U in outward])[:, None, None, None] * rows * area
+    return np.moveaxis(through, 1, -1)

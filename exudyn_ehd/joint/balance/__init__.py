@@ -2,10 +2,10 @@
 
 Module map
 ----------
-film      film at a motion, its temperature and oil content settled; steady temperature
-limits    temperatures and pressures that no oil or steel bears; what to do about films without a solution
-position  journal's position under a load
-steadiest of several positions the one that a journal keeps
-faces     films on the end faces beside it
+newton      one damped Newton's method for position and temperature
+film        film at a motion, with its temperature and oil content
+position    journal's position under a load
+steadiest   of several positions the one that a journal keeps
+limits      temperatures and pressures that no oil or steel bears; what to do about films without a solution
 resolution  whether the grid resolves the pressure peak
 """

@@ -11,6 +11,8 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.model.flexible import ElasticEvaluation
+from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, Status, warn_user
 
 # Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
@@ -30,6 +32,12 @@ ROOM = (
     "give the journal's heat a way out (Conduction.conductance, more oil), let it warm up slowly, or take a larger "
     "radial_clearance."
 )
+WAY_OUT = (
+    "let oil flow through (end pressures, eccentricity, supply) or give the thermal effect heat transfer to the "
+    "surfaces (housing_conductance, bush_coefficient, journal_coefficient)."
+)
+# Minimum film thickness below which a film closes, share of the clearance.
+CLOSED = 1e-3
 Temperature = float | np.ndarray | None
 
 
@@ -157,3 +165,37 @@ def advice(status: Status, bearing: object) -> str:
             "out; cavitation=ElrodAdams(...) counts it, or take density_law=None."
         )
     return status.advice
+
+
+def no_film(evaluation: Evaluation, where: str) -> str:
+    """Return the message for an evaluation without a steady film; it begins with ``where``."""
+    x, y, bx, by = evaluation.motion[:4]
+    remedy = advice(evaluation.status, evaluation.model.bearing)
+    if isinstance(evaluation, ElasticEvaluation) and evaluation.status is not Status.NO_PRESSURE:
+        remedy = _without_a_shape(evaluation)
+    return (
+        f"{where}: {evaluation.status.name} at x = {x:.4g} m, y = {y:.4g} m, tilt = ({bx:.3g}, {by:.3g}), minimum film "
+        f"thickness {evaluation.minimum_gap:.3g} m: {remedy}"
+    )
+
+
+def _without_a_shape(evaluation: ElasticEvaluation) -> str:
+    """Return the reason why no shape of a flexible bore has a film, and the remedy."""
+    bearing, last = evaluation.model.bearing, evaluation.closing
+    kind = type(bearing.yielding).__name__
+    if evaluation.model.elasticity.failure:
+        return f"{kind}: {evaluation.model.elasticity.failure}"
+    surface = "surface" if bearing.bush is None else "bore"
+    missing = f"no shape of the {kind}'s {surface} was found in balance with a film"
+    if last is None or last.gap > CLOSED * bearing.radial_clearance or evaluation.model.effects.contacts:
+        return (
+            f"{missing}, neither by Newton's method nor on the way of a viscous bore from its undeformed shape; "
+            "thicken what is thin in it, name a contact=RegularisedWall(...) if the surfaces touch, or refine the "
+            "film's grid."
+        )
+    return (
+        f"{missing}. On the way there, at {last.part:.3g} of eccentricity and tilt, the film closes at theta = "
+        f"{last.theta:.3g} rad, z = {last.z:.4g} m (minimum film thickness {last.gap:.2g} m): the surfaces touch; at "
+        "an end of the bearing, where no pressure opens the gap, they do so first. Name contact=RegularisedWall(...) "
+        "or asperity=GreenwoodTripp(...), refine the film's grid, or move the journal back."
+    )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.joint.balance.position import INSIDE, Carried, LoadSearch
-from exudyn_ehd.status import FilmError, warn_user
+from exudyn_ehd.joint.balance.newton import Place
+from exudyn_ehd.joint.balance.position import INSIDE, LoadSearch
+from exudyn_ehd.status import warn_user
 
 # Start on the load's side, where the film is thinnest: eccentricity ratio. Larger ones are nearer to a closed gap.
 LOADED = 0.9
@@ -18,7 +19,7 @@ STEADINESS = (
 )
 
 
-def steadiest(search: LoadSearch, found: Carried, tolerance: float = 1e-8) -> Carried:
+def steadiest(search: LoadSearch, found: Place) -> Place:
     """The position found, or a steadier one that carries the load too; a warning names all that are known.
 
     A journal stays where the stiffness K is positive definite, and leaves a place where its determinant is
@@ -28,9 +29,7 @@ def steadiest(search: LoadSearch, found: Carried, tolerance: float = 1e-8) -> Ca
     Parameters
     ----------
     search : LoadSearch
-    found : Carried
-    tolerance : float
-        Of the unbalance of others, over the load.
+    found : Place
     """
     b = search.model.bearing
     several = bool(b.supply) or search.model.remembers_mass or bool(np.any(found.motion[2:4]))
@@ -39,12 +38,12 @@ def steadiest(search: LoadSearch, found: Carried, tolerance: float = 1e-8) -> Ca
         return found
     places = [found]
     for ratio in (LOADED, INSIDE):
-        try:
-            other = search.damped(search.loaded(found.motion, ratio), tolerance)
-        except FilmError:
+        start = search.loaded(found.motion, ratio)
+        other = search.attempt(start, found.temperature, search.held_back)
+        if other is None:
             continue
         away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)
-        if away > SAME_PLACE * b.radial_clearance and search.residual(other) <= tolerance:
+        if away > SAME_PLACE * b.radial_clearance:
             places.append(other)
     best = max(places, key=_steadiness)
     if len(places) > 1 or _steadiness(best) == 0:
@@ -54,11 +53,12 @@ def steadiest(search: LoadSearch, found: Carried, tolerance: float = 1e-8) -> Ca
             f"{ratios[places.index(best)]}, where the stiffness matrix {STEADINESS[_steadiness(best)]}.",
             UserWarning,
         )
-    return search.at(best.motion)
+    return search.at(best.motion, best.temperature)
 
 
-def _steadiness(place: Carried) -> int:
+def _steadiness(place: Place) -> int:
     """Index in `STEADINESS` of a place."""
-    if np.all(np.linalg.eigvalsh(-place.slope - place.slope.T) > 0.0):
+    stiffness = -place.slope
+    if np.all(np.linalg.eigvalsh(stiffness + stiffness.T) > 0.0):
         return 2
-    return int(np.linalg.det(place.slope) > 0.0)
+    return int(np.linalg.det(stiffness) > 0.0)

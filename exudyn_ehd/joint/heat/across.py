@@ -28,7 +28,8 @@ from exudyn_ehd.film.heat.across import (
 from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT, HeatBalance
+from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT, HeatBalance, linear
+from exudyn_ehd.joint.heat.power import dropped, sheared
 from exudyn_ehd.joint.heat.temperature import ViscosityField
 from exudyn_ehd.joint.heat.walls import FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
@@ -69,48 +70,45 @@ class PairBalance(HeatBalance):
     Parameters
     ----------
     thermal : CubicTemperature
-    film, step
+    film, step, passage, band
         As for `HeatBalance`.
     """
 
-    def __init__(self, thermal: CubicTemperature, film: SolvedFilm, step: float) -> None:
-        super().__init__(thermal, film, step, thermal.passage(film))
+    def _assemble(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        film, thermal = self.film, self.thermal
+        assert isinstance(thermal, CubicTemperature) and kappa is not None
         assert film.walls is not None and film.walls.across is not None
-        self.pairs, across, largest = thermal.band(film.grid.shape, 2), film.walls.across, self.largest()
+        self.surface, self.through, lost = surfaces(kappa, area, outward)
+        self.own, across = lost / self.scale, film.walls.across
         largest_lost = float(np.abs(self.own).max())
         self._carry(thermal.fluidity, np.array([self.old, *across]))
-        kept = self.store + STAGNANT * largest
+        kept = self.store + STAGNANT * self.largest
         self.own[0, ..., 0] += kept + self.follows
         self.own[1, ..., 1] += kept / 3.0
         if film.parts.supply is not None:
             areas = np.logical_or.reduce(film.parts.supply.masks)
-            self.own[1, ..., 1] += areas * MIXED * (largest + largest_lost)
+            self.own[1, ..., 1] += areas * MIXED * (self.largest + largest_lost)
         self.given = np.array([self.heat, thermal.heat_tilt(film)]) / self.scale
         self.given[0] += (kept + self.follows) * (self.old - self.supply)
         self.given[1] += kept / 3.0 * across[0]
-
-    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
-        assert kappa is not None
-        self.surface, through, lost = surfaces(kappa, area, outward)
-        self.through = np.moveaxis(through, -1, 1)
-        self.own = lost / self.scale
+        band_of_pairs(self.ends, self.own, self.band.number, self.band.lower, self.band.upper)
 
     def _carry(self, field: FluidityField, old: np.ndarray) -> None:
         """Add the heat that flows carry; the limiter takes the start-of-step temperatures ``old`` (4, n, m)."""
         film, flows = self.film, self.flows
         q, y = film.solver.system.flow_pressure, film.solver.system
         at, own = at_heights(self.surface), flow_shapes(field.vertices)
-        held = self.store if self.step > 0.0 else np.full(q.shape, np.inf)
-        limiter = start_heights(old), film.grid.link_z, held
+        limiter = start_heights(old), film.grid.link_z, self.held
         made = flows.found - flows.lost
         below = flows.outside[..., None] * own.pressed_below + made[..., None] * own.slides_below
-        content, self.ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
+        content, ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
         for axis, (k, whole, fluid) in enumerate(((y.kx, flows.x, field.along), (y.kz, flows.z, field.across))):
             driven = k * (q - np.roll(q, -1, axis))
-            carry(axis, driven, whole - driven, flow_shapes(fluid), at, limiter, self.ends[axis], below, content)
+            carry(axis, driven, whole - driven, flow_shapes(fluid), at, limiter, ends[axis], below, content)
         stirred = self.stirred()
-        self.ends[:, 0, 0, ..., 0] += stirred
-        self.ends[:, 1, 0, ..., 0] -= stirred
+        ends[:, 0, 0, ..., 0] += stirred
+        ends[:, 1, 0, ..., 0] -= stirred
+        self.ends = ends
         leaves, loses = (weighed(flow, at) for flow in (own.pressed, own.slides))
         if flows.areas:
             # what areas take is mixed over the height
@@ -122,66 +120,9 @@ class PairBalance(HeatBalance):
         self.own[1] -= 2.0 * weighed(below - content[..., None] * HEIGHTS, at)[0]
         self.own += flows.leaving[..., None] * leaves + flows.lost[..., None] * loses
 
-    def solve(self) -> None:
-        """Factor the system, which `between` and `change` use."""
-        p = self.pairs
-        band_of_pairs(self.ends, self.own, p.number, p.lower, p.upper)
-        p.factor()
-        if self.flows.back > 0.0:
-            self.returning = self.pairs.solve(self.flows.back * self.brings)
-
-    def between(self, at: list[np.ndarray]) -> np.ndarray:
-        """Mean and tilt (2, n, m), K, with temperatures ``at`` outside both surfaces."""
-        x = self._answer(self.given, [a - self.supply for a in at])
-        x[0] += self.supply
-        return x
-
-    def change(self, at: list[np.ndarray]) -> np.ndarray:
-        """Change of `between` by a change outside."""
-        return self._answer(np.zeros_like(self.given), at)
-
-    def _answer(self, given: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-        """Mean and tilt (2, n, m), with rises ``at`` outside both surfaces."""
-        outside = _fields(np.zeros_like(given), at)
-        rest = given - _of(self.own, outside)
-        for axis, (own, other) in enumerate(self.ends):
-            flow = _of(own, outside) + _of(other, np.roll(outside, -1, axis))
-            rest -= flow - np.roll(flow, 1, axis + 1)
-        x = self.pairs.solve(rest)
-        if self.flows.back > 0.0:
-            back = self._mixed(_fields(self.returning, [np.zeros((1, 1))] * 2))
-            x = x + self._mixed(_fields(x, at)) / (1.0 - back) * self.returning
-        return x
-
-    def _mixed(self, fields: np.ndarray) -> float:
-        """Temperature of all oil that is lost, mixed."""
-        return float(np.sum(self.weight * _of(self.takes[1], fields)))
-
-    def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
-        """Heat into both sides (n, m), W."""
-        return list(_of(np.moveaxis(self.through, 1, -1), _fields(x, at)))
-
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
         """Blocks (n, 4 m) of a state."""
-        return np.hstack([x[0], x[0] + x[1], *_of(self.surface, _fields(x, at))])
-
-    def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
-        """Heat in, convected and stored, W, with mean and tilt ``x`` (2, n, m) at the end."""
-        rise = _fields(x, at) - np.array([self.supply, 0.0, self.supply, self.supply])
-        leaving, lost = (_of(takes, rise) for takes in self.takes)
-        out, flows = super().totals(x[0], at), self.flows
-        convected = float(np.sum(flows.leaving * leaving + flows.lost * lost))
-        return out | {"convected": self.scale * (convected - flows.back * self._mixed(rise) * flows.total_found)}
-
-
-def _fields(x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-    """Mean and tilt (2, n, m) and temperatures outside both surfaces as (n, m, 4)."""
-    return np.stack([*x, *(np.broadcast_to(a, x.shape[1:]) for a in at)], axis=-1)
-
-
-def _of(linear: np.ndarray, fields: np.ndarray) -> np.ndarray:
-    """Values (..., n, m) of what is linear in fields (n, m, 4)."""
-    return np.einsum("...c,...c", linear, fields)
+        return np.hstack([x[0], x[0] + x[1], *linear(self.surface, [*x, *at])])
 
 
 class CubicTemperature(FilmTemperature):
@@ -195,7 +136,7 @@ class CubicTemperature(FilmTemperature):
         Takes the viscosity of the temperatures to the film.
     """
 
-    blocks = 4
+    blocks, fields = 4, 2
 
     def __init__(
         self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]
@@ -206,31 +147,27 @@ class CubicTemperature(FilmTemperature):
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, 4 m + k) state, K, at the start of a motion: one temperature, and the walls' at the surfaces."""
-        if self._start is None:
-            start, m = super().initial_temperature(shape), shape[1]
-            for at, wall in zip((2 * m, 3 * m), self.sides, strict=True):
-                start[:, at : at + m] = self.initial if wall is None else wall.initial
-        return super().initial_temperature(shape)
+        start, m = super().initial_temperature(shape), shape[1]
+        for at, wall in zip((2 * m, 3 * m), self.sides, strict=True):
+            start[:, at : at + m] = self.initial if wall is None else wall.initial
+        return start
 
-    def set_viscosity(self, temperature: float | np.ndarray) -> float:
-        """Bring the viscosity field to a state, K; the film shares no other factor than 1."""
-        if temperature is not self._last:
-            self._last = np.asarray(temperature)
-            self.field.set(self.viscosity_ratio(at_points(self._blocks(self._last))))
-        return 1.0
+    def heights(self, state: np.ndarray) -> np.ndarray:
+        """Temperatures (n, m, 4) that set the viscosity, at Lobatto's points."""
+        return at_points(self._blocks(state))
 
     def heat_tilt(self, film: SolvedFilm) -> np.ndarray:
         """Return the P_1 component of the heat at the vertices, W (n, m); contacts heat evenly over the height."""
         sliding, pressed, both = heat_tilts(self.fluidity.vertices)
         s, y = film.solver, film.solver.system
-        flow = film_heat(self.dropped(film), y.flow_pressure, np.array((y.kx, y.kz)))
+        flow = film_heat(dropped(film), y.flow_pressure, np.array((y.kx, y.kz)))
         crossed = crossed_tilt(film.oil.P, s.H, both, (s.vx * s.flow_x, s.vz), film.grid.mesh)
         power = film.parts.flow_scale * film.scales.pressure
-        return power * (self.sheared(film) * sliding + flow * pressed + crossed)
+        return power * (sheared(film) * sliding + flow * pressed + crossed)
 
     def equations(self, film: SolvedFilm, step: float) -> PairBalance:
         """Return the equations of a solved film over a step, s; 0: steady state."""
-        return PairBalance(self, film, step)
+        return PairBalance(self, film, step, self.passage(film), self.band)
 
     def _blocks(self, state: np.ndarray) -> np.ndarray:
         """Mean, tilt and both surfaces (4, n, m) of a state."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.heat.energy import passage, transport_slopes
-from exudyn_ehd.joint.heat.power import OilFlows
-from exudyn_ehd.joint.heat.temperature import HeatedFilm, temperature_of
+from exudyn_ehd.film.heat.energy import through_surfaces, transport_slopes
+from exudyn_ehd.joint.heat.band import BandSolver
+from exudyn_ehd.joint.heat.power import OilFlows, heat_of
+from exudyn_ehd.joint.heat.temperature import OilTemperature, temperature_of
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
@@ -22,39 +25,65 @@ PassageData = tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | N
 
 
 class HeatBalance:
-    """Energy equation of a film's mean temperature between surfaces that have temperatures outside, K.
+    """Energy equations of a film between surfaces that have temperatures outside, K.
 
-    Over a step, or in the steady state with a step of 0. ``at`` lists the temperatures of both sides as (n, 1) or (1,
-    1) arrays. Unknowns are temperatures (n, m), K.
+    Over a step, or in the steady state with a step of 0. The unknowns are k fields (k, n, m), K: here the mean
+    temperature alone. ``at`` lists the temperatures of both sides as (n, 1) or (1, 1) arrays. Coefficients of all of
+    them have a last axis of k + 2.
 
     Attributes
     ----------
     scale : float
         W/K per scaled flow, the unit of the equations.
-    through : (2, f, n, m) array
-        Heat into both sides, W, per kelvin of a vertex's unknowns and, last, of the temperatures outside.
-    by : (2, 2, n, m) array
-        Heat that each of the temperatures outside gives to both sides, at held unknowns, W/K.
+    through : (2, n, m, k + 2) array
+        Heat into both sides, W.
+    own : (k, n, m, k + 2) array
+        Scaled heat that leaves the vertices, without that over the links.
+    given, brings : (k, n, m) arrays
+        Scaled heat besides it, and what oil of unit temperature adds that a cavitation model finds.
+    ends : (2, 2, k, n, m, k + 2) array, or empty
+        Scaled heat over the links in theta and z by their own and the next vertex, where it depends on what is outside.
+    takes : two arrays
+        Temperature of the oil that leaves, and of that which a cavitation model loses.
     """
 
-    def __init__(self, thermal: HeatedFilm, film: SolvedFilm, step: float, between: PassageData) -> None:
-        area, shape, heat = film.solver.area, film.grid.shape, thermal.heat(film)
-        self.film, self.step, self.supply, self.thermal = film, step, thermal.supply, thermal
-        self.old = temperature_of(film)
+    def __init__(
+        self, thermal: OilTemperature, film: SolvedFilm, step: float, passage: PassageData, band: BandSolver
+    ) -> None:
+        area, shape = film.solver.area, film.grid.shape
+        self.film, self.step, self.supply, self.thermal, self.band = film, step, thermal.supply, thermal, band
+        self.old, self.heat = temperature_of(film), heat_of(film)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
-        self.heat, self.flows = heat, OilFlows(film, thermal.carry_over)
+        self.flows = OilFlows(film, thermal.carry_over)
         self.weight = self.flows.lost / (self.flows.total_lost or 1.0)
         self.store = area * self.flows.content / step if step > 0.0 else np.zeros(shape)
-        self.follows = thermal.follows(self.old, heat / self.scale, self.store)
-        self._pass(*between)
-        self.by = -self.through[:, -2:]
+        self.held = self.store if step > 0.0 else np.full(shape, np.inf)
+        self.follows = thermal.follows(self.old, self.heat / self.scale, self.store)
+        self.largest = max(self.flows.largest, float(self.store.max()))
+        self._assemble(*passage)
+        band.factor()
+        if self.flows.back > 0.0:
+            self.returning = self.band.solve(self.flows.back * self.brings)
 
-    def _pass(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
-        self.through = passage(kappa, area, outward)
-
-    def largest(self) -> float:
-        """Largest of the flows and of the storage."""
-        return max(self.flows.largest, float(self.store.max()))
+    def _assemble(self, kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        """Set the arrays of the equations, and fill their band."""
+        flows, self.brings = self.flows, self.flows.found[None]
+        self.ends: Sequence[np.ndarray] | np.ndarray = ()
+        self.takes = (np.array([1.0, 0.0, 0.0]),) * 2
+        self.through = through_surfaces(kappa, area, outward)
+        self.own = self.through.sum(axis=0)[None] / self.scale
+        kept = self.store + STAGNANT * self.largest + self.follows
+        diagonal = kept + flows.entering + flows.found + self.own[0, ..., 0]
+        slopes, links = np.empty((5, self.store.size)), (flows.x, flows.z)
+        transport_slopes(*links, diagonal, self.old, self.film.grid.link_z, self.held, slopes)
+        if flows.areas:
+            stirred = self.stirred()
+            slopes[:4:2] += stirred.reshape(2, -1)
+            slopes[1:4:2] -= stirred.reshape(2, -1)
+            links = links[0] + stirred[0], links[1] + stirred[1]  # also where nothing flows
+        band = self.band
+        assemble(*links, slopes, band.number, band.order, band.size, band.lower, band.upper)
+        self.given = (self.heat / self.scale + kept * (self.old - self.supply))[None]
 
     def stirred(self) -> np.ndarray:
         """Exchange (2, n, m) over the links in theta and z that mixes the supply areas."""
@@ -64,63 +93,55 @@ class HeatBalance:
             links[1, :, :-1] += area[:, :-1] & area[:, 1:]
         return MIXED * self.flows.largest * links
 
-    def solve(self) -> None:
-        """Factor the system, which `between` and `change` use."""
-        flows, store, walls = self.flows, self.store, self.through[:, 0].sum(axis=0) / self.scale
-        rigid = STAGNANT * self.largest()
-        diagonal = self.follows + store + flows.entering + flows.found + walls + rigid
-        held = store if self.step > 0.0 else np.full(store.shape, np.inf)
-        slopes, links = np.empty((5, store.size)), (flows.x, flows.z)
-        transport_slopes(*links, diagonal, self.old, self.film.grid.link_z, held, slopes)
-        if flows.areas:
-            stirred = self.stirred()
-            slopes[:4:2] += stirred.reshape(2, -1)
-            slopes[1:4:2] -= stirred.reshape(2, -1)
-            links = links[0] + stirred[0], links[1] + stirred[1]  # also where nothing flows
-        self.band = band = self.thermal.band(store.shape, 1)
-        assemble(*links, slopes, band.number, band.order, band.size, band.lower, band.upper)
-        band.factor()
-        self.given = self.heat / self.scale + (store + rigid + self.follows) * (self.old - self.supply)
-
     def between(self, at: list[np.ndarray]) -> np.ndarray:
         """Unknowns with temperatures ``at`` outside."""
-        gain = self._gain([a - self.supply for a in at])
-        T0, self.returning = self.band.solve(np.array([self.given + gain, self.flows.back * self.flows.found]))
-        mixed = 0.0
-        if self.flows.back > 0.0:
-            mixed = float(np.sum(self.weight * T0)) / (1.0 - float(np.sum(self.weight * self.returning)))
-        return self.supply + T0 + mixed * self.returning
+        x = self._answer(self.given, [a - self.supply for a in at])
+        x[0] += self.supply
+        return x
 
     def change(self, at: list[np.ndarray]) -> np.ndarray:
-        """Change of `between`, which has been asked for, by a change outside."""
-        change = self.band.solve(self._gain(at)[None])[0]
-        if self.flows.back > 0.0:
-            mixed = float(np.sum(self.weight * change)) / (1.0 - float(np.sum(self.weight * self.returning)))
-            change += mixed * self.returning
-        return change
+        """Change of `between` by a change outside."""
+        return self._answer(np.zeros_like(self.given), at)
 
-    def _gain(self, at: list[np.ndarray]) -> np.ndarray:
-        """Scaled heat (n, m) from temperatures ``at`` outside into a film of temperature 0."""
-        by = self.by.sum(axis=0)
-        return (by[0] * at[0] + by[1] * at[1]) / self.scale
+    def _answer(self, given: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+        """Unknowns with rises ``at`` outside."""
+        rest = given - linear(self.own[..., -2:], at)
+        for axis, (own, other) in enumerate(self.ends):
+            flow = linear(own[..., -2:], at) + linear(other[..., -2:], [np.roll(a, -1, axis) for a in at])
+            rest -= flow - np.roll(flow, 1, axis + 1)
+        x = self.band.solve(rest)
+        if self.flows.back > 0.0:
+            x = x + self._mixed([*x, *at]) / (1.0 - self._mixed([*self.returning, 0.0, 0.0])) * self.returning
+        return x
+
+    def _mixed(self, fields: Sequence[np.ndarray | float]) -> float:
+        """Temperature of all oil that is lost, mixed."""
+        return float(np.sum(self.weight * linear(self.takes[1], fields)))
 
     def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
         """Heat into both sides (n, m), W."""
-        outside = self.by[:, 0] * at[0] + self.by[:, 1] * at[1]
-        return list(self.through[:, 0] * x - outside)
+        return list(linear(self.through, [*x, *at]))
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-        """Blocks of the film in a state."""
-        return x
+        """Blocks (n, ...) of the film in a state."""
+        return x[0]
 
-    def totals(self, T: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
-        """Heat in, convected and stored, W, with these temperatures at the end."""
-        rise, area, flows = T - self.supply, self.film.solver.area, self.flows
-        mixed = float(np.sum(self.weight * rise))
-        stored = float(np.sum(self.store * (T - self.old))) if self.step > 0.0 else 0.0
-        convected = float(np.sum((flows.leaving + flows.lost) * rise)) - flows.back * mixed * flows.total_found
+    def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
+        """Heat in, convected and stored, W, with these unknowns at the end."""
+        levels = (self.supply, *[0.0] * (len(x) - 1), self.supply, self.supply)
+        rise = [field - level for field, level in zip([*x, *at], levels, strict=True)]
+        flows, moved = self.flows, x[0] - self.old
+        leaving, lost = (linear(takes, rise) for takes in self.takes)
+        convected = float(np.sum(flows.leaving * leaving + flows.lost * lost))
+        convected -= flows.back * self._mixed(rise) * flows.total_found
+        stored = float(np.sum(self.store * moved + self.film.solver.area * flows.rate * rise[0]))
         return {
-            "heat_in": float(np.sum(self.heat - self.scale * self.follows * (T - self.old))),
+            "heat_in": float(np.sum(self.heat - self.scale * self.follows * moved)),
             "convected": self.scale * convected,
-            "stored": self.scale * (stored + float(np.sum(area * flows.rate * rise))),
+            "stored": self.scale * stored,
         }
+
+
+def linear(coefficients: np.ndarray, fields: Sequence[np.ndarray | float]) -> np.ndarray:
+    """Values (..., n, m) of what is linear in fields (n, m), one for each of the coefficients' last axis."""
+    return np.asarray(sum(coefficients[..., k] * field for k, field in enumerate(fields)))

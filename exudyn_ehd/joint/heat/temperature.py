@@ -5,24 +5,18 @@ Heat balance at accepted steps, viscosity for the next one, and the settled stea
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Callable
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
-from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
-from exudyn_ehd.joint.heat.band import BandSolver
-from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, powers
+from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
-# Rounding of the flow that leaves, as a share of the largest flow over a link.
-NO_FLOW = 1e-11
 # 1/K; no oil thins faster with the temperature.
 STEEPEST = 0.2
 Field = float | np.ndarray
@@ -34,7 +28,7 @@ def temperature_of(film: SolvedFilm) -> np.ndarray:
     return np.asarray(film.temperature)
 
 
-class _Temperature:
+class OilTemperature:
     """Common part of both kinds of film temperature."""
 
     def __init__(self, spec: LumpedThermal | FilmEnergy, lubricant: Lubricant) -> None:
@@ -71,7 +65,7 @@ class _Temperature:
         return np.maximum(np.log(thicker / thinner) / 0.1 * heat - store, 0.0)
 
 
-class LumpedTemperature(_Temperature):
+class LumpedTemperature(OilTemperature):
     """`LumpedThermal` of one bearing model.
 
     Parameters
@@ -173,85 +167,3 @@ class ViscosityField(FluxEffect):
         ratio_out[:] = self.ratio
         ratio_h_out[:] = 0.0
         ratio_v_out[:] = 0.0
-
-
-class HeatedFilm(_Temperature):
-    """Viscosity and heat of a film with a field of temperatures, `FilmEnergy` of one bearing model.
-
-    Parameters
-    ----------
-    spec : FilmEnergy
-    bearing : JournalBearing
-    field : ViscosityField
-        Takes the viscosity of the temperature field to the film.
-    """
-
-    def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField) -> None:
-        self.spec = spec
-        self.field = field
-        super().__init__(spec, bearing.lubricant)
-        bush, journal = self._or_supply(spec.bush_temperature), self._or_supply(spec.journal_temperature)
-        self.transfer = spec.bush_coefficient + spec.journal_coefficient
-        self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
-        self._last: np.ndarray | None = None
-        self.band: Callable[[tuple[int, int], int], BandSolver] = functools.cache(BandSolver)
-
-    def set_viscosity(self, temperature: float | np.ndarray) -> float:
-        """Bring the viscosity field to a temperature field, K; the film shares no other factor than 1."""
-        if temperature is not self._last:
-            self._last = np.asarray(temperature)
-            self.field.set(self.viscosity_ratio(self._last))
-        return 1.0
-
-    def _has_way_out(self, film: SolvedFilm) -> bool:
-        flows = OilFlows(film, self.carry_over)
-        stagnant = flows.exchanged <= NO_FLOW * float(np.abs(flows.x).max())
-        return not (self.transfer == 0.0 and stagnant and self.heat(film).max() > 0.0)
-
-    def heat(self, film: SolvedFilm) -> np.ndarray:
-        """Heat at the vertices, W (n, m): shear, pressure flow and contact friction.
-
-        Their sum is that of `heat_and_exchange` to the grid's error. The shear's sum is that of the loads: counted on
-        control volumes it would be up to 5 % more on ten rows beside supply areas, where the film fraction changes
-        within a row, and up to 6 % more where cold oil enters the ends, as the viscosity changes within one. Films
-        without areas therefore have the difference at their ends.
-        """
-        p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
-        flow_power = p.flow_scale * film.scales.pressure
-        heat = self.sheared(film)
-        heat += film_heat(self.dropped(film), s.system.flow_pressure, np.array((s.system.kx, s.system.kz)))
-        heat *= flow_power
-        rubbed = powers(film).contact_loss
-        if film.pressing is not None and rubbed > 0.0:
-            friction = np.zeros(film.grid.shape)
-            for (coefficient, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):
-                g_theta, g_z, _ = film.slip(transition)
-                friction += coefficient * (g_theta * (R * w.omega) + g_z * w.axial_speed) * P * s.area
-            # contacts that press on an edge: as much as the integrals of the loads say, which count it finely
-            heat += friction * (rubbed / friction.sum())
-        return heat
-
-    def dropped(self, film: SolvedFilm) -> np.ndarray:
-        """Return the energy per scaled flow at the vertices (n, m): pressure, or flow work of a compressible film."""
-        oil = film.parts.compressible
-        return film.oil.P if oil is None else oil.flow_work(film.oil.P)
-
-    def sheared(self, film: SolvedFilm) -> np.ndarray:
-        """Heat of sliding at the vertices, in the power of a unit of flow and pressure (n, m)."""
-        R, w, s = film.grid.reference_length, film.journal, film.solver
-        ratio = 1.0 if film.oil.ratio is None else film.oil.ratio
-        speed2 = w.omega**2 + (w.axial_speed / R) ** 2
-        flow_power = film.parts.flow_scale * film.scales.pressure
-        shear = film.share() * ratio / s.H
-        density = s.area * shear
-        # the integrals of the loads count finely what changes beside an area, and beside an end that cold oil enters
-        if film.parts.supply is not None:
-            density *= film.parts.supply.land
-            density *= np.sum(film.grid.shear_weight * shear) / np.sum(density)
-        else:
-            missed, lower = (film.grid.shear_weight - s.area) * shear, 0.5 - 0.5 * np.sign(film.grid.z)
-            for end, side in ((0, lower), (-1, 1.0 - lower)):
-                density[:, end] *= 1.0 + float(np.sum(missed @ side)) / max(float(density[:, end].sum()), 1e-300)
-        if film.loads.recess is not None:
-            density += film.loads.recess.density
-        return film.scales.shear / flow_power * speed2 * R**2 * density

@@ -10,19 +10,25 @@ which is factored once, and from `exudyn_ehd.film.heat.energy`.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Rings, Walls
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
+from exudyn_ehd.joint.heat.band import BandSolver
 from exudyn_ehd.joint.heat.heat_balance import HeatBalance, PassageData
-from exudyn_ehd.joint.heat.temperature import HeatedFilm, ViscosityField
+from exudyn_ehd.joint.heat.power import OilFlows, heat_of
+from exudyn_ehd.joint.heat.temperature import OilTemperature, ViscosityField
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 
 # Share of the heat to which what the film gives and what the walls take agree.
 AGREED = 1e-13
+# Rounding of the flow that leaves, as a share of the largest flow over a link.
+NO_FLOW = 1e-11
 
 
 class _Wall:
@@ -53,22 +59,28 @@ class _Wall:
         return float(np.sum(self.rings.loss * (T - self.ambient))), stored
 
 
-class FilmTemperature(HeatedFilm):
+class FilmTemperature(OilTemperature):
     """`FilmEnergy` of one bearing model, between surfaces of given temperatures or walls that conduct.
 
     Parameters
     ----------
-    spec, bearing, field
-        As for `HeatedFilm`.
+    spec : FilmEnergy
+    bearing : JournalBearing
+    field : ViscosityField
+        Takes the viscosity of the temperature field to the film.
     shape : (int, int)
         Shape of the film's grid.
     """
 
-    blocks = 1
+    # of a state, and unknowns at each vertex
+    blocks, fields = 1, 1
 
     def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]):
-        super().__init__(spec, bearing, field)
-        self.shape, self.clearance = shape, bearing.radial_clearance
+        super().__init__(spec, bearing.lubricant)
+        self.spec, self.field, self.shape, self.clearance = spec, field, shape, bearing.radial_clearance
+        bush, journal = self._or_supply(spec.bush_temperature), self._or_supply(spec.journal_temperature)
+        self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
+        self.transfer = spec.bush_coefficient + spec.journal_coefficient
         R, L = bearing.journal_radius, bearing.length
         self.sides: list[_Wall | None] = [None, None]
         end = self.blocks * shape[1]
@@ -82,24 +94,39 @@ class FilmTemperature(HeatedFilm):
         self.conducting = [wall for wall in self.sides if wall is not None]
         self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
         self.grows = any(wall.expands > 0.0 for wall in self.conducting)
-        self._start: np.ndarray | None = None
-        self._last_state: np.ndarray | None = None
+        self._last: np.ndarray | None = None
+        self._last_split: np.ndarray | None = None
+
+    @cached_property
+    def band(self) -> BandSolver:
+        """Banded systems of the film's unknowns."""
+        return BandSolver(self.shape, self.fields)
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, m + k) state, K, at the start of a motion."""
-        if self._start is None:
-            self._start = np.full((shape[0], self.size), float(self.initial))
-            for wall in self.conducting:
-                self._start[:, wall.columns] = wall.initial
-        return self._start
+        start = np.full((shape[0], self.size), float(self.initial))
+        for wall in self.conducting:
+            start[:, wall.columns] = wall.initial
+        return start
+
+    def set_viscosity(self, temperature: float | np.ndarray) -> float:
+        """Bring the viscosity field to a state, K; the film shares no other factor than 1."""
+        if temperature is not self._last:
+            self._last = np.asarray(temperature)
+            self.field.set(self.viscosity_ratio(self.heights(self._last)))
+        return 1.0
+
+    def heights(self, state: np.ndarray) -> np.ndarray:
+        """Temperatures that set the viscosity: the film's (n, m)."""
+        return np.ascontiguousarray(state[:, : self.shape[1]])
 
     def split(self, temperature: float | np.ndarray) -> tuple[float | np.ndarray, Walls | None]:
         """The film's own temperatures (n, m) of a state, and its walls; None where nothing stands behind the film's."""
         if self.size == self.shape[1]:
             return temperature, None
-        if temperature is not self._last_state:
-            self._last_state = T = np.asarray(temperature)
-            (bush, journal), m = self.sides, self.shape[1]
+        if temperature is not self._last_split:
+            self._last_split = T = np.asarray(temperature)
+            bush, journal = self.sides
             walls = Walls(
                 None if bush is None else bush.of(T),
                 None if journal is None else journal.of(T)[0],
@@ -108,7 +135,7 @@ class FilmTemperature(HeatedFilm):
                 self.clearance + self.opening(T),
                 self._across(T),
             )
-            self._parts = np.ascontiguousarray(T[:, :m]), walls
+            self._parts = np.ascontiguousarray(T[:, : self.shape[1]]), walls
         return self._parts
 
     def _across(self, state: np.ndarray) -> np.ndarray | None:
@@ -120,10 +147,6 @@ class FilmTemperature(HeatedFilm):
         bush, journal = (0.0 if wall is None else wall.growth(temperature) for wall in self.sides)
         return bush - journal
 
-    def set_viscosity(self, temperature: float | np.ndarray) -> float:
-        """Set the viscosity from the film's part of the temperatures, as without walls."""
-        return super().set_viscosity(self.split(temperature)[0])
-
     def advance(self, film: SolvedFilm) -> np.ndarray:
         """State at the end of a solved film's step."""
         old = self.state_of(film.history)
@@ -131,7 +154,9 @@ class FilmTemperature(HeatedFilm):
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """State in balance with the heat of a solved film; not finite without a way out for the heat."""
-        if not self._has_way_out(film):
+        flows = OilFlows(film, self.carry_over)
+        stagnant = flows.exchanged <= NO_FLOW * float(np.abs(flows.x).max())
+        if self.transfer == 0.0 and stagnant and heat_of(film).max() > 0.0:
             return np.full((self.shape[0], self.size), np.inf)
         return self._settled(film, 0.0, self.state_of(film.history))
 
@@ -169,7 +194,6 @@ class FilmTemperature(HeatedFilm):
         for wall in self.conducting:
             wall.rings.bring_to(step)
         between = self.equations(film, step)
-        between.solve()
         at = [self._surface(side, old) for side in (0, 1)]
         if self.conducting:
             change = self._surfaces_change(between, old, between.passed(between.between(at), at))
@@ -195,7 +219,7 @@ class FilmTemperature(HeatedFilm):
             stiff[part, part] = wall.rings.matrix()
             missing[part] = wall.rings.remembered(rise) - stiff[part, part] @ rise[:, 0]
         given = self._gather(heat)
-        lead = lu_factor(stiff + self._held(between.by))
+        lead = lu_factor(stiff - self._held(between.through[..., -2:]))
 
         def led(w: np.ndarray) -> np.ndarray:
             at = self._spread(w)
@@ -206,7 +230,7 @@ class FilmTemperature(HeatedFilm):
 
     def equations(self, film: SolvedFilm, step: float) -> HeatBalance:
         """Return the equations of a solved film over a step, s; 0: steady state."""
-        return HeatBalance(self, film, step, self.passage(film))
+        return HeatBalance(self, film, step, self.passage(film), self.band)
 
     def passage(self, film: SolvedFilm) -> PassageData:
         """Return the passage of heat from a solved film to both sides."""
@@ -217,8 +241,8 @@ class FilmTemperature(HeatedFilm):
         return kappa, area, (bush, journal)
 
     def _of_film(self, state: np.ndarray) -> np.ndarray:
-        """The film's unknowns in a state."""
-        return state[:, : self.shape[1]]
+        """The film's unknowns (k, n, m) in a state."""
+        return state[None, :, : self.shape[1]]
 
     def _spread(self, w: np.ndarray) -> list[np.ndarray]:
         """Values (k,) at the surfaces of walls that conduct as (n, 1) or (1, 1) of both sides, the others' zero."""
@@ -235,14 +259,15 @@ class FilmTemperature(HeatedFilm):
         ]
         return np.concatenate(rows)
 
-    def _held(self, of: np.ndarray) -> np.ndarray:
-        """Return the heat from walls to a film of held temperatures, per kelvin of their surfaces (k, k), W/K."""
-        (bush, both), (_, journal) = of.sum(axis=3)
-        if self.sides[1] is None:
-            return np.diag(bush)
-        if self.sides[0] is None:
-            return journal.sum(keepdims=True)[None]
-        return np.block([[np.diag(bush), both[:, None]], [both, journal.sum()]])
+    def _held(self, through: np.ndarray) -> np.ndarray:
+        """Return the heat to walls from a film of held temperatures, per kelvin of their surfaces (k, k), W/K.
+
+        ``through`` (2, n, m, 2): per kelvin of both sides.
+        """
+        (bush, both), (_, journal) = np.moveaxis(through.sum(axis=2), -1, 1)
+        whole = np.block([[np.diag(bush), both[:, None]], [both, journal.sum()]])
+        known = np.repeat([wall is not None for wall in self.sides], (bush.size, 1))
+        return whole[np.ix_(known, known)]
 
 
 class Growth:

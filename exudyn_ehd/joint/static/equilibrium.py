@@ -12,7 +12,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.film import evaluate_at
-from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.newton import Place
+from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.balance.steadiest import steadiest
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.centre import evaluate_beside, is_central, require_derivatives
@@ -26,7 +27,7 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
 
 if TYPE_CHECKING:
-    from exudyn_ehd.joint.balance.faces import FacesUnderLoad
+    from exudyn_ehd.joint.thrust import ThrustModel
 
 # Step of the difference quotients between converged films, as a share of the minimum film thickness.
 SETTLED_STEP = 1e-4
@@ -253,10 +254,9 @@ def equilibrium(
         require_size("equilibrium: load", size, "N", **LOADS)
     require_rest(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
-    faces = _faces(model, place, axial_load, size)
-    motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
-    motion[:2] = first_guess(bearing, omega, force, b)
-    search = LoadSearch(model, force, "equilibrium", faces=faces, size=size)
+    faces, along = _faces(bearing, place, axial_load)
+    motion = np.array([*first_guess(bearing, omega, force, b), *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0, place])
+    search = LoadSearch(model, "equilibrium", np.append(force, along), size=size, faces=faces)
     found = steadiest(search, search.find(motion))
     K, C, response = _small_motions(model, found)
     ratio, mass = whirl_threshold(K, C, abs(omega)) if response is None else threshold(response.at, abs(omega))
@@ -265,11 +265,11 @@ def equilibrium(
     there = Z.real, Z.imag / frequency
     if not model.remembers_mass:
         frequency = 0.0
-    film = result_at(model, found.motion, "equilibrium", found.film.history)
+    film = result_at(model, found.motion[:MOTION_SIZE], "equilibrium", found.film.history)
     if found.faces is not None:
         from exudyn_ehd.joint.static.thrust import result_of
 
-        film = replace(film, faces=result_of(found.faces.evaluation, found.faces.tangent))
+        film = replace(film, faces=result_of(found.faces, found.faces.tangent()))
     return EquilibriumResult(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
@@ -287,7 +287,7 @@ def equilibrium(
     )
 
 
-def _small_motions(model: BearingModel, found: Carried) -> tuple[np.ndarray, np.ndarray, FilmResponse | None]:
+def _small_motions(model: BearingModel, found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse | None]:
     """K and C (2, 2) of slow motions about a position whose film is the model's last, and its response.
 
     None where K and C do not depend on the frequency.
@@ -298,7 +298,8 @@ def _small_motions(model: BearingModel, found: Carried) -> tuple[np.ndarray, np.
         require_derivatives(evaluation, "equilibrium")
     K, C = own = _slow_motions(evaluation)
     if found.faces is not None:
-        K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
+        beside = found.faces.tangent()
+        K, C = K - beside[:2, :2], C - beside[:2, 4:6]
     if not (model.remembers_mass or model.flexible or model.parts.liner is not None):
         return K, C, None
     if central and not model.remembers_mass:
@@ -319,25 +320,22 @@ def _slow_motions(evaluation: Evaluation) -> tuple[np.ndarray, np.ndarray]:
     return -tangent[:2, :2], -tangent[:2, 4:6]
 
 
-def _faces(model: BearingModel, position: float, load: float | None, across: float) -> FacesUnderLoad | None:
-    """The films on end faces in the search, under a load of the size ``across`` in x and y, N."""
-    bearing = model.bearing
-    if load is not None:
-        load = require_number("equilibrium: axial_load", load, "N")
+def _faces(bearing: JournalBearing, position: float, load: float | None) -> tuple[ThrustModel | None, list[float]]:
+    """The films on end faces in the search, and what they are to carry along z, N; an empty list if they are held."""
+    along = [] if load is None else [require_number("equilibrium: axial_load", load, "N")]
     if bearing.thrust is None and position == 0.0 and not load:
-        return None
+        return None, []
     # imported here: a bearing without faces needs none of it
-    from exudyn_ehd.joint.balance.faces import FacesUnderLoad
     from exudyn_ehd.joint.static.thrust import require_faces
+    from exudyn_ehd.joint.thrust import ThrustModel
 
     require_faces(bearing, "equilibrium", axial_position=position, axial_load=load)
-    if load is not None and position != 0.0:
+    if along and position != 0.0:
         raise InputError(
             f"equilibrium: axial_position = {position!r} m and axial_load = {load!r} N exclude each other: the journal "
             "is held along the axis, or finds its place under a load; leave one out."
         )
-    size = math.hypot(across, load or 0.0)
-    return FacesUnderLoad(bearing, position, load, size, "equilibrium")
+    return ThrustModel(bearing), along
 
 
 def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:

@@ -12,7 +12,6 @@ from exudyn_ehd.film.cavitation.closures import Closure, SwiftStieber, place_lin
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant, transform_of
-from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.pictures.records import shown
@@ -153,7 +152,10 @@ def solve_film(
         mass = history / c
         rate = (H - mass) / step
     law = transform_of(lubricant)
-    solver = _any_gap_solver(grid, closure, law, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
+    effects = (SteppedGap(H),) if stepped_gap else ()
+    density = law if isinstance(law, CompressibleLaw) else None
+    solver = FilmSolver(grid, closure, squeeze=rate is not None, flux_effects=effects, density=density)
+    solver.pressure_scale = scale
     solver.H[:] = H
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
     if rate is not None:
@@ -181,21 +183,6 @@ def solve_film(
         fill=fill,
         content=fill * gap * solver.rho,
     )
-
-
-def _any_gap_solver(
-    grid: FilmGrid,
-    closure: Closure,
-    law: PressureTransform | None,
-    squeeze: bool,
-    steps: SteppedGap | None,
-    scale: float,
-) -> FilmSolver:
-    density = law if isinstance(law, CompressibleLaw) else None
-    effects = () if steps is None else (steps,)
-    solver = FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects, density=density)
-    solver.pressure_scale = scale
-    return solver
 
 
 def _check_kinds(grid: object, lubricant: Lubricant, cavitation: object, stepped_gap: bool) -> None:

@@ -10,14 +10,14 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import warn_of_heat
-from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.newton import Place
+from exudyn_ehd.joint.balance.position import LoadSearch, continued, first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_rest
 from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible, require_type
 
-LARGEST_HALVINGS = 8
 # Share of a speed from which on the next one has none in between, and change of temperature, K, that asks for one: a
 # tenth of the viscosity.
 NEXT, LEAP = 0.9, 3.0
@@ -142,59 +142,55 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
         bearing = replace(bearing, asperity=replace(bearing.asperity, transition_speed=slow))
     model = build_study_model(bearing, 0.0)
     order = np.argsort(-values)
-    last = float(values[order[0]])
-    search = LoadSearch(model, np.array([0.0, -size]), "stribeck")
+    search = LoadSearch(model, "stribeck", np.array([0.0, -size]))
     motion = np.zeros(10)
-    motion[:2] = first_guess(bearing, last, search.force, np.zeros(2))
+    motion[8] = values[order[0]]
+    motion[:2] = first_guess(bearing, motion[8], search.load, np.zeros(2))
     rows: list[dict[str, float | np.ndarray]] = [{}] * values.size
     told = coarse = False
-    found: Carried | None = None
+    found: Place | None = None
     for k in order:
-        found = _follow(search, found, motion, last, float(values[k]))
-        motion, last = found.motion, float(values[k])
-        film = found.evaluation.film
-        assert film is not None
-        told = told or warn_of_heat(film.temperature, film.grid, f"stribeck at {last:.4g} rad/s")
-        coarse = coarse or warn_of_grid(film, f"stribeck at {last:.4g} rad/s")
-        rows[k] = _row(found.evaluation, last, size)
+        found = _follow(search, found, motion, float(values[k]))
+        film, where = found.film, f"stribeck at {values[k]:.4g} rad/s"
+        told = told or warn_of_heat(film.temperature, film.grid, where)
+        coarse = coarse or warn_of_grid(film, where)
+        rows[k] = _row(found.evaluation, float(values[k]), size)
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return StribeckResult(speeds=values, **columns)
 
 
-def _follow(search: LoadSearch, before: Carried | None, motion: np.ndarray, last: float, speed: float) -> Carried:
-    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where it is not found.
+def _follow(search: LoadSearch, before: Place | None, start: np.ndarray, speed: float) -> Place:
+    """Equilibrium at a speed from the one before, by steps of the speed's logarithm; the first from a motion (10,).
 
-    So too where its temperature leaps: the branch may end on the way, or the search have left it. Where no way leads
-    on, the branch has ended, and the leap counts.
+    Where the temperature leaps, the branch may end on the way, or the search have left it: the step is halved. Where no
+    shorter one leads on, the branch has ended, and the leap counts.
     """
-    target, halvings = speed, 0
-    leaped: Carried | None = None
-    while True:
-        motion = motion.copy()
-        motion[8] = target
+    first = start if before is None else before.motion
+    last, failure = float(first[8]), None
+    way = min(math.log(speed / last), math.log(NEXT))
+
+    def reach(share: float, here: Place | None, final: bool) -> Place | None:
+        nonlocal failure
+        here = before if here is None else here
+        motion = (first if here is None else here.motion).copy()
+        motion[8] = last * (speed / last) ** share
         try:
-            found = search.find(motion, before)
+            found = search.find(motion, here)
         except FilmError as error:
-            if leaped is not None:
-                return leaped
-            halvings += 1
-            target = math.sqrt(last * target)
-            if halvings > LARGEST_HALVINGS or target / last > NEXT:
-                raise FilmError(
-                    f"stribeck: no equilibrium found at {speed:.4g} rad/s under {search.size:.4g} N; next to "
-                    f"{last:.4g} rad/s: {error}"
-                ) from error
-            continue
-        if before is not None and target / last < NEXT and _leap(before, found) > LEAP:
-            leaped = found if target == speed else leaped
-            target = math.sqrt(last * target)
-        elif target == speed:
-            return found
-        else:
-            before, motion, last, target = found, found.motion, target, speed
+            failure = error
+            return None
+        return None if here is not None and not final and _leap(here, found) > LEAP else found
+
+    reached, found = continued(reach, 1.0, math.log(NEXT) / way)
+    if found is None or reached < 1.0:
+        raise FilmError(
+            f"stribeck: no equilibrium found at {speed:.4g} rad/s under {search.size:.4g} N; next to "
+            f"{last * (speed / last) ** reached:.4g} rad/s: {failure}"
+        ) from failure
+    return found
 
 
-def _leap(before: Carried, found: Carried) -> float:
+def _leap(before: Place, found: Place) -> float:
     """Change of the mean temperature, K."""
     one, other = before.film.temperature, found.film.temperature
     return 0.0 if one is None or other is None else abs(float(np.mean(other)) - float(np.mean(one)))

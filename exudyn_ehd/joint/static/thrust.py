@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
+from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import FilmError, InputError, Status
+from exudyn_ehd.status import InputError
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -81,8 +81,7 @@ class ThrustResult:
 def faces_at(bearing: JournalBearing, motion: np.ndarray, where: str) -> ThrustResult:
     """Films on the faces of a bearing with ``thrust`` at a motion (11,); `FilmError` if there are none."""
     found = ThrustModel(bearing).evaluate(motion)
-    if found.status is not Status.CONVERGED:
-        raise FilmError(no_film(found, where))
+    found.require_film(where)
     return result_of(found, found.tangent())
 
 

@@ -9,7 +9,7 @@ from scipy.special import i0, i1
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.heat.conduction import Rings
-from exudyn_ehd.film.heat.energy import passage
+from exudyn_ehd.film.heat.energy import through_surfaces
 
 R, L, THICKNESS, G, K = 0.025, 0.04, 0.02, 3.0, 45.0
 CAPACITY = 7800.0 * 460.0
@@ -133,8 +133,7 @@ def test_heat_through_the_surfaces_is_that_of_a_parabola(sides):
     rng, k = np.random.default_rng(1), 0.13
     h, area, mean = 1e-5 * (1.0 + rng.random((3, 2))), rng.random((3, 2)), 330.0 + 20.0 * rng.random((3, 2))
     walls = [320.0 + 10.0 * rng.random((3, 1)), np.array([[325.0]])]
-    at = np.stack(np.broadcast_arrays(mean, *walls))
-    got = np.sum(passage(k / h, area, sides) * at, axis=1)
+    got = sum(through_surfaces(k / h, area, sides)[..., j] * T for j, T in enumerate([mean, *walls]))
     for i in np.ndindex(h.shape):
         y, T1, T2 = h[i], walls[0][i[0], 0], 325.0
         rows, right = [[1.0, y / 2.0, y * y / 3.0]], [mean[i]]

@@ -64,7 +64,7 @@ class Scene:
         if near is None:
             return ehd.equilibrium(bearing, speed=self.speed, load=self.load, tilt=self.tilt).film
         model = build_study_model(bearing, 0.0)
-        place = LoadSearch(model, np.array(self.load), "truth").find(near.motion[:MOTION_SIZE])
+        place = LoadSearch(model, "truth", np.array(self.load)).find(near.motion[:MOTION_SIZE])
         return result_at(model, place.motion[:MOTION_SIZE], "truth")
 
 

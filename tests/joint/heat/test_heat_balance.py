@@ -9,7 +9,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.heat.energy import end_flows_around, transport_slopes
 from exudyn_ehd.joint.balance.film import settled_history
-from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange
+from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model, build_study_model
 from exudyn_ehd.joint.model.quantities import supply_flows
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -210,7 +210,7 @@ def test_a_supply_area_is_well_mixed(closure, area, carry_over):
         leaves = inside.astype(float) - np.roll(inside, -1, axis)
         given += np.sum(leaves * (slopes[2 * axis] * T + slopes[2 * axis + 1] * np.roll(T, -1, axis)))
         arriving += np.sum(np.maximum(-leaves * flow, 0.0))
-    heat = model.effects.thermal.heat(film)[inside].sum() / (CAPACITY * film.parts.flow_scale)
+    heat = heat_of(film)[inside].sum() / (CAPACITY * film.parts.flow_scale)
     taken = max(0.0, -flows.outside[inside].sum()) + (1.0 / carry_over - 1.0) * arriving
     # where a closure does not conserve mass, the cavity begins in half control volumes beside the area
     mixed = flows.back * np.sum(flows.lost * T) / (flows.total_lost or 1.0)

@@ -14,7 +14,7 @@ from exudyn_ehd.film.supply.areas import axial_span, placed
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.contact import LandContact
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.joint.heat.power import heat_and_exchange
+from exudyn_ehd.joint.heat.power import heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model
 
 R, L, C, MU = 0.04, 0.05, 40e-6, 0.012
@@ -211,7 +211,7 @@ def test_heat_of_recesses_has_the_viscosity_of_their_temperature(thermal):
         )
         evaluation = model.evaluate(where, history, 0.0)
         film = evaluation.film
-        heat = model.effects.thermal.heat(film).sum() if thermal is ehd.FilmEnergy else heat_and_exchange(film, 1.0)[0]
+        heat = heat_of(film).sum() if thermal is ehd.FilmEnergy else heat_and_exchange(film, 1.0)[0]
         found.append((evaluation.quantities()["power_loss"], heat))
     (loss, heat), (more_loss, more_heat) = found
     expected = 4.0 * MU * math.exp(-0.3) * (300.0 * R) ** 2 / 5e-4 * R * 0.03

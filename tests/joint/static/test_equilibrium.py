@@ -304,7 +304,7 @@ def test_of_several_positions_the_steadiest_is_returned_and_all_are_named():
     assert np.linalg.eigvalsh(K + K.T)[0] > 0.0
     np.testing.assert_allclose(K, found.settled_stiffness, rtol=0, atol=1e-3 * np.abs(K).max())
     # the search alone comes to the first of them
-    search = LoadSearch(build_model(bearing), load, "test")
+    search = LoadSearch(build_model(bearing), "test", load)
     motion = np.zeros(10)
     motion[2:4], motion[8] = asked["tilt"], asked["speed"]
     motion[:2] = first_guess(bearing, asked["speed"], load, motion[2:4])
@@ -436,10 +436,10 @@ def test_a_load_at_which_the_friction_of_asperities_heats_the_film_away_says_so(
 def test_loads_that_grow_lead_to_the_film_that_a_search_finds_at_once(make_bearing):
     bearing = _hot(make_bearing, "one temperature")
     found = ehd.equilibrium(bearing, speed=600.0, load=(0.0, -2e4)).film
-    search = LoadSearch(build_model(bearing), np.array([0.0, -2e4]), "test")
-    motion = search.climb(np.where(np.arange(10) == 8, 600.0, 0.0), 1e-10)
-    np.testing.assert_allclose(motion[:2], found.motion[:2], rtol=0, atol=1e-8 * bearing.radial_clearance)
-    assert search.carried == search.size == 2e4
+    search = LoadSearch(build_model(bearing), "test", np.array([0.0, -2e4]))
+    share, place = search.climb(np.where(np.arange(10) == 8, 600.0, 0.0))
+    assert share == 1.0
+    np.testing.assert_allclose(place.motion[:2], found.motion[:2], rtol=0, atol=1e-8 * bearing.radial_clearance)
 
 
 def test_what_remembers_its_oil_has_its_settled_stiffness_at_rest(make_bearing):

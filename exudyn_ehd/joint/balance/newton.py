@@ -1,0 +1,327 @@
+"""One damped Newton's method for steady films: for the journal's position under a load, and for the temperature.
+
+Of the free coordinates x of the journal and the temperature T, with the force F of the films and the load W, and with
+the temperature T* that is in balance with the heat of the film at x and T,
+
+    F(x, T) + W = 0,    T*(x, T) - T = 0.
+
+A round solves one film, whose flexible bore is in balance with it. It takes Newton's step in x at the film's
+temperature, with its forces multiplied by what the mean viscosity changes by from T to T*, and the step to T*. Near
+the end Anderson's acceleration of both finds what each adds to the other. With a resistance r, N/m, the step in x is
+damped after Levenberg (1944) and Marquardt (1963): with K = -dF/dx
+
+    (K^T K + r^2 I) step = K^T (F + W)
+
+goes downhill in |F + W|^2 for r large enough, whatever K; r falls as |F + W| does, and a step that increases it is
+taken back and r grows. Slow and sure where Newton's method jumps over a film that starves or touches, and where a film
+without a cavity turns the journal across the load. A step that meets no film is halved.
+
+Free coordinates are x and y, and the place z along the axis if films on the end faces carry an axial load.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.linalg import norm
+
+from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
+from exudyn_ehd.status import FilmError, Status
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
+
+# Change of the temperature that counts as settled, as a share of the film's rise over its coldest source; where
+# round-off of hot fields keeps changes from falling further, the second one does.
+SETTLED, NEARLY = 1e-11, 1e-9
+LOAD_TOLERANCE = 1e-10
+# Rounds of a search, of one from a film nearby, and those that may pass without the error falling to a share of what
+# it was. More rounds, and a share nearer to 1, give up later.
+ROUNDS, NEARBY_ROUNDS, PATIENCE, FALLS = 300, 20, 20, 0.9
+# Damping of the temperature's steps below which it gives up where they make no progress.
+WEAKEST = 0.1
+# Halvings of a step without a film, or steps of the first position towards the centre, after which there is none.
+HALVINGS = 8
+# Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
+LARGEST_EFFORT = 6000
+# K: largest change of a round, change that the acceleration starts from, and one that weighs as much as a clearance.
+LARGEST_CHANGE, ACCELERATED, TYPICAL_CHANGE = 50.0, 5.0, 30.0
+# Differences of past rounds that the acceleration combines.
+DEPTH = 10
+# K, up to which a search goes on, far beyond what any oil bears: on its way a film is hotter than where it ends.
+DIVERGED = 2000.0
+# Least stiffness of the faces in a step, in loads over the clearance; a larger one shortens steps of soft faces.
+SOFTEST = 1e-6
+# Share of the smallest gap that a step may use up; step over the clearance where surfaces may touch or deflect.
+ROOM, FREE_STEP = 0.6, 0.3
+
+
+@dataclass(eq=False)
+class Place:
+    """A film of a search.
+
+    Attributes
+    ----------
+    motion : (11,) array
+        Motion of the journal (10,), and its axial position between the end faces, m.
+    temperature, change : arrays
+        T and T* - T, K, of any shape; empty where no temperature is sought.
+    evaluation, film : Evaluation, SolvedFilm
+        Evaluation and solution of the steady film there.
+    unbalance : (k,) array
+        Force of the films and load at the temperature T*, N.
+    slope : (k, k) array
+        Its derivative to the free coordinates, N/m.
+    faces : ThrustEvaluation or None
+        Films on the end faces, which ``unbalance`` contains.
+    """
+
+    motion: np.ndarray
+    temperature: np.ndarray
+    change: np.ndarray
+    evaluation: Evaluation
+    film: SolvedFilm
+    unbalance: np.ndarray
+    slope: np.ndarray
+    faces: ThrustEvaluation | None
+
+
+class Balance:
+    """Steady films of a model, whose temperature and position are sought.
+
+    Parameters
+    ----------
+    model : BearingModel
+    where : str
+        Name of the caller, for error messages.
+    load : (k,) array, optional
+        Force on the journal in x and y, N, and with three components along z, which the faces carry. Without one the
+        journal's position is given.
+    size : float, optional
+        Force in x and y that the unbalance is divided by, N; by default that of the load.
+    faces : ThrustModel, optional
+        Films on the end faces beside the journal's.
+    held : History, optional
+        Memory whose temperature the film has; None: the temperature is sought.
+    effort : int
+        Film solves after which a search gives up.
+
+    Attributes
+    ----------
+    share : float
+        Share of the load that is to be carried.
+    count : int
+        Films tried.
+    """
+
+    def __init__(
+        self,
+        model: BearingModel,
+        where: str,
+        load: np.ndarray | None = None,
+        *,
+        size: float | None = None,
+        faces: ThrustModel | None = None,
+        held: History | None = None,
+        effort: int = LARGEST_EFFORT,
+    ) -> None:
+        self.model, self.where, self.faces, self.held, self.effort = model, where, faces, held, effort
+        self.load = np.zeros(0) if load is None else load
+        self.free, self.share = [0, 1, MOTION_SIZE][: self.load.size], 1.0
+        self.size = float(norm(self.load[:2])) if size is None else size
+        self._sizes = np.array([self.size, self.size, *np.hypot(self.size, self.load[2:])])[: self.load.size]
+        self.thermal = model.effects.thermal if held is None else None
+        cold = np.zeros(0) if self.thermal is None else self.thermal.initial_temperature(model.grid.shape)
+        self.cold = np.asarray(cold, dtype=float)
+        self.count, self.first = 0, model.parts.evaluations.count
+        self.strongest = (0.0, 0.0)
+
+    def temperature_of(self, near: History | None) -> np.ndarray:
+        """Temperature, K, at which a search starts beside a film with this memory."""
+        known = None if near is None else near.temperature
+        return np.asarray(self.cold if known is None or self.thermal is None else known, dtype=float)
+
+    def at(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
+        """The steady film at a motion (11,) and a temperature; `FilmError` without one."""
+        self.count += 1
+        T, thermal, k = temperature, self.thermal, len(self.free)
+        history = self.held if thermal is None else History(temperature=T if T.ndim else float(T))
+        evaluation = self.model.evaluate_steady(motion[:MOTION_SIZE], history)
+        film = evaluation.film
+        if film is None or evaluation.status is not Status.CONVERGED:
+            raise FilmError(no_film(evaluation, self.where))
+        thinner, change = 1.0, np.zeros(0)
+        if thermal is not None:
+            change = thermal.steady_temperature(film) - T
+            size = float(np.abs(change).max())
+            if not size < math.inf:
+                raise FilmError(f"{self.where}: the film is heated, and its heat has no way out; {WAY_OUT}")
+            if not float(T.max()) < DIVERGED:
+                raise FilmError(f"{self.where}: the film is beyond {DIVERGED:g} K, {NO_OIL}")
+            after = T + change * min(1.0, LARGEST_CHANGE / max(size, 1e-300))
+            thinner = float(thermal.viscosity_ratio(after).mean() / thermal.viscosity_ratio(T).mean())
+        unbalance, slope, beside = self.share * self.load, np.zeros((k, k)), None
+        if k:
+            carried = float(np.hypot(*evaluation.wrench[:2]))
+            ratio = float(np.hypot(*motion[:2])) / self.model.bearing.radial_clearance
+            self.strongest = max(self.strongest, (carried, ratio))
+            unbalance += thinner * evaluation.wrench[:k]
+            slope[:, :2] = thinner * evaluation.steady_tangent()[:k, :2]
+        if self.faces is not None:
+            beside = self.faces.evaluate(motion)
+            beside.require_film(self.where)
+            unbalance += beside.wrench[:k]
+            slope += beside.tangent()[:k, self.free]
+            if k > 2:  # plane faces at rest press nowhere: a step goes to the face that is to carry
+                slope[2, 2] = min(slope[2, 2], -SOFTEST * self._sizes[2] / self.model.bearing.radial_clearance)
+        return Place(motion.copy(), T, change, evaluation, film, unbalance, slope, beside)
+
+    def residual(self, place: Place) -> float:
+        """Largest component of the unbalance over the load."""
+        return float((np.abs(place.unbalance) / self._sizes).max(initial=0.0)) / self.share
+
+    def error(self, place: Place) -> float:
+        """The larger of the residual and of the temperature's change over a typical one."""
+        return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / TYPICAL_CHANGE)
+
+    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = NEARLY) -> bool:
+        """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
+        T, change = place.temperature, place.change
+        if self.residual(place) > tolerance or not change.size:
+            return self.residual(place) <= tolerance
+        rise = max(float(np.ptp(T + change)), float(np.abs(T - self.cold).max()), 1e-3)
+        return float(np.abs(change).max()) <= settled * rise
+
+    def solve(
+        self,
+        motion: np.ndarray,
+        temperature: np.ndarray,
+        tolerance: float = LOAD_TOLERANCE,
+        *,
+        resistance: float = 0.0,
+        rounds: int = ROUNDS,
+    ) -> Place:
+        """Film in balance from a motion (11,) and a temperature on, or the last of the search.
+
+        It ends where it makes no progress, too. The film is the model's last.
+
+        Raises
+        ------
+        FilmError
+            Without a film at the start, nor at smaller eccentricities.
+        """
+        here = self._first(motion, temperature)
+        past: list[tuple[np.ndarray, np.ndarray]] = []
+        best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
+        for _ in range(rounds):
+            if self.is_balanced(here, tolerance, SETTLED) or self._is_spent():
+                break
+            if idle > PATIENCE:
+                if not here.change.size or damping < WEAKEST or (self.free and not resistance):
+                    break
+                here, past, idle, damping = best, [], 0, 0.6 * damping
+            step = self._step(here, resistance)
+            past = [*past, (self._unknowns(here), step)][-min(DEPTH, step.size) - 1 :]
+            if not here.change.size or np.abs(here.change).max() >= ACCELERATED:
+                past = []
+            accelerated = damping * step - (foreseen(past, damping) if len(past) > 1 else 0.0)
+            try:
+                there = self._moved(here, part * accelerated)
+            except FilmError:
+                there = None
+            if there is None or (resistance and not norm(there.unbalance) < norm(here.unbalance)):
+                past, part, resistance = [], part if resistance else 0.5 * part, 4.0 * resistance
+                if resistance > highest or part < 0.5**HALVINGS:
+                    break
+                continue
+            here, part, resistance = there, 1.0, resistance / 5.0
+            idle = 0 if self.error(here) <= FALLS * smallest else idle + 1
+            if self.error(here) < smallest:
+                best, smallest = here, self.error(here)
+        if here.film.serial != self.model.parts.evaluations.count:
+            here = self.at(here.motion, here.temperature)
+        return here
+
+    def _is_spent(self) -> bool:
+        return self.model.parts.evaluations.count - self.first > self.effort
+
+    def _first(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
+        """The film at a motion (11,), or that of a free journal at a smaller eccentricity if there is none."""
+        for _ in range(HALVINGS if self.free else 0):
+            try:
+                return self.at(motion, temperature)
+            except FilmError:
+                motion = np.concatenate([0.8 * motion[:2], motion[2:]])
+        return self.at(motion, temperature)
+
+    def _scales(self, size: int) -> np.ndarray:
+        """Units (k + size,) of the unknowns: the clearance and a typical change of all temperatures, K."""
+        c = self.model.bearing.radial_clearance
+        return np.append(np.full(len(self.free), c), np.full(size, TYPICAL_CHANGE * math.sqrt(max(size, 1))))
+
+    def _unknowns(self, place: Place) -> np.ndarray:
+        """Scaled unknowns (k + m,) at a place."""
+        return np.append(place.motion[self.free], place.temperature) / self._scales(place.change.size)
+
+    def _step(self, place: Place, resistance: float) -> np.ndarray:
+        """Newton's step from a place, damped, and the temperature's change, scaled (k + m,)."""
+        k, size = len(self.free), float(np.abs(place.change).max(initial=1e-300))
+        rows = np.vstack((-place.slope, resistance * np.eye(k)))
+        step, *_ = np.linalg.lstsq(rows, np.append(place.unbalance, np.zeros(k)), rcond=None)
+        return np.append(step, place.change * min(1.0, LARGEST_CHANGE / size)) / self._scales(place.change.size)
+
+    def _moved(self, place: Place, step: np.ndarray) -> Place:
+        """The film a scaled step (k + m,) on, shortened to what the gaps leave and to four times the last change."""
+        k, motion, size = len(self.free), place.motion.copy(), float(np.abs(place.change).max(initial=1e-300))
+        step = step * self._scales(place.change.size)
+        if k:
+            motion[:2] += limited_step(self.model, motion, step[:2])
+        if place.faces is not None and k > 2:
+            motion[MOTION_SIZE] += limited_shift(place.faces, float(step[2]))
+        change = step[k:].reshape(place.change.shape)
+        change = change * min(1.0, 4.0 * size / float(np.abs(change).max(initial=size)))
+        return self.at(motion, place.temperature + change)
+
+
+def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float) -> np.ndarray:
+    """Return the part of the next fixed-point step that Anderson's acceleration subtracts.
+
+    The step is ``damping`` times the iteration's change.
+
+    ``past``: points (k,) of two rounds and more with the changes (k,) that the iteration gave there, the newest last.
+    """
+    dX, dF = (np.diff(np.array(values), axis=0).T for values in zip(*past))
+    return (dX + damping * dF) @ np.linalg.lstsq(dF, past[-1][1], rcond=1e-12)[0]
+
+
+def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end.
+
+    A wall or a flexible bush limits nothing.
+    """
+    if model.effects.contacts or model.flexible:
+        longest = FREE_STEP * model.bearing.radial_clearance
+        return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
+    c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
+    scale = 1.0
+    for s in (-half, half):
+        e = motion[:2] + s * motion[2:4]
+        allowed = float(np.hypot(*e)) + ROOM * (c - float(np.hypot(*e)))
+        a, b, d = float(step @ step), float(e @ step), float(e @ e) - allowed**2
+        if a > 0.0:
+            scale = min(scale, (-b + math.sqrt(b * b - a * d)) / a)
+    return scale * step
+
+
+def limited_shift(faces: ThrustEvaluation, step: float) -> float:
+    """Shorten a step along the axis, m, so that it uses up at most 60 % of the smallest gap; a wall limits nothing."""
+    options = faces.model.bearing.thrust
+    assert options is not None
+    gap = ROOM * min(state.minimum_gap for state in faces.states)
+    longest = gap if options.contact is None else FREE_STEP * options.clearance
+    return min(max(step, -longest), longest)
