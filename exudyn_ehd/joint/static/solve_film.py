@@ -158,8 +158,7 @@ def solve_film(
     solver.pressure_scale = scale
     solver.H[:] = H
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
-    if rate is not None:
-        solver.H_t[:] = rate
+    solver.H_t[:] = 0.0 if rate is None else rate
     known = [boundary, np.asarray(closure.cavity_pressure)]
     boundary, cavity = known if law is None else (law.transform(p) for p in known)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
