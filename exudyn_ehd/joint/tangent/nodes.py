@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix, diags, eye_array
 
-from exudyn_ehd.film.banded.many_sides import product
+from exudyn_ehd.film.banded.many_sides import TILE, product
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
@@ -274,6 +274,14 @@ class NodalTangent:
             If the model has evaluated another state since.
         """
         self.film.require_current()
+        tiles = [slice(start, start + TILE) for start in range(0, motion.shape[1], TILE)]
+        wrenches, nodal = zip(*(self._changes(motion[:, at], place[:, at], rate[:, at]) for at in tiles), strict=True)
+        return np.concatenate(wrenches, axis=1), np.concatenate(nodal, axis=2)
+
+    def _changes(
+        self, motion: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return `changes` with so many that the processor's cache holds them."""
         p, line = self.film.parts, self.change.line
         moved, speed = dense(self.bore.shapes @ place), dense(self.bore.shapes @ rate)
         unknowns = -(self.by_motion @ motion + self.by_place @ moved + self.by_rate @ speed)
