@@ -101,17 +101,18 @@ class ContactFields:
         self.presses_below = max(f.presses_below for f in laws)
         self.acting = False
 
-    def press(self, H: np.ndarray) -> None:
-        """Pressures at the true gap H (n, m), scaled."""
-        self.acting = True
-        for law, P, slope in zip(self.laws, self.P, self.slope, strict=True):
-            law.pressure(H, P, slope)
-
-    def clear(self) -> None:
-        """No pressures."""
-        for known in (*self.P, *self.slope, self.integrals):
-            known[:] = 0.0
-        self.acting = False
+    def press(self, H: np.ndarray, smallest: float) -> ContactFields | None:
+        """Set the pressures at the true gap H (n, m), scaled; None where the surfaces are too far apart for any."""
+        if smallest < self.presses_below:
+            self.acting = True
+            for law, P, slope in zip(self.laws, self.P, self.slope, strict=True):
+                law.pressure(H, P, slope)
+            return self
+        if self.acting:
+            for known in (*self.P, *self.slope, self.integrals):
+                known[:] = 0.0
+            self.acting = False
+        return None
 
 
 class LimiterFields:
@@ -219,14 +220,13 @@ class BoreState(NamedTuple):
     """A flexible bore.
 
     Coordinates (k,) and rates, its scaled displacement (n, m), and the loads (k,) on it, N, nan without a film. With an
-    elastic journal the displacement is what both surfaces open the gap by, ``of_journal`` the part of the journal.
+    elastic journal the displacement is what both surfaces open the gap by.
     """
 
     coordinates: np.ndarray
     rates: np.ndarray
     displacement: np.ndarray
     load: np.ndarray
-    of_journal: np.ndarray | float = 0.0
 
 
 class OilFields(NamedTuple):

@@ -70,7 +70,7 @@ class FilmDisplay:
         self.gap = film.solver.H * clearance
         if film.bore is None:
             return
-        self.bore = (film.bore.displacement - film.bore.of_journal) * clearance
+        self.bore = model.bore.without_journal(film.bore.coordinates)
         self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
         modes: Any = getattr(model.bore, "modes", None)
         # finite-element bodies show themselves

@@ -62,9 +62,9 @@ class Bore(abc.ABC):
         found = self._onto @ (diags_array(field.ravel()) @ self.shapes)
         return found if isinstance(found, np.ndarray) else np.asarray(found.toarray())
 
-    def of_journal(self, q: np.ndarray) -> np.ndarray:
-        """Return the opening of the gap (n, m) by an elastic journal's part of q."""
-        return self.displacement(np.where(np.arange(self.size) < self.own, 0.0, q))
+    def without_journal(self, q: np.ndarray) -> np.ndarray:
+        """Return the displacement (n, m) of the bore itself, without an elastic journal's part of q."""
+        return self.displacement(np.where(np.arange(self.size) < self.own, q, 0.0))
 
     @abc.abstractmethod
     def end_shapes(self) -> np.ndarray:

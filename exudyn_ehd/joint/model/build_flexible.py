@@ -141,7 +141,7 @@ class TurningModel(ElasticBearingModel):
     def __init__(
         self, bearing: JournalBearing, turning: TurningJournal, start_angle: float = 0.0, effects: Effects | None = None
     ) -> None:
-        self.turning, self.turns, self._spin = turning, True, 0.0
+        self.turning, self.turns = turning, True
         super().__init__(
             bearing,
             lambda grid: ModalBore(None, grid, turning.waves),
@@ -157,14 +157,16 @@ class TurningModel(ElasticBearingModel):
         """k, the number of the body's modes."""
         return self.turning.count
 
-    def _journal(self, motion: np.ndarray) -> JournalMotion:
+    def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
         """Take over a motion (10 + 2 k,), in waves; with (10,) the journal is undeformed and its modes at rest."""
         given, k = np.zeros(MOTION_SIZE + 2 * self.size), self.size
         given[: np.size(motion)] = motion
         q, q_t = given[MOTION_SIZE : MOTION_SIZE + k], given[MOTION_SIZE + k :]
-        T, omega = self.turning.map(self._spin), float(given[8]) * self.turns
+        T, omega = self.turning.map(spin), float(given[8]) * self.turns
         r = T @ q
-        journal = super()._journal(np.concatenate((given[:MOTION_SIZE], r, T @ q_t + omega * self.turning.turned(r))))
+        journal = super()._journal(
+            np.concatenate((given[:MOTION_SIZE], r, T @ q_t + omega * self.turning.turned(r))), spin
+        )
         self._coordinates, self._turn, self._given = q, (T, omega, self.turns), given
         return journal
 
@@ -187,13 +189,6 @@ class TurningModel(ElasticBearingModel):
         return TurningEvaluation(
             status, given, whole, iterations, minimum_gap, film, self, bore, turn=self._turn, moment=moment
         )
-
-    def evaluate(
-        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
-    ) -> ElasticEvaluation:
-        """Evaluate the film, as `ElasticBearingModel.evaluate` does."""
-        self._spin = spin
-        return super().evaluate(motion, history, step, spin)
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0

@@ -204,12 +204,12 @@ class ElasticBearingModel(BearingModel):
         assert isinstance(self.bore, NodalBore)
         return BoreForces(self.bore)
 
-    def _journal(self, motion: np.ndarray) -> JournalMotion:
+    def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
         """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
         motion, k = np.asarray(motion, dtype=float), self.bore.size
         if motion.size == MOTION_SIZE:
             motion = np.concatenate((motion, np.zeros(2 * k)))
-        journal = super()._journal(motion)
+        journal = super()._journal(motion, spin)
         self._coordinates = journal.motion[MOTION_SIZE : MOTION_SIZE + k]
         scaled = journal.motion[MOTION_SIZE:] / self.bearing.radial_clearance
         self._displacement, self._rate = (self.bore.displacement(q) for q in (scaled[:k], scaled[k:]))
@@ -218,7 +218,7 @@ class ElasticBearingModel(BearingModel):
     def _bore_state(
         self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None, wrench: np.ndarray
     ) -> BoreState:
-        k = self.bore.size
+        k, moved = self.bore.size, journal.motion[MOTION_SIZE:]
         load = np.full(k, np.nan)
         if oil is not None:
             load = self.bore.load(self._pressure_field(oil, pressing))
@@ -226,11 +226,8 @@ class ElasticBearingModel(BearingModel):
                 load += self._end_load
             if self.bore.twist is not None:
                 load -= self.bore.twist * wrench[5]
-        q, q_t = journal.motion[MOTION_SIZE : MOTION_SIZE + k], journal.motion[MOTION_SIZE + k :]
-        whole, own = self._displacement, self.bearing.journal is not None
-        assert whole is not None
-        part = self.bore.of_journal(q / self.bearing.radial_clearance) if own else 0.0
-        return BoreState(q, q_t, whole, load, part)
+        assert self._displacement is not None
+        return BoreState(moved[:k], moved[k:], self._displacement, load)
 
     def _pressure_field(self, oil: OilFields, pressing: ContactFields | None) -> np.ndarray:
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""

@@ -168,7 +168,7 @@ class BearingModel:
             return None
         thermal = self.effects.thermal
         self.parts.evaluations.count += 1
-        self._set_gap(self._journal(motion), None)
+        self._set_gap(self._journal(motion, 0.0), None)
         found = self.remembers_deflection and self.evaluate(motion).film is not None
         s, remembers, liner, wear = self.solver, self.remembers_mass, self.parts.liner, self.effects.wear
         return History(
@@ -232,7 +232,7 @@ class BearingModel:
             film, iterations = solve_plain(p, self.scales, motion, self._prescribed, step)
             if film is not None:
                 return Evaluation(Status.CONVERGED, motion, film.loads.wrench, iterations, film.minimum_gap, film, self)
-        journal = self._journal(motion)
+        journal = self._journal(motion, spin)
         temperature, walls = self._set_temperature(history)
         if p.supply is not None and p.supply.turn(spin):
             self.solver.refresh_fixed()
@@ -291,7 +291,7 @@ class BearingModel:
         """A flexible bore under this film; None for a rigid one."""
         return None
 
-    def _journal(self, motion: np.ndarray) -> JournalMotion:
+    def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
         motion = np.array(motion, dtype=float)
         scaled = motion[:8] * self._scale
         return JournalMotion(motion, scaled[:4], scaled[4:], float(motion[8]), float(motion[9]))
@@ -321,22 +321,13 @@ class BearingModel:
             smallest, extra = self._add_gap_terms(history)
         if p.liner is not None:
             return smallest, extra, None, None
-        pressing = None if p.contacts is None else self._press(p.contacts, smallest)
+        pressing = None if p.contacts is None else p.contacts.press(s.H, smallest)
         limiter, f, limited = self.effects.limiter, p.limiter, None
         if limiter is not None and f is not None and smallest < limiter.limits_below:
             limited = f
             f.gap[:], f.link[:], f.rate[:] = s.H, s.HF, s.H_t
             limiter.limit(s.H, s.HF, s.H_t, f.slope, f.bend, f.face_slope)
         return smallest, extra, pressing, limited
-
-    def _press(self, f: ContactFields, smallest: float) -> ContactFields | None:
-        """Pressures of the contacts at the true gap; None where the surfaces are too far apart for any."""
-        if smallest < f.presses_below:
-            f.press(self.solver.H)
-            return f
-        if f.acting:
-            f.clear()
-        return None
 
     def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
         """Add the gap terms and a bore's displacement; returns the smallest gap and what was added."""

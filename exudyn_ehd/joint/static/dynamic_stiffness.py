@@ -30,14 +30,14 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import block_diag
 from scipy.optimize import brentq
-from scipy.sparse import csc_matrix, csr_matrix, diags_array
+from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.cavitation.rupture_line import line_matrices
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
-from exudyn_ehd.joint.tangent.bore import Balances, load_columns
+from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
 from exudyn_ehd.joint.tangent.line import line_by_motion, true_fills, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, wrench_rows
 
@@ -141,12 +141,12 @@ class FilmOnBoreResponse(FilmResponse):
     def _add_bore(self, film: SolvedFilm, bore: Bore) -> None:
         """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
         balances, force = Balances(film), film.scales.force
-        self.rows = np.concatenate((self.rows, _dense(-load_columns(film, bore)) / force), axis=1)
+        self.rows = np.concatenate((self.rows, dense(-load_columns(film, bore)) / force), axis=1)
         place, rate = (-force * balances.times(bore.shapes, *ends).T for ends in ((1.0, 0.0), (0.0, 1.0)))
         sway = content = np.zeros_like(rate)
         if self.contents is not None:
             parts = line_matrices(self.contents, film.grid.shape, len(balances.places))
-            content, sway = (-force / balances.clearance * _dense(part @ bore.shapes).T for part in parts)
+            content, sway = (-force / balances.clearance * dense(part @ bore.shapes).T for part in parts)
         self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
         self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
 
@@ -170,10 +170,6 @@ class FilmOnBoreResponse(FilmResponse):
         self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
         self.stiffness = V[2:, 2:].T @ self.stiffness @ V[2:, 2:]
-
-
-def _dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
-    return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
 
 
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:

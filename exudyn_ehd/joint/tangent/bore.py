@@ -112,7 +112,7 @@ class Balances:
     def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray:
         """Return `matrix` times the shapes (n m, k) of a bore."""
         if not isinstance(shapes, np.ndarray):
-            return np.asarray((self.matrix(by_place, by_rate) @ shapes).toarray())
+            return dense(self.matrix(by_place, by_rate) @ shapes)
         out = np.empty((len(self.places), shapes.shape[1]))
         sum_rows(*self._stencil(by_place, by_rate), shapes, out)
         return out if self.beyond is None else out + self._beyond(by_place, by_rate) @ shapes
@@ -170,6 +170,11 @@ def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
         by_linear = pressures_by_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active)
         return by_linear[:, w.order[: w.count]]
     return at_unknowns(film, w.active.astype(float))
+
+
+def dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
+    """Return a matrix as an array."""
+    return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
 
 
 def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:

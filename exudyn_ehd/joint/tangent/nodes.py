@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix, diags, eye_array
 
-from exudyn_ehd.film.banded.many_sides import product
+from exudyn_ehd.film.banded.many_sides import TILE, product
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
@@ -32,6 +32,7 @@ from exudyn_ehd.joint.tangent.bore import (
     bore_tangent,
     contact_slope,
     couette_field,
+    dense,
     pressures_by_unknowns,
 )
 from exudyn_ehd.joint.tangent.line import line_by_motion, ratio_of, true_fills
@@ -253,12 +254,12 @@ class NodalTangent:
         self.film, self.bore, self.forces = film, bore, forces
         self.by_motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
         self.by_place, self.by_rate = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
-        self.rows, self.at_unknowns, self.of_bore = wrench_rows(film), motion_tangent(film), bore_tangent(film, bore)
+        self.rows, self.fixed, self.of_bore = wrench_rows(film), motion_tangent(film), bore_tangent(film, bore)
         self.change = TractionChange(film, forces)
         self.columns = pose_columns(film) * film.parts.pose_scale
         unknowns = -self.by_motion
         film.solver.direct(unknowns)
-        self.wrench = self.rows @ unknowns + self.at_unknowns
+        self.wrench = self.rows @ unknowns + self.fixed
 
     def changes(
         self, motion: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix
@@ -273,8 +274,16 @@ class NodalTangent:
             If the model has evaluated another state since.
         """
         self.film.require_current()
+        tiles = [slice(start, start + TILE) for start in range(0, motion.shape[1], TILE)]
+        wrenches, nodal = zip(*(self._changes(motion[:, at], place[:, at], rate[:, at]) for at in tiles), strict=True)
+        return np.concatenate(wrenches, axis=1), np.concatenate(nodal, axis=2)
+
+    def _changes(
+        self, motion: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return `changes` with so many that the processor's cache holds them."""
         p, line = self.film.parts, self.change.line
-        moved, speed = _dense(self.bore.shapes @ place), _dense(self.bore.shapes @ rate)
+        moved, speed = dense(self.bore.shapes @ place), dense(self.bore.shapes @ rate)
         unknowns = -(self.by_motion @ motion + self.by_place @ moved + self.by_rate @ speed)
         self.film.solver.direct(unknowns)
         scaled = moved / p.bearing.radial_clearance
@@ -283,7 +292,7 @@ class NodalTangent:
             shear = line.gap @ scaled + line.rate @ (speed / p.bearing.radial_clearance)
             shear += line.motion.T @ (p.motion_scale[:, None] * motion)
             forces[1:] += np.multiply.outer(self.change.speeds, shear)
-        wrench = self.rows @ unknowns + self.at_unknowns @ motion + self.of_bore[0] @ place + self.of_bore[1] @ rate
+        wrench = self.rows @ unknowns + self.fixed @ motion + self.of_bore[0] @ place + self.of_bore[1] @ rate
         return wrench, self.forces.nodal(forces)
 
     def whole(self) -> tuple[np.ndarray, np.ndarray]:
@@ -291,7 +300,3 @@ class NodalTangent:
         size, k = MOTION_SIZE, self.bore.size
         unit = eye_array(size + 2 * k, format="csr")
         return self.changes(unit[:size].toarray(), unit[size : size + k], unit[size + k :])
-
-
-def _dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
-    return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
