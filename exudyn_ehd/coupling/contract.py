@@ -141,6 +141,8 @@ class JointModel(Protocol):
 class Side(Protocol):
     """Frame of one side of a joint as a function of the coordinates of its nodes.
 
+    Work arrays of its own for other states than the solver's come by `copy.deepcopy`.
+
     Attributes
     ----------
     nodes : list

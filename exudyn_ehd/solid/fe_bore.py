@@ -173,17 +173,9 @@ def quadrature(length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _rigid_fit(place: np.ndarray, weight: np.ndarray, field_: np.ndarray) -> np.ndarray:
     """Translations and rotations (6, k) that fit displacements (p, 3, k) at places (p, 3) best."""
-    x, y, z = place.T
-    zero, one = np.zeros_like(x), np.ones_like(x)
     # u = t + phi x r
-    rows = np.stack(
-        [
-            np.stack([one, zero, zero, zero, z, -y], axis=1),
-            np.stack([zero, one, zero, -z, zero, x], axis=1),
-            np.stack([zero, zero, one, y, -x, zero], axis=1),
-        ],
-        axis=1,
-    )
+    turned = np.cross(np.eye(3), place[:, None]).transpose(0, 2, 1)
+    rows = np.concatenate((np.broadcast_to(np.eye(3), turned.shape), turned), axis=2)
     normal = np.einsum("p,pia,pib->ab", weight, rows, rows)
     return np.linalg.solve(normal, np.einsum("p,pia,pik->ak", weight, rows, field_))
 

@@ -5,24 +5,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Protocol, TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.elements.kinds import ELEMENTS, boundary_faces, element_of
+from exudyn_ehd.solid.fe_faces import BodyMesh
 from exudyn_ehd.solid.mesh import BushMesh, frame_of, surface_of
 from exudyn_ehd.solid.unrolled import patch
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number, require_vector
-
-
-class FEMData(Protocol):
-    """Attributes of Exudyn's ``FEMinterface`` that are read: nodes['Position'] (n, 3) and elements, a list of 'Hex20'
-    (m, 20) or 'Tet10' (m, 10).
-    """
-
-    nodes: dict
-    elements: list
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +88,7 @@ Held: TypeAlias = Sequence[int] | np.ndarray | Callable[[np.ndarray], np.ndarray
 
 
 def mesh_from_fem(
-    fem: FEMData,
+    fem: BodyMesh,
     *,
     bore_radius: float,
     held: Held | None = None,

@@ -12,6 +12,7 @@ film, whose last evaluation belongs to the solver; outside of one it shows the f
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import exudyn as exu
@@ -21,7 +22,6 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics.sides import detached
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.status import Status
 
@@ -135,7 +135,7 @@ class FilmDisplay:
     def _frame(self, mbs: exu.MainSystem) -> np.ndarray:
         """Joint frame (3, 6) of the housing in the shown state; the element's own arrays belong to the solver."""
         if self._housing is None:
-            self._housing = detached(self.element.sides[0])
+            self._housing = copy.deepcopy(self.element.sides[0])
         q, q_t = (np.array(values[: self._housing.size]) for values in self.element.read(mbs, _VISUALIZATION))
         self._housing.update(mbs, q, q_t, _VISUALIZATION)
         return self._housing.frame

@@ -37,7 +37,7 @@ def node_coordinates(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[np.
 
 def element_nodes(data: Data) -> tuple[Index, ...]:
     """Nodes of an object."""
-    numbers = data["nodeNumbers"] if "nodeNumbers" in data else [data["nodeNumber"]]
+    numbers = data.get("nodeNumbers", [data["nodeNumber"]] if "nodeNumber" in data else [])
     return tuple(NodeIndex(int(number)) for number in numbers)
 
 

@@ -6,12 +6,12 @@ One entry of itemNumbers, resolved: where it is, how it moves, and which side it
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import REFERENCE, Index, NodeIndex, ObjectIndex, Side
+from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
@@ -124,16 +124,21 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
 
 def _require_point(mbs: exu.MainSystem, where: str, node: Index) -> None:
     """Refuse a node without rotation of something that turns, as a mesh's is."""
-    owners = []
-    for i in range(mbs.systemData.NumberOfObjects()):
-        data = mbs.GetObject(ObjectIndex(i))
-        if any(int(n) == int(node) for n in data.get("nodeNumbers", [data.get("nodeNumber", -1)])):
-            owners.append((data["objectType"], f"object {i} '{data['name']}' ({data['objectType']})"))
-    if owners and not any(kind in MASS_POINTS for kind, _ in owners):
+    owners = list(_owners(mbs, node))
+    if owners and not any(data["objectType"] in MASS_POINTS for _, data in owners):
+        number, data = owners[0]
         raise InputError(
-            f"{where}: node {int(node)} has no rotation of its own and is one of {owners[0][1]}, which may turn; "
-            f"{_MESH_HINT}."
+            f"{where}: node {int(node)} has no rotation of its own and is one of object {int(number)} '{data['name']}' "
+            f"({data['objectType']}), which may turn; {_MESH_HINT}."
         )
+
+
+def _owners(mbs: exu.MainSystem, node: Index) -> Iterator[tuple[Index, Data]]:
+    """Objects on a node, and their data."""
+    for item in map(ObjectIndex, range(mbs.systemData.NumberOfObjects())):
+        data = mbs.GetObject(item)
+        if int(node) in map(int, beams.element_nodes(data)):
+            yield item, data
 
 
 def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
@@ -149,7 +154,7 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
         )
     if kind in ("RigidBody", "RigidBody2D", *MASS_POINTS):
         return node_item(mbs, where, NodeIndex(int(data["nodeNumber"])))
-    nodes = beams.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
+    nodes = beams.element_nodes(data)
     if kind in beams.CABLES:
         return cable_item(mbs, where, nodes, beams.CABLES[kind], float(data["length"]))
     if kind in beams.EXACT_BEAMS:
@@ -272,8 +277,5 @@ def beam_item(
 
 def body_of_node(mbs: exu.MainSystem, node: Index) -> Index | None:
     """The rigid body or mass point that moves ``node``, or None if there is none yet."""
-    for i in range(mbs.systemData.NumberOfObjects()):
-        body = mbs.GetObject(i)
-        if body["objectType"] in ("RigidBody", "RigidBody2D", *MASS_POINTS) and int(body["nodeNumber"]) == int(node):
-            return ObjectIndex(i)
-    return None
+    kinds = ("RigidBody", "RigidBody2D", *MASS_POINTS)
+    return next((item for item, data in _owners(mbs, node) if data["objectType"] in kinds), None)

@@ -12,6 +12,7 @@ count them as zero.
 
 from __future__ import annotations
 
+import copy
 import weakref
 
 import exudyn as exu
@@ -20,7 +21,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, detached
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind
 
 # Displacement, m or rad, over which initial velocities are found as differences of positions.
 SMALL = 1e-6
@@ -43,7 +44,7 @@ class Carrier:
     def __init__(self, mbs: exu.MainSystem, side: Side, initial: np.ndarray, local: np.ndarray) -> None:
         # held by the system's own functions: what they refer to must not keep it alive
         self.mbs: exu.MainSystem = weakref.proxy(mbs)
-        self.side: Side = detached(side)
+        self.side: Side = copy.deepcopy(side)
         self.initial = initial
         self.local = local
         self._bound = False
@@ -106,7 +107,7 @@ def velocities(frame: np.ndarray, local: np.ndarray) -> np.ndarray:
 def initial_frame(mbs: exu.MainSystem, item: Item, side: Side) -> np.ndarray:
     """Frame (3, 6) of a side in the initial configuration, before Assemble."""
     if not isinstance(side, MarkerSide):
-        own: Side = detached(side)
+        own: Side = copy.deepcopy(side)
         own.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
         return own.frame
     reference, initial, rates = node_coordinates(mbs, tuple(side.nodes))

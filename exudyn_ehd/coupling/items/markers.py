@@ -111,15 +111,12 @@ def _marker_side(
     """Function from the rotation of the joint frame in the marker's to the side, and the nodes it depends on."""
     if "nodeNumber" in data:
         nodes: tuple[Index, ...] = (NodeIndex(int(data["nodeNumber"])),)
-        return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
-    body = mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"])
-    nodes = element_nodes(body)
-    kind = data["markerType"]
-    if kind == "KinematicTreeRigid":
-        return (lambda rotation: TreeSide(marker, list(nodes), rotation)), nodes
-    if kind == "SuperElementRigid":
+    else:
+        nodes = element_nodes(mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"]))
+    if data["markerType"] == "SuperElementRigid":
         return (lambda rotation: FloatingSide(marker, list(nodes), rotation, node_side(mbs, nodes[0]))), nodes
-    return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
+    side = TreeSide if data["markerType"] == "KinematicTreeRigid" else MarkerSide
+    return (lambda rotation: side(marker, list(nodes), rotation)), nodes
 
 
 def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: Data) -> Item:

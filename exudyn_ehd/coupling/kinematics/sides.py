@@ -7,9 +7,7 @@ A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid 
 
 from __future__ import annotations
 
-import copy
 from types import ModuleType
-from typing import TypeVar
 
 import exudyn as exu
 import numpy as np
@@ -24,7 +22,6 @@ NODE_KINDS = {
     "RigidBody2D": rigid_nodes.PLANAR,
 }
 """How the nodes of rigid bodies turn, by Exudyn's names."""
-SideType = TypeVar("SideType", bound=Side)
 
 
 class NodeSide:
@@ -217,19 +214,6 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
         change[first : first + 3, n:, :n] = (turns @ jac[first // 3, :, n:]).transpose(1, 2, 0)
     change[:3, :n, n:] = (turns @ jac[0, :, n:]).transpose(1, 0, 2)
     return change
-
-
-def detached(side: SideType) -> SideType:
-    """Copy of a side with work arrays of its own, for other states than the solver's."""
-    out = copy.copy(side)
-    for name, value in vars(side).items():
-        if isinstance(value, np.ndarray):
-            setattr(out, name, value.copy())
-        elif isinstance(value, NodeSide):
-            setattr(out, name, detached(value))
-        elif isinstance(value, tuple) and value and isinstance(value[0], NodeSide):
-            setattr(out, name, tuple(detached(part) for part in value))
-    return out
 
 
 def bind(mbs: exu.MainSystem, *sides: Side) -> None:

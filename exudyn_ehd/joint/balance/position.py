@@ -106,9 +106,10 @@ class LoadSearch(Balance):
         place, b = self.nearest, self.model.bearing
         off, ratio = np.abs(place.unbalance), float(np.hypot(*place.motion[:2])) / b.radial_clearance
         if place.faces is not None and off.argmax() > 1:
+            z = place.faces.motion[-1]
             return FilmError(
                 f"{self.where}: no axial position found in which the thrust faces carry {self.load[2]:.4g} N; at "
-                f"{place.faces.motion[MOTION_SIZE]:.4g} m their force is {place.faces.wrench[2]:.4g} N. One face carries in one "
+                f"{z:.4g} m their force is {place.faces.wrench[2]:.4g} N. One face carries in one "
                 "direction, plane faces no steady load: give them pads that carry (profile=TaperLand(...)), "
                 "contact=RegularisedWall(onset=...), or less load."
             )

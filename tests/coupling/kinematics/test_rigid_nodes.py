@@ -1,5 +1,6 @@
 """Kinematics of the two frames: against Exudyn's markers, invariance, balance of loads."""
 
+import copy
 import itertools
 
 import exudyn as exu
@@ -10,7 +11,7 @@ import scenes
 import toy
 
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.sides import derivatives_between, detached, motion_between
+from exudyn_ehd.coupling.kinematics.sides import derivatives_between, motion_between
 
 ALL = [pair for pair in itertools.product(("ground", "EP", "Rxyz", "RotVec"), repeat=2) if pair != ("ground",) * 2]
 
@@ -158,7 +159,7 @@ def test_pair_of_nodes_in_one_call_is_what_its_kernels_are_one_by_one(housing, j
     together = derivatives_between(mbs, sides, (q, q_t), wrench, tangent)
     force = np.empty(q.size)
     relative.wrench_force(*(s.frame for s in sides), *(s.jac for s in sides), wrench, force)
-    n, (a, b) = sides[0].size, (detached(side) for side in sides)
+    n, (a, b) = sides[0].size, (copy.deepcopy(side) for side in sides)
     loads, own, (stiffness, damping) = np.empty((4, 3)), np.empty(q.size), np.zeros((2, q.size, q.size))
     for side, part in ((a, slice(n)), (b, slice(n, None))):
         if side.size:
