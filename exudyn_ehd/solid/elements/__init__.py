@@ -3,7 +3,7 @@
 Module map
 ----------
 element   `Element`, what a kind is described by; `Quadrature`
-shapes    shape functions of squares, cubes and simplices
+shapes    cells, shape functions of simplices
 faces     kinds of element faces: shape functions, quadratures, outlines
 hex20     the 20-node hexahedron
 tet10     the 10-node tetrahedron

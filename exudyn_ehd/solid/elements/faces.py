@@ -11,7 +11,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from exudyn_ehd.solid.elements.shapes import Cell, linear_simplex, quadratic_simplex, serendipity
+from exudyn_ehd.solid.elements.shapes import Cell, linear_simplex, quadratic_simplex
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,10 +68,32 @@ class Face(Cell):
 
 _SQUARE = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)
 
+
+def _quadrilateral(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    points = np.atleast_2d(points)
+    r, s = points.T
+    value = np.empty((len(points), 8))
+    gradient = np.empty((len(points), 8, 2))
+    for a, (ra, sa) in enumerate(_SQUARE):
+        if a < 4:
+            value[:, a] = (1 + r * ra) * (1 + s * sa) * (r * ra + s * sa - 1) / 4
+            gradient[:, a, 0] = ra * (1 + s * sa) * (2 * r * ra + s * sa) / 4
+            gradient[:, a, 1] = sa * (1 + r * ra) * (r * ra + 2 * s * sa) / 4
+        elif ra == 0:
+            value[:, a] = (1 - r**2) * (1 + s * sa) / 2
+            gradient[:, a, 0] = -r * (1 + s * sa)
+            gradient[:, a, 1] = sa * (1 - r**2) / 2
+        else:
+            value[:, a] = (1 - s**2) * (1 + r * ra) / 2
+            gradient[:, a, 0] = ra * (1 - s**2) / 2
+            gradient[:, a, 1] = -s * (1 + r * ra)
+    return value, gradient
+
+
 QUADRILATERAL = Face(
     nodes=_SQUARE,
     corners=4,
-    shapes=partial(serendipity, _SQUARE),
+    shapes=_quadrilateral,
     outline=np.array([0, 4, 1, 5, 2, 6, 3, 7, 0]),
     triangles=np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)]),
 )

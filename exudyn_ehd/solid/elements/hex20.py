@@ -19,12 +19,9 @@ rule           force  tangent  displacement error
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from exudyn_ehd.solid.elements.element import Element, Quadrature
-from exudyn_ehd.solid.elements.shapes import serendipity
 
 NODES = np.array(
     [
@@ -88,8 +85,43 @@ GAUSS8 = gauss_cube(2)
 """Reduced integration: cheapest and softest. Needs two rows of elements along or across the wall."""
 
 
-shapes = partial(serendipity, NODES)
-"""Shape functions (p, 20) and their gradients (p, 20, 3) at natural coordinates (p, 3)."""
+def shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return N_a and their gradients at natural coordinates.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+
+    Returns
+    -------
+    value : ndarray, shape (n, 20)
+        Corners: N = 1/8 (1 + x)(1 + y)(1 + z)(x + y + z - 2) with x = xi xi_a and so on; mid-edge nodes:
+        N = 1/4 (1 - xi^2)(1 + y)(1 + z) for an edge along xi, and its permutations.
+    gradient : ndarray, shape (n, 20, 3)
+    """
+    points = np.atleast_2d(points)
+    count = len(points)
+    value = np.empty((count, 20))
+    gradient = np.empty((count, 20, 3))
+    for a, node in enumerate(NODES):
+        linear = 1 + points * node
+        if a < 8:
+            bubble = (points * node).sum(axis=1) - 2
+            product = linear.prod(axis=1)
+            value[:, a] = product * bubble / 8
+            for i in range(3):
+                others = linear[:, (i + 1) % 3] * linear[:, (i + 2) % 3]
+                gradient[:, a, i] = node[i] * others * (bubble + linear[:, i]) / 8
+        else:
+            along = int(np.flatnonzero(node == 0)[0])
+            j, k = (along + 1) % 3, (along + 2) % 3
+            parabola = 1 - points[:, along] ** 2
+            value[:, a] = parabola * linear[:, j] * linear[:, k] / 4
+            gradient[:, a, along] = -points[:, along] * linear[:, j] * linear[:, k] / 2
+            gradient[:, a, j] = parabola * node[j] * linear[:, k] / 4
+            gradient[:, a, k] = parabola * linear[:, j] * node[k] / 4
+    return value, gradient
+
 
 HEX20 = Element(
     name="20-node hexahedra",

@@ -1,4 +1,4 @@
-"""Shape functions of squares, cubes and simplices, and their gradients.
+"""Cells of elements and their faces; shape functions of simplices, and their gradients.
 
 Functions take natural coordinates (p, d) of points, and return values (p, n) and gradients (p, n, d) of n nodes.
 """
@@ -36,24 +36,6 @@ class Cell:
         if self.is_simplex:
             return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)
         return np.abs(natural).max(axis=1) - 1.0
-
-
-def serendipity(nodes: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Shape functions of the square of 8 nodes or the cube of 20, whose natural coordinates are -1, 0 or 1.
-
-    Corners: 2^-d prod(1 + x_i) (sum x_i - d + 1) with x_i = xi_i times that of the node; nodes on an edge along xi_k:
-    2^(1-d) (1 - xi_k^2) prod(1 + x_i) over the other directions.
-    """
-    points = np.atleast_2d(points)[:, None]
-    on_edge, d = nodes == 0.0, nodes.shape[1]
-    is_corner = ~on_edge.any(axis=1)
-    factor = np.where(on_edge, 1.0 - points**2, 1.0 + points * nodes)
-    slope = np.where(on_edge, -2.0 * points, nodes)
-    rest = np.where(is_corner, (points * nodes).sum(axis=2) - d + 1.0, 2.0) / 2**d
-    whole = factor.prod(axis=2)
-    others = np.stack([np.delete(factor, i, axis=2).prod(axis=2) for i in range(d)], axis=2)
-    gradient = slope * others * rest[..., None] + (whole * is_corner)[..., None] * nodes / 2**d
-    return whole * rest, gradient
 
 
 def linear_simplex(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
