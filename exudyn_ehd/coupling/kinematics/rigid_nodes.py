@@ -306,17 +306,15 @@ def add_lever(turns, arm, change_out):
 def vary(change, q_t, load, jac_out, geometric_out):
     """Fill Vq, Wq of ``jac_out`` and the geometric term d(J^T load) / dq (n, n) at a fixed load (6,), force and moment.
 
-    ``change`` (6, n, n) is that of `node_change`.
+    ``change`` (6, n, n) is that of `node_change`; (6, 0, 0) counts as zeros.
     """
-    n = q_t.size
-    for b in range(n):
-        for i in range(6):
-            total = 0.0
-            for a in range(n):
-                total += change[i, a, b] * q_t[a]
-            jac_out[2 + i // 3, i % 3, b] = total
-        for a in range(n):
-            total = 0.0
-            for i in range(6):
-                total += change[i, a, b] * load[i]
-            geometric_out[a, b] = total
+    n, known = q_t.size, change.shape[1]
+    jac_out[2:] = 0.0
+    geometric_out[:] = 0.0
+    for i in range(6):
+        by_rate = jac_out[2 + i // 3, i % 3]
+        for a in range(known):
+            row, rate, force = change[i, a], q_t[a], load[i]
+            for b in range(n):
+                by_rate[b] += row[b] * rate
+                geometric_out[a, b] += row[b] * force

@@ -131,9 +131,12 @@ class MarkerSide:
             self.jac[1] = mbs.ComputeItem(self.marker, exu.ComputeItemType.RotationJacobian)
 
     def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
-        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state.
+
+        (6, 0, 0) where Exudyn offers none.
+        """
         item, n = exu.ComputeItemType.JacobianTTimesVectorDerivative, self.size
-        change = np.zeros((6, n, n))
+        change = np.zeros((6, n, n) if self._offers_change else (6, 0, 0))
         for i, unit in enumerate(np.eye(6)[: 6 * self._offers_change]):
             part = np.asarray(mbs.ComputeItem(self.marker, item, vector=unit))
             # Exudyn gives an empty matrix for one that vanishes
