@@ -29,11 +29,12 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap
 from exudyn_ehd.joint.tangent.line import shear_of_fills, true_fills, true_line, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import (
+    adjoint_rows,
     couette_slopes,
     gap_derivatives,
     integrals_in_wrench,
     motion_tangent,
-    wrench_rows,
+    wrench_weights,
 )
 
 # Weights of a `gap_stencil` (columns) by the first six derivatives of `LineGradients` (rows), to the gap and its rate:
@@ -60,7 +61,8 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
     """
     k, size = bore.size, MOTION_SIZE
     change, (by_q, by_rate) = Balances(film).changes(bore.shapes, *combinations), bore_tangent(film, bore)
-    out = np.concatenate((wrench_rows(film) @ change, product(load_columns(film, bore).T, change)))
+    wrench = wrench_weights(film) @ (adjoint_rows(film) @ change)
+    out = np.concatenate((wrench, product(load_columns(film, bore).T, change)))
     out[:6, :size] += motion_tangent(film)
     contact: np.ndarray | float = 0.0
     if film.pressing is not None:

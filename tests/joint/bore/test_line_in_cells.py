@@ -163,11 +163,11 @@ def test_hard_bores_are_rigid(closure, kind):
 
 
 def coefficients(bearing, place):
-    """Force, K c and C c omega of a bore that follows slowly, N."""
+    """Force, K c and C c omega of the film on a bore that is held where it has settled, N."""
     model, motion = build_study_model(bearing, 0.0), np.zeros(10)
     motion[:2], motion[8] = place, SPEED
     evaluation = model.evaluate_steady(motion)
-    tangent = evaluation.steady_tangent(exact=True)
+    tangent = model.elasticity.tangent(evaluation, exact=True)
     return evaluation.wrench[:2], -C * tangent[:2, :2], -C * SPEED * tangent[:2, 4:6]
 
 
