@@ -6,6 +6,8 @@ Symbols: kx, kz conductances of the links, b right-hand side, P pressure, all sc
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import ColumnLine, column_line
@@ -61,7 +63,7 @@ class FilmSystem:
     oil_line : OilLine or None
         The same of a film that conserves mass.
     curve : (9, n m) array
-        `CurveFields` of the vertices; straight ones of a film without a line in its cells.
+        `CurveFields` of the vertices; straight ones of a film without a line in its cells. Made when it is asked for.
     density : DensityField or None
         None: the density does not follow the pressure.
     instant : bool
@@ -92,7 +94,7 @@ class FilmSystem:
         self.closes, self.turns = False, 0.0
         empty = np.ones(shape) if kind == OIL else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
-        self.prompt, self.late, self.curve = self.terms.prompt, np.zeros(shape), straight(shape)
+        self.prompt, self.late = self.terms.prompt, np.zeros(shape)
         self.prompt[:] = 1.0
         self.line: RuptureLine | None = None
         self.column_line: ColumnLine | None = None
@@ -122,6 +124,11 @@ class FilmSystem:
         self.density = density
         if self.kind != OIL:
             self.fill, self.mass_old = np.ones((2, *self.H.shape))
+
+    @cached_property
+    def curve(self) -> np.ndarray:
+        """Fields of the vertices' curves, of a film that Newton's method solves."""
+        return straight(self.H.shape)
 
     @property
     def film(self) -> tuple[np.ndarray, ...]:

@@ -211,7 +211,8 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
             slopes = slopes + g.weight * np.stack((film.extra.slope_x, film.extra.slope_z))
         rows[own - 2 : own] = (slopes * w.active).reshape(2, -1)[:, at]
     if P_q is not None:
-        rows[:own] *= P_q.ravel()[at]
+        rows[:4] *= P_q.ravel()[at]
+        rows[own - 2 * extra : own] *= P_q.ravel()[at]
     if shear:
         _shear_row(film, rows[4])
     y = film.solver.system
