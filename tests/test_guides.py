@@ -59,7 +59,7 @@ def test_links_and_pictures_of_the_guides_exist(name):
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_what_the_guides_name_exists(name):
-    """Files and folders: seen from the guide, the project, the package, rooms with a guide, or the tables."""
+    """Files and folders: seen from the guide, the project, the package, packages with a guide, or the tables."""
     prose = FENCE.sub("", TEXTS[name])
     names = [n for n in re.findall(r"`([\w./-]+)`", prose) if "/" in n or n.endswith((".py", ".csv"))]
     names += re.findall(r"(?:examples|tests|exudyn_ehd)/[\w./-]*", TEXTS[name])
