@@ -122,11 +122,9 @@ class FilmSolver(FilmAnswers):
                 # with the density that its pressure gives it.
                 mass_old = np.minimum(mass_old / self.density.at(s.cavity_pressure), self.H)
         self.set_links()
-        cavity_density = 1.0 if self.density is None else self.density.at(s.cavity_pressure)
-        if isinstance(s.line, FilmLine):
-            s.line.take(s.kx, s.b, self.grid.fixed, cavity_density)
-        elif s.oil_line is not None:
-            s.oil_line.take(s.terms, s.b, cavity_density, self.vx)
+        line = s.line if isinstance(s.line, FilmLine) else s.oil_line
+        if line is not None:
+            line.take(s.terms, s.b, 1.0 if self.density is None else self.density.at(s.cavity_pressure), self.vx)
         if self.closure.clips:
             np.copyto(s.linear_pressure, s.pressure)
         self.set_times(mass_old, step)

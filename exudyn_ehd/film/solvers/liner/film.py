@@ -196,9 +196,9 @@ class LinerFilm(WinklerElements):
     def solve(self) -> tuple[bool, int]:
         """Solve by Newton's method from the present pressures and sets, in place; returns (found, steps)."""
         f, w, s = self.film, self.film.work, self.film.system
-        # the film from sliding alone may have held back some of it
+        # the film from sliding alone has terms of its own
         s.late *= s.prompt < 1.0
-        s.terms.late[:] = s.late
+        s.terms.late[:], s.terms.known[:] = s.late, 0.0
         ready = w.ready and w.warm
         w.ready = w.exact = False
         course, outcome = (0, False, -1, 1.0, 0.0, w.count, w.width, (ready, False, False, 0.0, LEFT)), GOES_ON

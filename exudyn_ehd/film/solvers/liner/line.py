@@ -107,10 +107,10 @@ class FilmLine(RuptureLine):
         self.curve, self.density, self.lean = curve, 1.0, np.zeros(shape)
         self.liner = 0.0, 0.0, np.zeros(shape[1])
 
-    def take(self, kx: np.ndarray, b: np.ndarray, fixed: np.ndarray, density: float) -> None:
-        """Set f and k from the film's conductances and right-hand side (n, m) at the cavity pressure."""
+    def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
+        """Set f and k from the terms and the right-hand side b (n, m) of a film between rigid surfaces."""
         self.density, self.s[:] = density, 1.0
-        line_terms(kx, density * b, fixed, True, self.block)
+        line_terms(film.kx, density * b, film.fixed, True, self.block)
         self._bend()
 
     def _bend(self) -> None:
