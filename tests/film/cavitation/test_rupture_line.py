@@ -229,7 +229,10 @@ def test_what_does_not_know_the_line_is_refused(make_bearing):
 
 @pytest.mark.parametrize("cavity_pressure", [0.0, -5e4])
 def test_a_film_that_forgets_is_found_as_a_first_one_is(make_bearing, cavity_pressure):
-    """As fast, whatever film was there before: its pressures must not stand where the new one has its cavity."""
+    """As fast, whatever film was there before: its pressures must not stand where the new one has its cavity.
+
+    From the full film the line has at most half of the columns to go, one a step.
+    """
     bearing = make_bearing(4.0, cavitation=SwiftStieber(cavity_pressure=cavity_pressure))
     rng, model, c = np.random.default_rng(8), build_model(bearing), bearing.radial_clearance
     for _ in range(12):
@@ -238,11 +241,11 @@ def test_a_film_that_forgets_is_found_as_a_first_one_is(make_bearing, cavity_pre
         model.forget()
         found, first = model.evaluate(motion), build_model(bearing).evaluate(motion)
         assert found.status is first.status is Status.CONVERGED
-        assert found.iterations == first.iterations <= 30
+        assert found.iterations == first.iterations <= model.grid.shape[0] // 2
 
 
-def test_a_fine_film_without_a_coarser_one(make_bearing):
-    """An odd number of intervals has none: the line moves by a column a step, and has 240 to go."""
+def test_a_line_that_has_far_to_go(make_bearing):
+    """The line moves by a column a step, and has 240 to go."""
     bearing = make_bearing(4.0, film=ehd.FiniteLength(n_theta=480, n_z=9))
     c = bearing.radial_clearance
     motion = np.array([0.56 * c, 0.28 * c, 0, 0, 0, 0, 0, 0, 100.0, 0])

@@ -14,6 +14,7 @@ from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.cavitation.states import OIL
 from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import film_slopes
@@ -73,7 +74,7 @@ def flux_of(effect):
 
 def solver_of(closure, contact, grid=GRID, effect="none"):
     surfaces = CONTACTS[contact]()
-    oil = BARUS if effect == "barus" else None
+    oil = PressureTransform(BARUS) if effect == "barus" else None
     made = FilmSolver(grid, closure, flux_effects=flux_of(effect), liner=Liner(surfaces, surfaces, oil))
     made.pressure_scale = SCALE
     return made
