@@ -92,8 +92,8 @@ class FilmLine(RuptureLine):
 
     Attributes
     ----------
-    curve : (9, n m) array
-        Fields of the `CurveFields` of its vertices, as kernels take them.
+    fields, curve : LineFields, CurveFields
+        Of its vertices.
     density : float
         Density in the cavity over that at ambient pressure.
     lean : (n, m) array
@@ -104,7 +104,8 @@ class FilmLine(RuptureLine):
 
     def __init__(self, curve: np.ndarray, shape: tuple[int, int]) -> None:
         super().__init__(shape)
-        self.curve, self.density, self.lean = curve, 1.0, np.zeros(shape)
+        self.fields, self.curve = LineFields(*self.block), CurveFields(*curve)
+        self.density, self.lean = 1.0, np.zeros(shape)
         self.liner = 0.0, 0.0, np.zeros(shape[1])
 
     def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
@@ -115,7 +116,7 @@ class FilmLine(RuptureLine):
 
     def _bend(self) -> None:
         """Give the vertices the curves of f and k."""
-        line, curve = LineFields(*self.block), CurveFields(*self.curve)
+        line, curve = self.fields, self.curve
         curve.f[:], curve.k[:], curve.whole[:] = line.f, line.k, line.whole
 
     def see(
@@ -144,7 +145,7 @@ class FilmLine(RuptureLine):
 
     def settle(self, active: np.ndarray) -> None:
         """Set s of the ``active`` vertices (n, m) from the curves of the solved film, 1 elsewhere."""
-        np.copyto(self.s, np.where(active, CurveFields(*self.curve).s.reshape(active.shape), 1.0))
+        np.copyto(self.s, np.where(active, self.curve.s.reshape(active.shape), 1.0))
 
     def weights(self, places: np.ndarray) -> np.ndarray:
         """Derivatives as of `RuptureLine.weights`, for a film of this density on its liner."""
