@@ -31,8 +31,8 @@ LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60,
 # Pseudo-transient continuation of a viscous bore: slowness at its start and its end, share of q that it may leave to
 # Newton's method; trials after which no continuation is begun or continued.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
-# Trials after which the whole way ends.
-LARGEST_WAY = 3000
+# Trials after which the whole way ends, and a straight one.
+LARGEST_WAY, STRAIGHT_WAY = 3000, 60
 
 
 class Elasticity:
@@ -53,9 +53,12 @@ class Elasticity:
         Reason why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
     reached : float, (k,) array
         Largest part of the last place of `settle` with an equilibrium on the way, and its coordinates.
+    straight : bool
+        `settle` gives up where Newton's method does not go straight to a balance: for searches that can come nearer.
     """
 
     failure = ""
+    straight = False
 
     def __init__(self, make: Callable[[], np.ndarray], load: np.ndarray | float = 0.0) -> None:
         self._make, self.load, self.reached = make, load, (0.0, np.zeros(0))
@@ -144,10 +147,10 @@ def bore_equilibrium(
     they leave a gap, before the undeformed bore. Returns the evaluation or None, and the largest part of the place with
     an equilibrium on the way, with its coordinates (k,).
     """
-    newton = Newton(model, motion, film)
+    newton, most = Newton(model, motion, film), STRAIGHT_WAY if model.elasticity.straight else LARGEST_WAY
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
     reached, part, q, rate = 0.0, 1.0, np.zeros_like(start), np.zeros_like(start)
-    while found is None and part > SMALLEST_PART and newton.trials < LARGEST_WAY:
+    while found is None and part > SMALLEST_PART and newton.trials < most:
         target = min(1.0, reached + part)
         near = newton.settle(q + (target - reached) * rate, target)
         if near is None:
@@ -172,7 +175,7 @@ class Newton(Generic[Result]):
     def settle(self, q: np.ndarray, part: float) -> Result | None:
         """Find the balance by full Newton steps, else as a viscous bore comes to rest from q, else by halved steps."""
         found = self.solve(q, part, straight=True)
-        if found is None and self.trials < LARGEST_EFFORT:
+        if found is None and self.trials < LARGEST_EFFORT and not self.model.elasticity.straight:
             found = self._come_to_rest(q, part) or self.solve(q, part)
         return found
 
