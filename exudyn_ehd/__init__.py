@@ -49,7 +49,9 @@ __all__ = list(_MODULES)
 def __getattr__(name):
     exudyn_ehd.status.require_supported(name)
     if name in _MODULES:
-        return exudyn_ehd.status.hint_arguments(getattr(importlib.import_module(_MODULES[name]), name))
+        found = exudyn_ehd.status.hint_arguments(getattr(importlib.import_module(_MODULES[name]), name))
+        globals()[name] = found  # asked for once
+        return found
     hint = f"; did you mean {meant!r}?" if (meant := exudyn_ehd.status.did_you_mean(name, __all__)) else ""
     raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}{hint}")
 
