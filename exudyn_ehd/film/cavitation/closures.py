@@ -197,8 +197,8 @@ def _solve_rupturing(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
 
 
 def _solve_by_newton(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Solve a film that conserves mass or whose density follows the pressure; one that is not found from a full film
-    otherwise."""
+    """Solve a film that conserves mass or whose density follows the pressure, by Newton's method; where that does not
+    find it from a full film, by `recover`."""
     was_warm, status = work.warm, Status.CONVERGED
     store_content(s.term_fields, s.H, s.H_t, s.inverse_step, s.mass_old, s.instant)
     ok, steps = solve_system(s, work)
