@@ -41,7 +41,7 @@ from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.items.object_mass import object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, SUDDEN, departure, missed_in_steps
+from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, SUDDEN, departure
 
 UNKNOWN = np.full(LOADS, np.nan)
 _State: TypeAlias = tuple[float, np.ndarray, np.ndarray]
@@ -177,18 +177,20 @@ class OuterLoad:
     """
 
     def __init__(self, sides: tuple[Side, Side], blocks: Sequence[list[int]]) -> None:
-        self.sides, self.blocks = sides, blocks
+        self.sides, self.blocks, self.rows = sides, blocks, [row for rows in blocks for row in rows]
         self.load = UNKNOWN
         self.begin(None)
 
     def begin(self, solver: solver_state.Solver | None) -> None:
         """Begin a run of ``solver``: masses are read at its first state, loads are known in implicit runs."""
-        self.masses: list[np.ndarray] | None = None
+        # W^-1 of all blocks
+        self.mass: np.ndarray | None = None
         self.functions: LoadFunctions | None = None
         self.is_known = solver_state.is_implicit(solver)
         self.is_heavy, self.places = False, list[int]()
-        # times, velocities and accelerations of the last two accepted states
-        self.states: list[_State] = []
+        # times, velocities and accelerations of the last accepted state, and of the one before the state at hand
+        self.state: _State | None = None
+        self.before: _State | None = None
 
     def take(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> None:
         """Keep the load at a state, an accepted one."""
@@ -199,13 +201,16 @@ class OuterLoad:
             self.functions.accept(mbs, time)
             # a run may begin with accelerations that no equations demand
             if self.is_heavy and not begins:
-                self.states = self._states(mbs, where, time)
+                self.before, self.state = self._before(time), self._state(mbs, where, time)
 
-    def _states(self, mbs: exu.MainSystem, where: exu.ConfigurationType, time: float) -> list[_State]:
-        """The one accepted before a time, and the one there; the end of a run is taken more than once."""
-        data, before = mbs.systemData, [state for state in self.states if state[0] < time][-1:]
+    def _state(self, mbs: exu.MainSystem, where: exu.ConfigurationType, time: float) -> _State:
+        data, places = mbs.systemData, self.places
         rates, demanded = data.GetODE2Coordinates_t(where), data.GetODE2Coordinates_tt(where)
-        return [*before, (time, np.asarray(rates)[self.places], np.asarray(demanded)[self.places])]
+        return time, np.asarray(rates)[places], np.asarray(demanded)[places]
+
+    def _before(self, time: float) -> _State | None:
+        """The state accepted before a time; the end of a run is taken more than once."""
+        return self.state if self.state is not None and self.state[0] < time else self.before
 
     def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> np.ndarray:
         """Load (20,) at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
@@ -215,40 +220,44 @@ class OuterLoad:
         """
         if not self.is_known or trial.evaluation is None:
             return UNKNOWN
-        wrench = trial.evaluation.wrench
         housing, journal = self.sides
         J = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
-        if self.masses is None:
-            self.masses, self.functions = self._masses(mbs, J), LoadFunctions(mbs)
-            self.is_heavy = any(mass.any() for mass in self.masses)
+        if self.mass is None or self.functions is None:
+            self.mass, self.functions = self._mass(mbs, J), LoadFunctions(mbs)
+            self.is_heavy = bool(self.mass.any())
             nodes = [int(node) for side in self.sides for node in side.nodes]
             self.places = [int(place) for node in nodes for place in mbs.systemData.GetNodeLTGODE2(node)]
-        assert self.functions is not None
-        time, out, demanded, missed = mbs.systemData.GetTime(where), np.zeros(LOADS), np.zeros(6), np.zeros(6)
+        time, out, size = mbs.systemData.GetTime(where), self.constant.copy(), len(self.rows)
+        out[:size] = -trial.evaluation.wrench[self.rows]
         if self.is_heavy:
-            times, rates, accelerations = (np.array(x) for x in zip(*self._states(mbs, where, time), strict=True))
-            demanded, missed = accelerations[-1] @ J, missed_in_steps(times, rates, accelerations)[-1] @ J
-        place = 0
-        for rows, mass in zip(self.blocks, self.masses, strict=True):
-            out[place : place + len(rows)] = mass @ demanded[rows] - wrench[rows]
-            out[MOMENTUM + place :][: len(rows)] = mass @ missed[rows]
-            out[DEMANDED + place :][: len(rows)] = mass @ demanded[rows]
-            place += len(rows)
+            onto = J[:, self.rows] @ self.mass
+            _, rates, accelerations = self._state(mbs, where, time)
+            out[DEMANDED:][:size] = accelerations @ onto
+            out[:size] += out[DEMANDED:][:size]
+            if (before := self._before(time)) is not None:
+                missed = rates - before[1] - 0.5 * (time - before[0]) * (accelerations + before[2])
+                out[MOMENTUM:][:size] = missed @ onto
         out[OFFSET:MASS] = self.functions.offset(mbs, time)
-        out[MASS:MOMENTUM] = np.concatenate([mass[np.triu_indices(len(mass))] for mass in self.masses])
         return out
 
-    def _masses(self, mbs: exu.MainSystem, J: np.ndarray) -> list[np.ndarray]:
-        """W^-1 of every block; zero where a body's mass is not known."""
-        W, first = np.zeros((6, 6)), 0
+    def _mass(self, mbs: exu.MainSystem, J: np.ndarray) -> np.ndarray:
+        """W^-1 of all blocks, zero where a body's mass is not known; sets what loads (20,) have in common."""
+        W, first, self.constant = np.zeros((6, 6)), 0, np.zeros(LOADS)
+        mass = np.zeros((len(self.rows), len(self.rows)))
         for side in self.sides:
             last = first + side.size
             if side.size:
                 body = body_of_node(mbs, side.nodes[0]) if len(side.nodes) == 1 else None
                 M = None if body is None else object_mass(mbs, body)
                 if not isinstance(M, np.ndarray) or M.shape != (side.size, side.size):
-                    return [np.zeros((len(rows), len(rows))) for rows in self.blocks]
+                    return mass
                 # Euler parameters have no inertia along themselves, where no force of the joint points either
                 W += J[first:last].T @ np.linalg.pinv(M, rcond=1e-9, hermitian=True) @ J[first:last]
             first = last
-        return [np.linalg.pinv(W[np.ix_(rows, rows)], hermitian=True) for rows in self.blocks]
+        place, column = 0, MASS
+        for rows in self.blocks:
+            end, upper = place + len(rows), np.triu_indices(len(rows))
+            own = mass[place:end, place:end] = np.linalg.pinv(W[np.ix_(rows, rows)], hermitian=True)
+            self.constant[column:][: upper[0].size] = own[upper]
+            place, column = end, column + upper[0].size
+        return mass

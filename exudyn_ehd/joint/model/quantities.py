@@ -114,15 +114,12 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
 
 def _unbroken_couette(film: SolvedFilm) -> float:
     """Scaled integral of the Couette shear over the unbroken film, recesses included."""
-    s, fixed = film.solver, film.grid.fixed
-    whole = s.work.active | fixed
+    s, g, ratio, recess = film.solver, film.grid, film.oil.ratio, film.loads.recess
+    density = g.shear_weight if ratio is None else ratio * g.shear_weight
     if s.closure.conserves_mass:
-        whole = film.share() >= 1.0
-    elif fixed.shape[1] > 2:
-        # an end's half control volume beside a cavity belongs to it
-        whole[:, [0, -1]] &= whole[:, [1, -2]] | ~fixed[:, [0, -1]]
-    ratio, recess = 1.0 if film.oil.ratio is None else film.oil.ratio, film.loads.recess
-    unbroken = float(np.sum(ratio / s.H * film.grid.shear_weight, where=whole))
+        unbroken = float(np.sum(density / s.H, where=film.share() >= 1.0))
+    else:
+        unbroken = loads.couette_integral(s.H, density, s.work.active, g.fixed, 0.0)
     return unbroken if recess is None else unbroken + float(recess.density.sum())
 
 
