@@ -45,6 +45,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld as FullSommerfeld
 from exudyn_ehd.film.cavitation.closures import Gumbel as Gumbel
 from exudyn_ehd.film.cavitation.closures import SwiftStieber as SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams as ElrodAdams
+from exudyn_ehd.film.grid import Arc as Arc
 from exudyn_ehd.film.grid import bearing_grid as bearing_grid
 from exudyn_ehd.film.grid import slider_grid as slider_grid
 from exudyn_ehd.film.heat.options import Conduction as Conduction

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, get_args
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.combinations import check_combinations
+from exudyn_ehd.film.grid import Arc
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import (
@@ -110,6 +111,8 @@ class JournalBearing(Checked):
         Closure at the cavity pressure.
     inlet : Periodic or MaximumGap
         Circumferential condition.
+    arc : Arc or None, default None
+        Part of the circle that the bore has; None: all of it.
     end_pressures : (float, float)
         Gauge pressures at z = -L/2 and z = +L/2, Pa.
     squeeze : bool
@@ -162,6 +165,7 @@ class JournalBearing(Checked):
     film: Film = FiniteLength()
     cavitation: Cavitation = SwiftStieber()
     inlet: Inlet = Periodic()
+    arc: Arc | None = None
     end_pressures: tuple[float, float] = (0.0, 0.0)
     squeeze: bool = True
     contact: RegularisedWall | None = None
@@ -260,6 +264,8 @@ class JournalBearing(Checked):
         edges = f"JournalBearing.end_pressures {self.end_pressures!r} Pa"
         if isinstance(self.inlet, MaximumGap) and lowest > 0.0:
             lowest, edges = 0.0, "the ambient pressure (0 Pa) of inlet=MaximumGap()"
+        if self.arc is not None and lowest > min(self.arc.pressures):
+            lowest, edges = min(self.arc.pressures), f"the pressures at the edges of {self.arc!r}"
         if pc > lowest:
             raise InputError(
                 f"{type(self.cavitation).__name__}.cavity_pressure must not exceed {edges}, got {pc:g} Pa; all are "
@@ -335,6 +341,7 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
     "film": get_args(Film),
     "cavitation": get_args(Cavitation),
     "inlet": get_args(Inlet),
+    "arc": (Arc, type(None)),
     "contact": (RegularisedWall, type(None)),
     "thermal": (LumpedThermal, FilmEnergy, type(None)),
     "asperity": (GreenwoodTripp, type(None)),

@@ -174,6 +174,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "wall": ("RegularisedWall.onset",),
     "layer": ("ElasticLiner.thickness",),
     "angle": (
+        "Arc.start",
+        "Arc.extent",
         "AxialGroove.angle",
         "Hole.angle",
         "Pocket.angle",
@@ -216,6 +218,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "JournalBearing.end_pressures",
         "ThrustFaces.inner_pressures",
         "ThrustFaces.outer_pressures",
+        "Arc.leading_pressure",
+        "Arc.trailing_pressure",
         "AxialGroove.pressure",
         "CircumferentialGroove.pressure",
         "Hole.pressure",

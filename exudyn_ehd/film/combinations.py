@@ -25,6 +25,8 @@ def check_combinations(bearing: Options) -> None:
         Attributes of the `JournalBearing`.
     """
     _check_film(bearing)
+    if bearing["arc"] is not None:
+        _check_arc(bearing)
     _check_turbulence(bearing)
     if bearing["thermal"] is not None:
         _check_heat(bearing)
@@ -55,6 +57,19 @@ def _check_film(bearing: Options) -> None:
         raise InputError(
             "JournalBearing.film=ClassicSOR(...) is the paper's plain film and takes no roughness, turbulence, shear "
             "thinning or temperature field; use film=FiniteLength(...)."
+        )
+
+
+def _check_arc(bearing: Options) -> None:
+    """Refuse what needs the whole ring."""
+    others = [name for name in ("thermal", "bush", "journal", "profile", "wear", "supply") if bearing[name]]
+    others += [] if isinstance(bearing["film"], FiniteLength) else ["film"]
+    others += [] if type(bearing["inlet"]).__name__ == "Periodic" else ["inlet"]
+    if others:
+        raise InputError(
+            f"JournalBearing.arc=Arc(...) does not go with JournalBearing.{others[0]}={bearing[others[0]]!r}: the film "
+            "of an arc is one of FiniteLength(...) between rigid cylinders of one temperature, fed at its edges; leave "
+            "one of the two out."
         )
 
 

@@ -18,14 +18,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, require_bool, require_count, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, require_bool, require_count, require_number
 
+# Smallest arc, rad, and fewest intervals on one.
+SMALLEST_ARC, FEWEST_ON_ARC = 0.05, 8
 # Check of the axial stretching of a film model's grid.
 STRETCH = partial(NOT_NEGATIVE, at_most=0.95, hint="0.75 suits most bearings.")
 
@@ -308,6 +310,65 @@ def bearing_grid(
     fixed[0, :] |= open_ring
     width = np.full(n_theta, step)
     return _tensor_grid(theta, z, width, 1.0 / width, radius, fixed, width, weight_z)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arc(Checked):
+    """Part of the circle that a bore has, as of a partial bearing or of a fixed pad.
+
+    Film and bore begin at its leading edge, which oil enters with positive spin, and end at its trailing edge. Beside
+    the arc the journal is free. Goes with `FiniteLength` between rigid surfaces of one temperature; as many columns as
+    its share of the circle.
+
+    Parameters
+    ----------
+    start : float
+        Angle of the leading edge from the joint's x about its z axis, rad.
+    extent : float
+        Angle from there to the trailing edge, rad, below 2 pi.
+    leading_pressure, trailing_pressure : float, default 0
+        Gauge pressures at both edges, Pa.
+
+    Examples
+    --------
+    A partial bearing of 120 degrees that carries a load along -y:
+
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, arc=ehd.Arc(start=np.radians(210), extent=np.radians(120)))
+    >>> rest = ehd.equilibrium(bearing, speed=314.0, load=(0.0, -5e3))
+    >>> round(1e6 * rest.film.minimum_gap, 2)  # um
+    8.41
+    """
+
+    start: float
+    extent: float
+    leading_pressure: float = 0.0
+    trailing_pressure: float = 0.0
+
+    checks: ClassVar = {
+        "start": require_number,
+        "extent": partial(require_number, at_least=SMALLEST_ARC, below=2.0 * math.pi, hint="leave arc out for a ring."),
+        "leading_pressure": require_number,
+        "trailing_pressure": require_number,
+    }
+
+    @property
+    def pressures(self) -> tuple[float, float]:
+        """Gauge pressures at the leading and the trailing edge, Pa."""
+        return self.leading_pressure, self.trailing_pressure
+
+
+def arc_grid(radius: float, length: float, arc: Arc, n_theta: int, n_z: int, stretch: float) -> FilmGrid:
+    """Film grid of an arc, with its share of ``n_theta`` columns and one on either edge; the rest as `bearing_grid`."""
+    half, count = 0.5 * arc.extent, max(FEWEST_ON_ARC, math.ceil(n_theta * arc.extent / (2.0 * math.pi)))
+    (x, weight_x), (z, weight_z) = axial_vertices(count, half, 0.0), axial_vertices(n_z, 0.5 * length / radius, stretch)
+    width, links = _axial_metric(x)
+    fixed = np.zeros((x.size, z.size), dtype=np.bool_)
+    fixed[[0, -1]] = fixed[:, [0, -1]] = True
+    # nothing flows from the last column to the first
+    at, link_x = arc.start + half + x, np.append(links, 0.0)
+    grid = _tensor_grid(at, z, width, link_x, radius, fixed, weight_x, weight_z)
+    return replace(grid, x_face=at + 0.5 * width.max())
 
 
 def long_bearing_grid(

@@ -65,31 +65,34 @@ def couette_integral(H, weight, active, fixed, cavity_share):
 
 
 @njit(cache=True)
-def end_forces(H, pressures):
-    """Integral over both ends of the gap times the pressures (lower, upper) there, the upper end's less the lower's."""
+def end_forces(H, width, pressures):
+    """Integral over both ends of the gap times the pressures (lower, upper) there, the upper end's less the lower's.
+
+    ``width`` (n,): of the control volumes.
+    """
     lower, upper = pressures[0], pressures[1]
     if lower == 0.0 and upper == 0.0:
         return 0.0
     n, m = H.shape
     first = last = 0.0
     for i in range(n):
-        first += H[i, 0]
-        last += H[i, m - 1]
-    return (upper * last - lower * first) * (2.0 * np.pi / n)
+        first += H[i, 0] * width[i]
+        last += H[i, m - 1] * width[i]
+    return upper * last - lower * first
 
 
 @njit(cache=True)
-def journal_wrench(pose, integrals, couette, extra_theta, extra_z, ends, force, shear, R, omega, w, out):
+def journal_wrench(pose, integrals, couette, extra_theta, extra_z, ends, edges, force, shear, R, omega, w, out):
     """Wrench on the journal -> out (>= 6,), SI; returns the scaled integral of the pressure flow's shear along theta.
 
     ``extra_theta`` and ``extra_z``: what gap terms and uneven drag add to those integrals. On the bore, gap terms act
     twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag pulls the
-    journal by as much as it holds the bore back. ``ends``: of `end_forces`; ``force``, ``shear``, R: scales; omega, w:
-    spin and axial speed.
+    journal by as much as it holds the bore back. ``ends``: of `end_forces`; ``edges``: the same of an arc's
+    edges, 0 of a ring; ``force``, ``shear``, R: scales; omega, w: spin and axial speed.
     """
     x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
     sc, ss, szc, szs = integrals[0], integrals[1], integrals[2], integrals[3]
-    s_theta = x * ss - y * sc + bx * szs - by * szc + extra_theta
+    s_theta = x * ss - y * sc + bx * szs - by * szc + extra_theta - edges
     s_z = -(bx * sc + by * ss) + extra_z
     out[0], out[1] = -force * sc, -force * ss
     out[2] = -shear * (w * couette + 6.0 * R * (s_z - 2.0 * extra_z - ends))

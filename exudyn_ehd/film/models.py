@@ -13,7 +13,7 @@ from functools import partial
 from typing import ClassVar
 
 from exudyn_ehd.film.cavitation.closures import Closure, Gumbel
-from exudyn_ehd.film.grid import STRETCH, FilmGrid, bearing_grid, long_bearing_grid
+from exudyn_ehd.film.grid import STRETCH, Arc, FilmGrid, arc_grid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect
@@ -295,6 +295,7 @@ def film_grid(
     open_ring: bool,
     supply: tuple[SupplyArea, ...] = (),
     conserves_mass: bool = False,
+    arc: Arc | None = None,
 ) -> FilmGrid:
     """Grid of a film model, with rows on the edges of supply areas and a column on the first hole.
 
@@ -304,6 +305,8 @@ def film_grid(
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
     columns = columns_of(film, 0.5 * length / radius)
+    if arc is not None:
+        return arc_grid(radius, length, arc, columns, film.n_z, film.stretch)
     rows = placed(supply, length), radius, length, film.n_z, film.stretch
     return bearing_grid(
         radius,

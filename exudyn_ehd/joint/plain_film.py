@@ -31,6 +31,7 @@ def is_plain(parts: FilmParts, effects: Effects) -> bool:
         and s.complementary
         and not s.closure.conserves_mass
         and parts.supply is None
+        and parts.bearing.arc is None
     )
 
 
@@ -124,6 +125,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
         count = extend_film(columns, b, sets, pc, factor, count, P)
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
-    ends = end_forces(H, known)
-    s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, ends, force, shear, radius, motion[8], motion[9], out)
+    ends = end_forces(H, mesh[0], known)
+    speeds = motion[8], motion[9]
+    s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, ends, 0.0, force, shear, radius, *speeds, out)
     return ok, steps, count, width, smallest, couette, s_theta

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled
+from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled, span
 from exudyn_ehd.pictures.records import Film, Target, label, unit_for
 from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, headed, picture, style_ticks
 
@@ -54,11 +54,11 @@ def plot_bearing(
     unit = unit_for("pressure", film.pressure)
     low, high = colour_limits(unit(film.pressure), PRESSURE)
     norm, colours = Normalize(low, high), matplotlib.colormaps[PRESSURE.colours]
-    around, along = np.linspace(0.0, 2.0 * np.pi, FACETS + 1), np.linspace(film.z[0], film.z[-1], ROWS)
+    around, along = np.linspace(*span(film), FACETS + 1), np.linspace(film.z[0], film.z[-1], ROWS)
     p = resampled(film, film.pressure, around, along)
     z = along / film.bearing.journal_radius
     hill = pressure_surface(around, z, p)
-    journal = journal_surface(film, around, z)
+    journal = journal_surface(film, np.linspace(0.0, 2.0 * np.pi, FACETS + 1), z)
     own = ax is None
     with picture(ax, SIZE, path, where="plot_bearing", projection="3d", computed_zorder=False) as (figure, ax):
         quads, values = quads_of(hill), quads_of(unit(p)[..., None])[..., 0].mean(axis=1)

@@ -117,7 +117,12 @@ def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) 
     """
     if not prescribed_ends and values.shape[1] > 2:
         values = np.column_stack([values[:, 1], values[:, 1:-1], values[:, -2]])
-    return resampled(film, values, np.linspace(0.0, TURN, FINE[0]), np.linspace(film.z[0], film.z[-1], FINE[1]))
+    return resampled(film, values, np.linspace(*span(film), FINE[0]), np.linspace(film.z[0], film.z[-1], FINE[1]))
+
+
+def span(film: Film) -> tuple[float, float]:
+    """First and last angle of a film, rad: those of its arc, or a turn."""
+    return (0.0, TURN) if film.bearing.arc is None else (float(film.theta[0]), float(film.theta[-1]))
 
 
 def plot_map(film: Film, field: MapField, *, title: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
@@ -164,12 +169,13 @@ def draw_map(
     """Draw the map with axes and outlines into ``ax``; returns the image. ``limits`` of colours in its unit."""
     values = unit(on_picture(film, field_values(film, field), prescribed_ends=field.name != "fill"))
     low, high = limits or colour_limits(values, field)
+    first, last = np.degrees(span(film))
     image = ax.imshow(
         values.T,
         origin="lower",
         aspect="auto",
         interpolation="bilinear",
-        extent=(0.0, 360.0, 1e3 * film.z[0], 1e3 * film.z[-1]),
+        extent=(first, last, 1e3 * film.z[0], 1e3 * film.z[-1]),
         cmap=field.colours,
         vmin=low,
         vmax=high,
@@ -182,9 +188,9 @@ def draw_map(
     ax.set(
         xlabel="angle θ [°]",
         ylabel="z [mm]",
-        xlim=(0.0, 360.0),
+        xlim=(first, last),
         ylim=(1e3 * film.z[0], 1e3 * film.z[-1]),
-        xticks=range(0, 361, 60),
+        xticks=[*range(0, 361, 60)] if last - first == 360.0 else np.round(np.linspace(first, last, 5)),
     )
     return image
 
@@ -205,7 +211,11 @@ def draw_rupture(ax: Axes, film: Film) -> ContourSet | None:
     """Draw the boundary of the unbroken film; None if there is none inside."""
     # vertices with a prescribed pressure are none of the solver's: full where the pressure is above the cavity's
     full = film.unbroken | (film.pressure > film.bearing.cavitation.cavity_pressure)
-    theta, whole = closed_ring(film.theta, full.astype(float))
+    theta, whole = film.theta, full.astype(float)
+    if film.bearing.arc is None:
+        theta, whole = closed_ring(theta, whole)
+    else:
+        whole[0], whole[-1] = whole[1], whole[-2]
     inner = whole[:, 1:-1]
     if inner.size == 0 or inner.min() == inner.max():
         return None

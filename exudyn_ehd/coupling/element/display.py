@@ -92,13 +92,13 @@ class FilmDisplay:
                 self.take(trial)
         frame, scale = self._frame(mbs), self._scale(model.bearing)
         bore, z = self._bore(scale), model.grid.z * model.grid.reference_length
-        rings = _points(frame, model.grid.x, bore[:, [0, -1]], z[[0, -1]])
-        data = [exudyn.graphics.Lines(np.vstack([rings[:, k], rings[:1, k]]), color=EDGE) for k in (0, 1)]
+        rings, closed = _points(frame, model.grid.x, bore[:, [0, -1]], z[[0, -1]]), model.bearing.arc is None
+        data = [exudyn.graphics.Lines(np.vstack([rings[:, k], rings[:closed, k]]), color=EDGE) for k in (0, 1)]
 
         def surface(radii: np.ndarray, places: np.ndarray, color: list[float] | np.ndarray) -> None:
             """Add the surface through rings of radii (n, k) at places (k,)."""
             points = _points(frame, model.grid.x, radii, places).reshape(-1, 3)
-            triangles = ring_triangles(*radii.shape)
+            triangles = ring_triangles(*radii.shape, closed=closed)
             data.append(exudyn.graphics.FromPointsAndTrigs(points, triangles, color=color))
 
         if self.pressure is not None and self.gap is not None:
@@ -129,7 +129,7 @@ class FilmDisplay:
         model: Any = self.element.model
         grid, bearing = model.grid, model.bearing
         # a polygon about the bore, not in it: its chords would cut through the journal
-        radius = (bearing.journal_radius + scale * bearing.radial_clearance) / np.cos(np.pi / grid.shape[0])
+        radius = (bearing.journal_radius + scale * bearing.radial_clearance) / np.cos(0.5 * grid.width_x.max())
         return np.full(grid.shape, radius) if self.bore is None else radius + scale * self.bore
 
     def _frame(self, mbs: exu.MainSystem) -> np.ndarray:
@@ -148,9 +148,12 @@ def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.
     return local @ frame[:, :3].T + frame[:, 3]
 
 
-def ring_triangles(n: int, m: int) -> np.ndarray:
-    """Triangles (2 n (m - 1), 3) of a closed ring of n x m vertices, numbered row by row; normals point outward."""
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(n), np.arange(m - 1), indexing="ij"))
+def ring_triangles(n: int, m: int, *, closed: bool = True) -> np.ndarray:
+    """Triangles (2 n (m - 1), 3) of a ring of n x m vertices, numbered row by row; normals point outward.
+
+    One that is not ``closed`` has none between its last vertices and the first.
+    """
+    i, j = (index.ravel() for index in np.meshgrid(np.arange(n if closed else n - 1), np.arange(m - 1), indexing="ij"))
     a, b = i * m + j, ((i + 1) % n) * m + j
     return np.concatenate([np.stack([a, b, a + 1], axis=1), np.stack([a + 1, b, b + 1], axis=1)])
 

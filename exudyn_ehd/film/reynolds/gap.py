@@ -73,12 +73,3 @@ def contract_pose(field, cos_x, sin_x, z, out):
         out[k, 1] += oy
         out[k, 2] += obx
         out[k, 3] += oby
-
-
-def contract_ends(
-    slope: np.ndarray, lower: float, upper: float, cos_x: np.ndarray, sin_x: np.ndarray, z: np.ndarray
-) -> np.ndarray:
-    """`contract_pose` (4,) of a field that is ``lower`` and ``upper`` times the slope (n, m) on the ends, else zero."""
-    a, b = lower * slope[:, 0], upper * slope[:, -1]
-    flat, tilt = a + b, a * z[0] + b * z[-1]
-    return -np.array([flat @ cos_x, flat @ sin_x, tilt @ cos_x, tilt @ sin_x])

@@ -130,8 +130,8 @@ def wrench_gradient(ds, dc, extra, ends, pose, sums, pose_scale, R, force, shear
     ds, dc, extra : (4, 10), (10,), (2, 10) arrays
         Gradients of (S_c, S_s, S_zc, S_zs), of C, and of the integrals over the slopes of gap terms, to (scaled pose,
         scaled rates, vx, vz).
-    ends : (4,) array
-        Gradient of the ends' pressure force to the scaled pose.
+    ends : (2, 4) array
+        Gradients of the pressure force of the ends, and of an arc's edges, to the scaled pose.
     pose, sums, pose_scale : (4,) arrays
         Scaled pose, the four integrals, scale of the pose.
     R, force, shear, omega, w, couette : float
@@ -158,7 +158,8 @@ def wrench_gradient(ds, dc, extra, ends, pose, sums, pose_scale, R, force, shear
         out[4, q] = -force * R * ds[2, q]
         out[5, q] = -shear * R * R * (6.0 * theta + omega * dc[q])
         if q < 4:
-            out[2, q] += 6.0 * shear * R * ends[q]
+            out[2, q] += 6.0 * shear * R * ends[0, q]
+            out[5, q] += 6.0 * shear * R * R * ends[1, q]
         scale = 0.5
         if q < 8:
             scale = pose_scale[q % 4]

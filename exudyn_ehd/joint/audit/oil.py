@@ -50,7 +50,7 @@ def _temperature_rise(case: Case) -> float:
     """
     b, r, oil = case.bearing, case.record, case.bearing.lubricant
     power, flow, speed = (case.numbers[name] for name in ("power_loss", "flow", "speed"))
-    if r is not None and np.all(np.isfinite(r.leakage)):
+    if r is not None and b.arc is None and np.all(np.isfinite(r.leakage)):
         means = (time_mean(r.time, values) for values in (r.power_loss, r.leakage, case.slide(r.motion)))
         power, flow, spin = (np.array([mean]) for mean in means)
         speed = spin * b.journal_radius

@@ -123,8 +123,8 @@ class LoadSearch(Balance):
         return FilmError(
             f"{self.where}: no position found that carries {self.size:.4g} N in {self.count} steps; the nearest is off "
             f"by {self.residual(place):.2g} of the load, at eccentricity ratio {ratio:.4f}. {remedy} A supply area in "
-            "the loaded zone or a starved film may carry no such load at any position: look at ehd.steady(...) around "
-            f"there.{too_hot(place.film.temperature, carried)}"
+            "the loaded zone, a starved film or an arc beside the load may carry no such load at any position: look at "
+            f"ehd.steady(...) around there.{too_hot(place.film.temperature, carried)}"
         )
 
 

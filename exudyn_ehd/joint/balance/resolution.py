@@ -93,7 +93,7 @@ def _wanted(
     film: SolvedFilm, across: float, narrowing: float, k: int, row: int, interval: float
 ) -> FiniteLength | None:
     """Grid that resolves a peak of some intervals across, next to the thinnest film (k, row) of an end."""
-    own, (n, _), H = film.parts.bearing.sized_film, film.grid.shape, film.solver.H
+    own, ring, (n, _), H = film.parts.bearing.sized_film, film.parts.bearing.columns, film.grid.shape, film.solver.H
     if not isinstance(own, FiniteLength):
         return None
     rows, stretch = own.n_z, own.stretch
@@ -103,7 +103,7 @@ def _wanted(
         bend = float(H[(k + 1) % n, row] - 2.0 * H[k, row] + H[k - 1, row])
         if bend > 0.0:
             across = min(across, PEAK_WIDTH * math.sqrt(2.0 * H[k, row] / bend))
-    columns = max(n, 8 * math.ceil(ENOUGH * n / (8.0 * max(across, 1e-3))))
+    columns = max(ring, 8 * math.ceil(ENOUGH * ring / (8.0 * max(across, 1e-3))))
     if columns > MOST_COLUMNS or rows > MOST_ROWS:
         return None
     return FiniteLength(n_theta=columns, n_z=rows, stretch=stretch)

@@ -59,7 +59,8 @@ def is_central(evaluation: FilmEvaluation) -> bool:
     film, motion = evaluation.film, evaluation.motion
     if film is None or abs(motion[0]) > CENTRE * film.parts.bearing.radial_clearance or evaluation.model.needs_spin:
         return False
-    if not film.solver.ruptures or isinstance(film.parts.bearing.inlet, MaximumGap):
+    bearing = film.parts.bearing
+    if not film.solver.ruptures or isinstance(bearing.inlet, MaximumGap) or bearing.arc is not None:
         return False
     w, source, cavity = film.journal, CENTRE * abs(float(motion[8])), film.scales.cavity
     if np.abs(w.pose).max() > CENTRE or np.abs(w.rate).max() > source:

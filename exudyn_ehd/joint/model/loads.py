@@ -101,7 +101,7 @@ def film_loads(
         couette = float(np.vdot(sheared, (1.0 if oil.ratio is None else oil.ratio) / s.H))
     if recess is not None:
         couette += float(recess.density.sum())
-    wrench, ends = np.empty(6), end_forces(s.H, scales.ends)
+    wrench, ends = np.empty(6), end_forces(s.H, g.width_x, scales.ends)
     s_theta = journal_wrench(
         journal.pose,
         integrals,
@@ -109,6 +109,7 @@ def film_loads(
         extra_theta,
         extra_z,
         ends,
+        edge_forces(parts, scales),
         scales.force,
         scales.shear,
         g.reference_length,
@@ -123,6 +124,13 @@ def film_loads(
             at = friction, transition, g.reference_length
             add_contact(P_c, g.weight, g.moments, journal.motion, *at, sums, contact, wrench)
     return Loads(wrench, contact, integrals, couette, s_theta, recess, drag)
+
+
+def edge_forces(parts: FilmParts, scales: Scales) -> float:
+    """Integral over the edges of an arc of the gap times the pressure there, the trailing edge's less the leading's."""
+    if scales.edges is None:
+        return 0.0
+    return float(np.dot(scales.edges, parts.solver.H[[0, -1]] @ parts.grid.weight_z))
 
 
 def recess_of(

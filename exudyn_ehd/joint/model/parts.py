@@ -29,6 +29,7 @@ def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool =
         open_ring=open_ring,
         supply=bearing.supply,
         conserves_mass=bearing.closure.conserves_mass,
+        arc=bearing.arc,
     )
 
 

@@ -62,9 +62,9 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         liner and contact take up; negative: give back), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and
         ``leakage_upper``, ``contact_load`` (N, vector sum of its pressure), ``contact_torque`` (Nm, its friction on the
         journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
-        ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
-        also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` (K, mean over the
-        area) and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
+        ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also ``supply_flow`` (m3/s, out of all of
+        them), with an arc what enters at its edges; with a thermal effect ``film_temperature`` (K, mean over the area)
+        and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
         ``bush_temperature`` and ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what
         they have grown by), with a liner or a flexible bore ``bore_displacement`` (m, the largest).
     """
@@ -99,8 +99,9 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         "contact_power_loss": power.contact_loss,
         "peak_contact_pressure": peak_contact,
     }
-    if p.supply is not None:
-        out["supply_flow"] = float(supply_flows(film).sum())
+    if p.supply is not None or p.bearing.arc is not None:
+        flows = supply_flows(film)
+        out["supply_flow"] = float((flows if p.bearing.arc is None else flows.clip(0.0)).sum())
     if film.temperature is not None:
         out["film_temperature"] = float(np.average(np.broadcast_to(film.temperature, area.shape), weights=area))
         T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
@@ -124,13 +125,15 @@ def _unbroken_couette(film: SolvedFilm) -> float:
 
 
 def supply_flows(film: SolvedFilm) -> np.ndarray:
-    """Return the inflow of every area of ``bearing.supply``, m3/s; empty without supply."""
-    p = film.parts
+    """Return the inflow of every area of ``bearing.supply``, or at both edges of an arc, m3/s; empty without."""
+    p, flow_scale = film.parts, film.parts.flow_scale
+    if p.bearing.arc is not None:
+        return p.solver.inflow(ended=True)[[0, -1]].sum(axis=1) * flow_scale
     if p.supply is None:
         return np.zeros(0)
     # that of a turning area would change at once where an edge passes a column
     inflow = p.solver.inflow(ended=not p.supply.rotating)
-    return p.supply.flows(inflow) * p.bearing.radial_clearance * p.grid.reference_length**2
+    return p.supply.flows(inflow) * flow_scale
 
 
 def leakages(film: SolvedFilm) -> tuple[float, float]:
@@ -138,6 +141,9 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
     s, g = film.solver, film.grid
     if not g.flows_along_z:
         return 0.0, 0.0
+    if film.parts.bearing.arc is not None:
+        inflow = s.inflow(ended=True)[1:-1]
+        return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
     if s.closure.conserves_mass:
         inflow = s.inflow()
         return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
@@ -155,7 +161,7 @@ def minimum_place(film: SolvedFilm) -> tuple[float, float]:
     profile, wear or an elastic bore the vertex of the smallest gap.
     """
     R, half = film.grid.reference_length, film.parts.half_length
-    if film.extra is not None or film.parts.liner is not None:
+    if film.extra is not None or film.parts.liner is not None or film.parts.bearing.arc is not None:
         i, j = divmod(int(np.argmin(film.solver.H)), film.grid.z.size)
         return float(film.grid.x[i] % (2.0 * math.pi)), float(film.grid.z[j] * R)
     x, y, bx, by = film.journal.pose.tolist()
@@ -167,5 +173,6 @@ def minimum_place(film: SolvedFilm) -> tuple[float, float]:
 
 def refined_peak(film: SolvedFilm) -> tuple[float, float, float]:
     """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
-    value, theta, z = peak.refined_peak(film.oil.P, film.grid.fixed, film.grid.x, film.grid.z, True)
-    return value * film.scales.pressure, theta, z * film.grid.reference_length
+    g, periodic = film.grid, film.parts.bearing.arc is None
+    value, theta, z = peak.refined_peak(film.oil.P, g.fixed, g.x, g.z, periodic)
+    return value * film.scales.pressure, theta, z * g.reference_length

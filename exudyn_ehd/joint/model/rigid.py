@@ -135,7 +135,8 @@ class BearingModel:
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
         self.remembers = self.remembers_mass or self.remembers_deflection
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
-        self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
+        edges = () if bearing.arc is None else bearing.arc.pressures
+        self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure, *edges])
         self._scale = p.motion_scale[:8]
         # what a flexible bore adds to the gap, and the slopes of all that is added
         self._displacement: np.ndarray | None = None
@@ -151,7 +152,8 @@ class BearingModel:
         pressure = 12.0 * mu * R**2 / c**2
         known = self._known / pressure
         self.viscosity_ratio = ratio
-        self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]))
+        edges = None if b.arc is None else known[3:] * (-1.0, 1.0)
+        self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]), edges)
         # what the solver is told: the transformed pressures of a pressure law
         self._prescribed = known if law is None else law.transform(self._known) / pressure
         if p.liner is not None and self.effects.liner is not None:
@@ -316,6 +318,9 @@ class BearingModel:
         """
         s, p, at = self.solver, self.parts, self.grid.directions
         smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, s.H, s.HF, s.H_t)
+        if self.bearing.arc is not None:
+            # beside the arc there is no bore
+            smallest = float(min(s.H.min(), s.HF[:-1].min()))
         extra = None
         if self.effects.gap_terms or self.flexible:
             smallest, extra = self._add_gap_terms(history)
@@ -343,7 +348,9 @@ class BearingModel:
         """Solve for the gaps in the solver's buffers, with the known pressures."""
         p, law = self.parts, self.effects.pressure_law
         P = self.solver.pressure
-        P[:, 0], P[:, -1], cavity = self._prescribed.tolist()
+        P[:, 0], P[:, -1], cavity, *edges = self._prescribed.tolist()
+        if edges:
+            P[0], P[-1] = edges
         if p.supply is not None:
             fed = p.supply.pressures()
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)

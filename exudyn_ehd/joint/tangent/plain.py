@@ -36,6 +36,7 @@ def is_plain(film: SolvedFilm) -> bool:
         and film.limited is None
         and film.pressing is None
         and p.supply is None
+        and p.bearing.arc is None
         and not p.uneven_drag
     )
 
@@ -110,4 +111,4 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, at, m
     contract_pose(field, cos_x, sin_x, z, by_pose)
     for q in range(4):
         dc[q] = by_pose[0, q]
-    wrench_gradient(gradient, dc, np.zeros((2, 10)), np.zeros(4), *pose[:2], pose[2], *scales, out)
+    wrench_gradient(gradient, dc, np.zeros((2, 10)), np.zeros((2, 4)), *pose[:2], pose[2], *scales, out)

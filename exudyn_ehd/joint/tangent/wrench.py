@@ -13,7 +13,7 @@ import numpy as np
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
-from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
+from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
@@ -62,7 +62,7 @@ def film_gradient(film: SolvedFilm, rows: np.ndarray, slow_motion: bool) -> np.n
 def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.ndarray:
     """d wrench / d motion (6, 10) for a ``gradient`` of the integrals of `adjoint_rows`, SI units; None: at fixed
     unknowns."""
-    p, w, scales, ends = film.parts, film.journal, film.scales, np.zeros(4)
+    p, w, scales = film.parts, film.journal, film.scales
     shear, extra, fills = np.zeros(MOTION_SIZE), np.zeros((2, MOTION_SIZE)), true_fills(film)
     if gradient is None:
         gradient = np.zeros((4, MOTION_SIZE))
@@ -76,14 +76,12 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
     _contract_couette(film, shear)
     if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
-    if _film_gap_slope(film) is not None and scales.ends.any():
-        ends = _end_gradient(film)
     out = np.empty((6, MOTION_SIZE))
     wrench_gradient(
         gradient[:4],
         shear,
         extra,
-        ends,
+        _boundary_gradients(film),
         w.pose,
         film.loads.integrals,
         p.pose_scale,
@@ -304,9 +302,19 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
             )
 
 
-def _end_gradient(film: SolvedFilm) -> np.ndarray:
-    """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter or a contact acts on the gap."""
-    slope = _film_gap_slope(film)
-    assert slope is not None
-    lower, upper = (film.scales.ends * film.grid.width_x[0]).tolist()
-    return contract_ends(slope, -lower, upper, film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z)
+def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
+    """Gradients (2, 4) of the pressure force of the ends, and of an arc's edges, to the scaled pose.
+
+    That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
+    """
+    slope, edges, g, out = _film_gap_slope(film), film.scales.edges, film.grid, np.zeros((2, 1, 4))
+    if not ((slope is not None or edges is not None) and (film.scales.ends.any() or edges is not None)):
+        return out[:, 0]
+    fields = np.zeros((2, 1, *g.shape))
+    fields[0, 0, :, [0, -1]] = np.outer(film.scales.ends * (-1.0, 1.0), g.width_x)
+    if edges is not None:
+        fields[1, 0, [0, -1]] = np.outer(edges, g.weight_z)
+    at = film.parts.directions
+    for field, gradient in zip(fields if slope is None else fields * slope, out, strict=True):
+        contract_pose(field, at.cos_x, at.sin_x, g.z, gradient)
+    return out[:, 0]

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.reynolds.gap import (
-    contract_ends,
     contract_pose,
     largest_eccentricity,
     rigid_gap,
@@ -73,13 +72,3 @@ def test_contract_pose_is_the_chain_rule_and_adds():
             direction = np.eye(4)[p]  # the gap is linear in the pose
             expected = (field[k] * _gap(direction, theta, z, 0.0)).sum()
             assert out[k, p] - start[k, p] == pytest.approx(expected, rel=1e-12)
-
-
-def test_contract_ends_is_contract_pose_of_the_ends():
-    rng = np.random.default_rng(5)
-    theta, z, slope, out = rng.uniform(0, 6, 7), np.linspace(-1, 1.5, 4), rng.random((7, 4)), np.zeros((1, 4))
-    field = np.zeros((1, 7, 4))
-    field[0, :, 0], field[0, :, -1] = -2.0 * slope[:, 0], 3.0 * slope[:, -1]
-    contract_pose(field, np.cos(theta), np.sin(theta), z, out)
-    found = contract_ends(slope, -2.0, 3.0, np.cos(theta), np.sin(theta), z)
-    np.testing.assert_allclose(found, out[0], rtol=1e-13, atol=1e-14)
