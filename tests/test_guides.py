@@ -94,7 +94,7 @@ VARIANTS = re.compile(
 
 
 def prose(path):
-    """What a person reads of a file: text without code, docstrings, messages and comments."""
+    """Prose of a file: its text without code; of Python its docstrings, messages and comments."""
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".py" and re.search("umbel|min[a-z.]* *film|film *thickness", text):
         comments = " ".join(re.findall(r"#+ (.*)", text))

@@ -1,4 +1,4 @@
-"""What a user sees of the package: its names, objects in one line, and arguments as Exudyn and matplotlib have them."""
+"""The package as a user sees it: names, objects in one line, and arguments as Exudyn and matplotlib have them."""
 
 import pathlib
 import subprocess

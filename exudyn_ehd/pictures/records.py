@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.film.heat.conduction import Walls
 
 Target = str | pathlib.Path | None
-"""Where a picture is written; None: nowhere."""
+"""File that a picture is written to; None: it is not written."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

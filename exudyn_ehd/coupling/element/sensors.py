@@ -64,7 +64,7 @@ OUTPUTS: dict[str, Callable[[_State], np.ndarray]] = {
     "Torque": lambda s: s.housing[:, :3] @ s.torque,
     "TorqueLocal": lambda s: s.torque,
 }
-"""What a sensor can read by the name of Exudyn's OutputVariableType."""
+"""Functions that read a sensor's value, by the names of Exudyn's OutputVariableType."""
 
 
 def reader(
