@@ -1,6 +1,7 @@
 """Rules of the package's structure that no other tool checks."""
 
 import ast
+import collections
 import dataclasses
 import functools
 import importlib
@@ -151,6 +152,27 @@ def test_no_circle_of_files():
     trees = {_module(path): tree for path, _, tree, _ in _parsed()}
     circles = _circles({name: set(_imports(tree, trees)) for name, tree in trees.items()})
     assert not circles, [sorted(c) for c in circles]
+
+
+def _type_names(tree):
+    """Classes, protocols included, and names of types: unions, type variables, callables."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            yield node.name.lstrip("_")
+    for node in tree.body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        names = [target.id for target in targets if isinstance(target, ast.Name)]
+        yield from (name.lstrip("_") for name in names if re.fullmatch("_?[A-Z][A-Za-z]*[a-z][A-Za-z]*", name))
+
+
+def test_no_two_classes_share_a_name():
+    """Two types of one name in two modules are taken for one another; a leading underscore does not tell them apart."""
+    places = collections.defaultdict(list)
+    for path, _, tree, _ in _parsed():
+        for name in _type_names(tree):
+            places[name].append(_module(path))
+    shared = {name: modules for name, modules in places.items() if len(modules) > 1}
+    assert not shared, "\n".join(f"{name}: {', '.join(modules)}" for name, modules in shared.items())
 
 
 def test_folders_are_small():

@@ -19,7 +19,7 @@ Target = str | pathlib.Path | None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Film:
+class FilmRecord:
     """A film at one instant; joint frame, SI units, arrays ``[theta, z]``.
 
     Attributes
@@ -63,7 +63,7 @@ class Film:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class JointFilm(Film):
+class JointFilm(FilmRecord):
     """The film of a joint at one instant of a run.
 
     Attributes
@@ -85,7 +85,7 @@ class JointFilm(Film):
 
 
 @dataclass(frozen=True, kw_only=True)
-class History:
+class HistoryRecord:
     """Accepted steps of a joint and the bearing's dimensions; joint frame, SI units.
 
     Attributes

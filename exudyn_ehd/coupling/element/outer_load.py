@@ -44,7 +44,7 @@ from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, SUDDEN, departure, missed_in_steps
 
 UNKNOWN = np.full(LOADS, np.nan)
-_State: TypeAlias = tuple[float, np.ndarray, np.ndarray]
+_LoadState: TypeAlias = tuple[float, np.ndarray, np.ndarray]
 # Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
 JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
 # Samples within a step; a pulse is seen if it is longer than a step over their number. Each costs a call of every load.
@@ -188,7 +188,7 @@ class OuterLoad:
         self.is_known = solver_state.is_implicit(solver)
         self.is_heavy, self.places = False, list[int]()
         # times, velocities and accelerations of the last two accepted states
-        self.states: list[_State] = []
+        self.states: list[_LoadState] = []
 
     def take(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> None:
         """Keep the load at a state, an accepted one."""
@@ -201,7 +201,7 @@ class OuterLoad:
             if self.is_heavy and not begins:
                 self.states = self._states(mbs, where, time)
 
-    def _states(self, mbs: exu.MainSystem, where: exu.ConfigurationType, time: float) -> list[_State]:
+    def _states(self, mbs: exu.MainSystem, where: exu.ConfigurationType, time: float) -> list[_LoadState]:
         """The one accepted before a time, and the one there; the end of a run is taken more than once."""
         data, before = mbs.systemData, [state for state in self.states if state[0] < time][-1:]
         rates, demanded = data.GetODE2Coordinates_t(where), data.GetODE2Coordinates_tt(where)
