@@ -165,7 +165,7 @@ def reference_orbit() -> np.ndarray:
 
 
 def open_end(history: ehd.JointHistory) -> float:
-    """How far the orbit of a cycle is from being closed, m."""
+    """Distance between the first and the last position of a cycle's orbit, m."""
     return float(np.hypot(*(history.eccentricity[-1] - history.eccentricity[0])))
 
 

@@ -92,7 +92,7 @@ def bearing(journal: object, *, quick: bool) -> ehd.JournalBearing:
 
 
 def start_place(fem: FEMinterface | None) -> np.ndarray:
-    """Where a rigid shaft is in balance, or the round one, as a pin held by its end faces; (2,) in m."""
+    """Equilibrium position (2,) of a rigid shaft, or of the round one as a pin held by its end faces, m."""
     pin = None
     if fem is not None:
         pin = ehd.ElasticJournal(

@@ -1,4 +1,4 @@
-"""Where the oil comes in: a bearing with a supply groove, with and without an oil balance.
+"""Oil supply: a bearing with a supply groove, with and without an oil balance.
 
 A bearing of 100 mm diameter and 80 mm length (radial clearance 150 um, 10 mPa s, 3000 rpm) is fed through one axial
 groove of 15 degrees x 60 mm at 0.7 bar. Three questions are asked with Gümbel's condition (negative pressure clipped),

@@ -1,4 +1,4 @@
-"""What can be read from a joint after a run: tables, files, pictures, an animation.
+"""Results of a joint after a run: tables, files, pictures, an animation.
 
 A journal (R 25 mm, L 50 mm, 5 kg, with a flywheel) turns at 3000 rpm on thin oil under a load of 8 kN downwards and an
 unbalance of 5 kN that turns with it. It begins in the middle of its bore and runs until its orbit has closed within a

@@ -191,7 +191,7 @@ def at_middle(film: ehd.SteadyResult, field: np.ndarray) -> tuple[np.ndarray, np
 
 
 def draw_bores(polar: Axes, cases: dict, moduli: dict) -> None:
-    """How far the bore yields at the mid-plane, aligned, Gümbel; the inner circle is the bore without load."""
+    """Draw the bore deflection at the mid-plane, aligned, Gümbel; the inner circle is the bore without load."""
     largest = 0.0
     for film, style in rigid_and_modal(cases, moduli):
         shift = np.zeros_like(film.gap) if film.bore_displacement is None else film.bore_displacement

@@ -277,7 +277,7 @@ class LinearRotor:
         return float(optimize.brentq(lambda w: self.mode(w)[0].real, 60.0 * HZ, 2.0 * self.first_bending, xtol=0.01))
 
     def threshold_of_one_mass(self) -> float:
-        """The same for the disc with 17/35 of the shaft on a massless shaft, the rest of the shaft at the journals."""
+        """Threshold spin of a disc with 17/35 of the shaft on a massless shaft, the rest at the journals, rad/s."""
         modal = 0.5 * (DISC_MASS + 17.0 / 35.0 * SHAFT_MASS)
         own = math.sqrt(24.0 * STEEL * INERTIA / SPAN**3 / modal)
 

@@ -56,7 +56,7 @@ def make_bearing(name: str) -> ehd.JournalBearing:
 
 
 def axial_force(t: float) -> float:
-    """Of the gear along z, N."""
+    """Force of the gear along z, N."""
     return AXIAL * math.cos(math.pi * min(max((t - REVERSAL) / LASTS, 0.0), 1.0))
 
 

@@ -116,7 +116,7 @@ def simulate(variant, *, end: float) -> dict:
 
 
 def difference() -> str:
-    """What changes in the model's source, as a unified diff."""
+    """Unified diff of the model's source."""
     old, new = (inspect.getsource(f).splitlines()[1:] for f in (before, after))
     return "\n".join(difflib.unified_diff(old, new, "before", "after", lineterm="", n=1))
 

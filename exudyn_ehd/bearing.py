@@ -13,7 +13,7 @@ from exudyn_ehd.film.grid import Arc
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import (
-    Film,
+    FilmOption,
     FiniteLength,
     LongBearing,
     ShortBearing,
@@ -30,7 +30,7 @@ from exudyn_ehd.film.supply.checks import check_depths, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
-from exudyn_ehd.film.surfaces.profile import Profile
+from exudyn_ehd.film.surfaces.profile import SurfaceProfile
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.film.thrust.options import ThrustFaces, check_faces
@@ -133,7 +133,7 @@ class JournalBearing(Checked):
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
     roughness : PatirCheng or None
         Flow factors of rough surfaces.
-    profile : Profile, tuple of Profile or None
+    profile : SurfaceProfile, tuple of SurfaceProfile or None
         Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
     wear : ArchardWear or None
         Wear of the bore by the asperity contact.
@@ -162,7 +162,7 @@ class JournalBearing(Checked):
     length: float
     radial_clearance: float
     lubricant: Lubricant
-    film: Film = FiniteLength()
+    film: FilmOption = FiniteLength()
     cavitation: Cavitation = SwiftStieber()
     inlet: Inlet = Periodic()
     arc: Arc | None = None
@@ -175,7 +175,7 @@ class JournalBearing(Checked):
     journal: ElasticJournal | FEJournal | TurningJournal | None = None
     asperity: GreenwoodTripp | None = None
     roughness: PatirCheng | None = None
-    profile: Profile | tuple[Profile, ...] | None = None
+    profile: SurfaceProfile | tuple[SurfaceProfile, ...] | None = None
     wear: ArchardWear | None = None
     turbulence: NgPan | Hirs | None = None
     thrust: ThrustFaces | None = None
@@ -200,7 +200,7 @@ class JournalBearing(Checked):
         for name, types in _OPTIONS.items():
             require_type(f"JournalBearing.{name}", getattr(self, name), *types)
         for profile in self.profiles:
-            require_type("JournalBearing.profile", profile, *get_args(Profile))
+            require_type("JournalBearing.profile", profile, *get_args(SurfaceProfile))
         ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
@@ -288,7 +288,7 @@ class JournalBearing(Checked):
             )
 
     @property
-    def profiles(self) -> tuple[Profile, ...]:
+    def profiles(self) -> tuple[SurfaceProfile, ...]:
         """The profiles as a tuple; empty for circular cylinders."""
         if self.profile is None:
             return ()
@@ -305,7 +305,7 @@ class JournalBearing(Checked):
         return self.radial_clearance / self.journal_radius
 
     @property
-    def sized_film(self) -> Film:
+    def sized_film(self) -> FilmOption:
         """``film`` with its columns, where it leaves them to the bearing's L/D."""
         return sized(self.film, 0.5 * self.length / self.journal_radius)
 
@@ -338,7 +338,7 @@ class JournalBearing(Checked):
 
 _OPTIONS: dict[str, tuple[type, ...]] = {
     "lubricant": (Lubricant,),
-    "film": get_args(Film),
+    "film": get_args(FilmOption),
     "cavitation": get_args(Cavitation),
     "inlet": get_args(Inlet),
     "arc": (Arc, type(None)),

@@ -18,7 +18,7 @@ import numpy as np
 
 from exudyn_ehd.plausible import doubt, kind_of
 
-Item = TypeVar("Item")
+Hinted = TypeVar("Hinted")
 # Largest number of vertices of a film grid in one direction. The error of the load falls with its square, 0.05 % at 192
 # (`FiniteLength`): 5e-8 at this limit, where the closures' tolerances dominate. A larger limit allows films that take
 # minutes and gigabytes.
@@ -338,7 +338,7 @@ def require_supported(name: str) -> None:
         raise InputError(f"{name} is not supported any more; {GONE[name]}.")
 
 
-def hint_arguments(item: Item) -> Item:
+def hint_arguments(item: Hinted) -> Hinted:
     """Let a description name the argument that was meant by one that it does not have; return any other item as it is.
 
     The meaning is the first sentence about the argument in the description's docstring.

@@ -20,7 +20,7 @@ LONG_TO_COMPILE = (
 
 
 def is_long_to_compile(name):
-    """Whether the film of a test of this name (`item.nodeid`) has kernels that take long to compile."""
+    """Return whether the film of a test of this name (`item.nodeid`) has kernels that take long to compile."""
     words = name.lower().replace("-", "")
     return bool(OF_FILMS.match(name)) and any(re.search(a, words) and re.search(b, words) for a, b in LONG_TO_COMPILE)
 

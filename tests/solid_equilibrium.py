@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.linear.solvers import sparse_factor
-from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces
+from exudyn_ehd.solid.loads import BushLoad, FollowerPressure, dead_forces
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import EHDError, require_integer
 
@@ -41,7 +41,7 @@ def equilibrium(
     solid: TotalLagrange,
     *,
     held: np.ndarray,
-    loads: Sequence[Load],
+    loads: Sequence[BushLoad],
     steps: int = 1,
     tolerance: float = 1e-10,
     start: np.ndarray | None = None,

@@ -50,7 +50,7 @@ def tetrahedra(cylinder, shift=0.0, straight=False):
 
 
 def tet_mesh(cylinder, shift=0.0, straight=False):
-    """The same as a bush mesh."""
+    """Bush mesh of the cylinder's tetrahedra."""
     nodes, elements = tetrahedra(cylinder, shift, straight)
     return ehd.mesh_from_arrays(nodes, elements, bore_radius=cylinder.inner_radius)
 

@@ -1,6 +1,7 @@
 """Rules of the package's structure that no other tool checks."""
 
 import ast
+import collections
 import dataclasses
 import functools
 import importlib
@@ -96,9 +97,11 @@ LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 300, 60, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
 MOST_SKIPS, MOST_ANY, MOST_CODE = 13, 60, 25159
-# Docstrings of the whole package that begin with a clause without its noun ("What ...", "Of ..."); it can only fall.
-MOST_BARE_CLAUSES = 0
-BARE_CLAUSE = re.compile(r"(What|Whether|As|Of|The same|Where|Which|How|From|With|That|Who|For|At|When)\b")
+# Beginnings of a clause without its noun: no docstring of package, tests and examples begins with one.
+BARE_CLAUSE = re.compile(
+    r'^ *r?"""\s*((?:What|Whether|As|Of|The same|Where|Which|How|From|With|That|Those|Who|Whose|Why|For|At|When)\b.*)',
+    re.MULTILINE,
+)
 
 
 def _docstring_lines(tree):
@@ -151,6 +154,27 @@ def test_no_circle_of_files():
     assert not circles, [sorted(c) for c in circles]
 
 
+def _type_names(tree):
+    """Classes, protocols included, and names of types: unions, type variables, callables."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            yield node.name.lstrip("_")
+    for node in tree.body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        names = [target.id for target in targets if isinstance(target, ast.Name)]
+        yield from (name.lstrip("_") for name in names if re.fullmatch("_?[A-Z][A-Za-z]*[a-z][A-Za-z]*", name))
+
+
+def test_no_two_classes_share_a_name():
+    """Two types of one name in two modules are taken for one another; a leading underscore does not tell them apart."""
+    places = collections.defaultdict(list)
+    for path, _, tree, _ in _parsed():
+        for name in _type_names(tree):
+            places[name].append(_module(path))
+    shared = {name: modules for name, modules in places.items() if len(modules) > 1}
+    assert not shared, "\n".join(f"{name}: {', '.join(modules)}" for name, modules in shared.items())
+
+
 def test_folders_are_small():
     for folder in {path.parent for path in _sources()}:
         assert len(list(folder.glob("*.py"))) <= MOST_FILES, folder
@@ -188,19 +212,14 @@ def test_the_package_stays_small():
 
 
 def test_docstrings_begin_with_a_noun_or_a_verb():
-    found = []
-    for path, _, tree, _ in _parsed():
-        for node in ast.walk(tree):
-            if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
-                text = ast.get_docstring(node) or ""
-                if BARE_CLAUSE.match(text):
-                    found.append(f"{path}: {text.splitlines()[0]}")
-    listed = "\n".join(found)
-    assert len(found) <= MOST_BARE_CLAUSES, f"{len(found)} docstrings, e.g. 'Return whether ...' is better:\n{listed}"
+    """Docstrings of modules, classes and functions, and those below constants; the formatter makes their quotes."""
+    paths = [path for folder in ("exudyn_ehd", "tests", "examples") for path in sorted((ROOT / folder).rglob("*.py"))]
+    found = [f"{p}: {line}" for p in paths for line in BARE_CLAUSE.findall(p.read_text(encoding="utf-8"))]
+    assert not found, "\n".join([f"{len(found)} docstrings, e.g. 'Return whether ...' is better:", *found])
 
 
 def test_functions_of_bench_and_examples_are_short():
-    """At most 60 lines, docstrings apart, as in the package; files of the bench at most 300."""
+    """Functions have at most 60 lines, docstrings apart, as in the package; files of the bench at most 300."""
     bench, found = ROOT / "tests" / "benchmarks" / "accuracy", []
     for path in [*bench.rglob("*.py"), *(ROOT / "examples").glob("*.py")]:
         text = path.read_text(encoding="utf-8")

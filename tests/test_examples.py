@@ -74,7 +74,7 @@ def test_elastic_big_end(example, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("flexible", [False, True])
 def test_connecting_rod_a_cycle_later(example, flexible):
-    """How far the turn that the picture shows is from the one after the next firing, as its story says."""
+    """Distance of the turn in the picture from the turn a cycle later, as stated below the picture."""
     module = example("fe_connecting_rod")
     fem, _ = module.rod_fem(module.SHANKS["narrow shank"], tolerance=0.02)
     run = module.simulate(

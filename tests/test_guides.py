@@ -1,12 +1,19 @@
 """READMEs: their Python runs as it stands, what they name and link to exists, one word for one thing."""
 
 import ast
+import functools
+import importlib
+import inspect
+import itertools
 import pathlib
 import re
+import sys
 
+import exudyn as exu
 import pytest
+from exudyn.utilities import InertiaCuboid
 
-import exudyn_ehd
+import exudyn_ehd as ehd
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 GUIDES = sorted(path for folder in ("exudyn_ehd", "examples", "tests") for path in (ROOT / folder).rglob("*.md")) + [
@@ -71,9 +78,108 @@ def test_what_the_guides_name_exists(name):
         assert any((place / wanted).exists() for place in places), f"{name} names {wanted}, which is not there"
 
 
+STEP = re.compile(r"`([\w.]+): ([\w.]+)`")
+
+
+def walks():
+    """Walks of the package's guide: their titles with the text below."""
+    (text,) = re.findall(r"^## Three walks.*?(?=^## )", TEXTS["exudyn_ehd/README.md"], re.DOTALL | re.MULTILINE)
+    return re.findall(r"^### (.*?)\n(.*?)(?=^### |\Z)", text, re.DOTALL | re.MULTILINE)
+
+
+def step_of(module, name):
+    """Object that a step names as ``module: function``."""
+    return functools.reduce(getattr, name.split("."), importlib.import_module(f"exudyn_ehd.{module}"))
+
+
+def test_steps_of_the_walks_exist():
+    assert len(walks()) == 3
+    for title, text in walks():
+        lines = re.findall(r"^\d+\. (.*)$", text, re.MULTILINE)
+        assert 5 <= len(lines) <= 10 and all(STEP.search(line) for line in lines), title
+        for module, name in STEP.findall(text):
+            step_of(module, name)
+
+
+def evaluate_joint(options):
+    """Describe a bearing, put it into a system, and ask its film for force and Jacobian."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=25e-6,
+        film=ehd.FiniteLength(n_theta=32, n_z=6),
+        **({"lubricant": ehd.Lubricant(viscosity=0.02)} | options),
+    )
+    mbs = exu.SystemContainer().AddSystem()
+    inertia = InertiaCuboid(density=7800, sideLengths=[0.1] * 3)
+    shaft = mbs.CreateRigidBody(
+        inertia=inertia, initialAngularVelocity=[0, 0, 100.0], initialDisplacement=[4e-6, -8e-6, 0]
+    )
+    joint = ehd.CreateLubricatedJoint(mbs, "main", [mbs.CreateGround(), shaft], [0, 0, 0], [0, 0, 1], bearing)
+    mbs.Assemble()
+    for item in (exu.ComputeItemType.ODE2LHS, exu.ComputeItemType.JacobianODE2):
+        mbs.ComputeItem(joint.objectNumber, item)
+
+
+def follow(function):
+    """Call a function; return the codes of the package that it calls, in order, and the stacks of their modules."""
+    codes, stacks, stack = [], set(), []
+
+    def note(frame, event, _):
+        module = frame.f_globals.get("__name__", "")
+        if module.startswith("exudyn_ehd."):
+            if event == "call":
+                stack.append(module)
+                codes.append(frame.f_code)
+                stacks.add(tuple(stack))
+            elif event == "return":
+                stack.pop()
+
+    sys.setprofile(note)
+    try:
+        function()
+    finally:
+        sys.setprofile(None)
+    return codes, stacks
+
+
+def entered_twice(stack):
+    """Packages that a stack of modules has left and entered again; checks of arguments are in none."""
+    names = [name.split(".")[1:] for name in stack if name not in ("exudyn_ehd.status", "exudyn_ehd.plausible")]
+    packages = [".".join(name if len(name) < 3 else name[:2]) for name in names]
+    path = [package for package, _ in itertools.groupby(packages)]
+    return {package for package in path if path.count(package) > 1}
+
+
+WALKED = {
+    "profile": {"profile": ehd.OutOfRound(order=2, amplitude=1e-6)},
+    "heat and wall": {
+        "lubricant": ehd.oil("ISO VG 46"),
+        "profile": ehd.OutOfRound(order=2, amplitude=1e-6),
+        "thermal": ehd.FilmEnergy(supply_temperature=313.0),
+        "contact": ehd.RegularisedWall(onset=1e-6),
+    },
+    "liner": {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9), "profile": ehd.Crown(drop=1e-6)},
+}
+
+
+@pytest.mark.parametrize("name", WALKED)
+def test_walks_have_the_order_of_the_calls_and_come_back_to_no_package(name):
+    """Kernels and dataclasses have no calls to follow; a first evaluation compiles and imports."""
+    evaluate_joint(WALKED[name])
+    codes, stacks = follow(lambda: evaluate_joint(WALKED[name]))
+    assert {package for stack in stacks for package in entered_twice(stack)} == set()
+    for title, text in walks():
+        steps = [step_of(*STEP.search(line).groups()) for line in re.findall(r"^\d+\. .*$", text, re.MULTILINE)]
+        steps = [step.__code__ for step in steps if inspect.isfunction(step)]
+        start = codes.index(steps[0])
+        places = [codes.index(step, start) for step in steps]
+        assert len(places) >= 6 and places == sorted(places), title
+
+
 def test_project_package_citation_and_changelog_tell_one_version():
     (version,) = re.findall(r'^version = "(.*)"$', (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)
-    assert exudyn_ehd.__version__ == version
+    assert ehd.__version__ == version
     assert re.findall(r"exudyn_ehd (\d[\d.]*\d)", TEXTS["README.md"]) == [version]
     assert re.findall(r"^## (.*)$", TEXTS["exudyn_ehd/CHANGELOG.md"], re.MULTILINE)[0] == version
 
@@ -94,7 +200,7 @@ VARIANTS = re.compile(
 
 
 def prose(path):
-    """What a person reads of a file: text without code, docstrings, messages and comments."""
+    """Prose of a file: its text without code; of Python its docstrings, messages and comments."""
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".py" and re.search("umbel|min[a-z.]* *film|film *thickness", text):
         comments = " ".join(re.findall(r"#+ (.*)", text))

@@ -1,4 +1,4 @@
-"""What a user sees of the package: its names, objects in one line, and arguments as Exudyn and matplotlib have them."""
+"""The package as a user sees it: names, objects in one line, and arguments as Exudyn and matplotlib have them."""
 
 import pathlib
 import subprocess
@@ -50,8 +50,8 @@ def test_dir_shows_the_public_names():
 def test_names_wait_for_their_modules():
     """Importing the package takes nothing but its names."""
     code = (
-        "import sys, exudyn_ehd; rooms = {'bearing', 'film', 'solid', 'joint', 'pictures', 'coupling', 'studies'};"
-        "assert not rooms & {m.split('.')[1] for m in sys.modules if m.startswith('exudyn_ehd.')};"
+        "import sys, exudyn_ehd; packages = {'bearing', 'film', 'solid', 'joint', 'pictures', 'coupling', 'studies'};"
+        "assert not packages & {m.split('.')[1] for m in sys.modules if m.startswith('exudyn_ehd.')};"
         "from exudyn_ehd import JournalBearing; assert 'exudyn_ehd.solid' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=pathlib.Path(ehd.__file__).parent.parent)

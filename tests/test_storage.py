@@ -1,4 +1,4 @@
-"""What lies on disk: folders that can't be written, folders that are full, and descriptions by content."""
+"""Files on disk: folders that can't be written, folders that are full, and descriptions by content."""
 
 import dataclasses
 import functools

@@ -31,7 +31,7 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.compile import compile_together
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 
-Record: TypeAlias = File | Every | Period
+RecordOption: TypeAlias = File | Every | Period
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -90,7 +90,7 @@ def CreateLubricatedJoint(
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: Literal[False] = False,
-    record: Record | None = None,
+    record: RecordOption | None = None,
 ) -> LubricatedJoint: ...
 @overload
 def CreateLubricatedJoint(
@@ -113,7 +113,7 @@ def CreateLubricatedJoint(
     bodyNumbers: Sequence[Index | None] | None = None,
     *,
     returnDict: Literal[True],
-    record: Record | None = None,
+    record: RecordOption | None = None,
 ) -> dict[str, object]: ...
 def CreateLubricatedJoint(
     mbs: exu.MainSystem,
@@ -134,7 +134,7 @@ def CreateLubricatedJoint(
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: bool = False,
-    record: Record | None = None,
+    record: RecordOption | None = None,
 ) -> LubricatedJoint | dict[str, object]:
     """Create an oil-filled revolute (or, axially free, cylindrical) joint between two bodies.
 
@@ -261,7 +261,7 @@ def CreateLubricatedJoint(
     return joint
 
 
-def _equip(joint: LubricatedJoint, control: StepControl | None, record: Record | None) -> None:
+def _equip(joint: LubricatedJoint, control: StepControl | None, record: RecordOption | None) -> None:
     steps = joint.element.steps
     if control is not None:
         steps.control = GapWatch(control, joint.bearing)

@@ -42,7 +42,7 @@ def require_system(where: str, mbs: exu.MainSystem, *, assembled: bool | None = 
         raise InputError(f"{where}: the system{of} is {state}.")
 
 
-class Evaluation(Protocol):
+class JointEvaluation(Protocol):
     """Result of one film evaluation.
 
     ``wrench`` (6,) = [Fx, Fy, Fz, Mx, My, Mz] acts on the journal, in the joint frame, moment about its origin O; the
@@ -90,13 +90,13 @@ class Trial:
         self.begin = begin
         self.bodies = bodies
         self.motion = motion
-        self.evaluation: Evaluation | None = None
+        self.evaluation: JointEvaluation | None = None
         self.faces: ThrustEvaluation | None = None
         self.derived: tuple[tuple[float, float], np.ndarray] | None = None
         # a sum is finite only if all its terms are
         self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
 
-    def take(self, evaluation: Evaluation, faces: ThrustEvaluation | None = None) -> None:
+    def take(self, evaluation: JointEvaluation, faces: ThrustEvaluation | None = None) -> None:
         """Store the evaluations of the journal's film and of the end faces."""
         self.evaluation, self.faces = evaluation, faces
         self.status = evaluation.status if faces is None else max(evaluation.status, faces.status)
@@ -106,7 +106,7 @@ class Trial:
         return self.derived is None or self.derived[0] != (f_q, f_qt)
 
     @property
-    def found(self) -> Evaluation:
+    def found(self) -> JointEvaluation:
         """Evaluation of the film, which must exist."""
         assert self.evaluation is not None
         return self.evaluation
@@ -130,7 +130,7 @@ class JointModel(Protocol):
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
-    ) -> Evaluation:
+    ) -> JointEvaluation:
         """Evaluate the film at [x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w] (m, rad, m/s, rad/s).
 
         ``history`` is the memory at the last accepted step (None: the steady film), ``step`` the time since then [s],

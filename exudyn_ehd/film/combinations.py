@@ -9,14 +9,14 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.thrust.options import Options
+from exudyn_ehd.film.thrust.options import BearingOptions
 from exudyn_ehd.status import InputError
 
 # Pa s; of a gas far from cold, and of pitch.
 LEAST_VISCOSITY, LARGEST_VISCOSITY = 1e-7, 1e9
 
 
-def check_combinations(bearing: Options) -> None:
+def check_combinations(bearing: BearingOptions) -> None:
     """Raise `InputError` for options that exclude each other, or for one without what it needs.
 
     Parameters
@@ -39,7 +39,7 @@ def check_combinations(bearing: Options) -> None:
         _check_roughness(bearing)
 
 
-def _check_film(bearing: Options) -> None:
+def _check_film(bearing: BearingOptions) -> None:
     """Refuse effects that the film model leaves out."""
     film, oil, name = bearing["film"], bearing["lubricant"], type(bearing["film"]).__name__
     if isinstance(bearing["bush"], ElasticLiner) and not isinstance(film, FiniteLength):
@@ -60,7 +60,7 @@ def _check_film(bearing: Options) -> None:
         )
 
 
-def _check_arc(bearing: Options) -> None:
+def _check_arc(bearing: BearingOptions) -> None:
     """Refuse what needs the whole ring."""
     others = [name for name in ("thermal", "bush", "journal", "profile", "wear", "supply") if bearing[name]]
     others += [] if isinstance(bearing["film"], FiniteLength) else ["film"]
@@ -73,7 +73,7 @@ def _check_arc(bearing: Options) -> None:
         )
 
 
-def _check_turbulence(bearing: Options) -> None:
+def _check_turbulence(bearing: BearingOptions) -> None:
     """Refuse what has no turbulent form: properties by the pressure, and factors of a laminar profile."""
     oil, laws = bearing["lubricant"], ("pressure_law", "density_law", "shear_law")
     others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
@@ -87,7 +87,7 @@ def _check_turbulence(bearing: Options) -> None:
         )
 
 
-def _check_heat(bearing: Options) -> None:
+def _check_heat(bearing: BearingOptions) -> None:
     """Refuse an oil without a law of the temperature, temperatures at which the law gives no viscosity, as for degrees
     Celsius given as kelvin, and a temperature field that does not go with the bearing."""
     thermal, oil = bearing["thermal"], bearing["lubricant"]
@@ -123,7 +123,7 @@ def _check_heat(bearing: Options) -> None:
         )
 
 
-def _check_roughness(bearing: Options) -> None:
+def _check_roughness(bearing: BearingOptions) -> None:
     """Refuse rough surfaces with a wall, of two roughnesses, or too rough for the clearance."""
     asperity, roughness, clearance = bearing["asperity"], bearing["roughness"], bearing["radial_clearance"]
     if bearing["contact"] is not None:

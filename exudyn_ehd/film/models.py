@@ -135,13 +135,13 @@ def columns_for(ratio: float) -> int:
     return min(max(FEWEST_COLUMNS, 8 * math.ceil(9.0 * ratio**-0.62)), MOST_COLUMNS)
 
 
-def sized(film: Film, ratio: float) -> Film:
+def sized(film: FilmOption, ratio: float) -> FilmOption:
     """A film model with its columns, where it leaves them to the bearing's L/D."""
     is_open = isinstance(film, FiniteLength) and film.n_theta is None
     return replace(film, n_theta=columns_for(ratio)) if is_open else film
 
 
-def columns_of(film: Film, ratio: float) -> int:
+def columns_of(film: FilmOption, ratio: float) -> int:
     """Vertices around the circumference of a film on a bearing of this L/D."""
     return columns_for(ratio) if film.n_theta is None else film.n_theta
 
@@ -217,11 +217,15 @@ class LongBearing(Checked):
     }
 
 
-Film = FiniteLength | ShortBearing | ClassicSOR | LongBearing | ImpedanceMap
+FilmOption = FiniteLength | ShortBearing | ClassicSOR | LongBearing | ImpedanceMap
 
 
 def check_film(
-    film: Film, closure: Closure, supply: tuple[SupplyArea, ...], open_ring: bool, end_pressures: tuple[float, float]
+    film: FilmOption,
+    closure: Closure,
+    supply: tuple[SupplyArea, ...],
+    open_ring: bool,
+    end_pressures: tuple[float, float],
 ) -> None:
     """Raise `InputError` for a film model that does not go with the other choices.
 
@@ -257,7 +261,7 @@ def check_film(
         )
 
 
-def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> list[str]:
+def no_line_with(film: FilmOption, closure: Closure, bush: object, oil: Lubricant) -> list[str]:
     """Names of a bearing's options that do not support the closure's rupture line inside the cells of the grid."""
     clips, oil_counts = closure.clips, closure.conserves_mass
     short = isinstance(film, ShortBearing) and not clips
@@ -274,7 +278,7 @@ def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> 
     return [name for name, there in others.items() if there]
 
 
-def check_line(film: Film, closure: Closure, bush: object, oil: Lubricant) -> None:
+def check_line(film: FilmOption, closure: Closure, bush: object, oil: Lubricant) -> None:
     """Refuse a rupture line inside the cells with what does not know it yet."""
     others = no_line_with(film, closure, bush, oil) if closure.line_in_cells else []
     if not others:
@@ -287,7 +291,7 @@ def check_line(film: Film, closure: Closure, bush: object, oil: Lubricant) -> No
 
 
 def film_grid(
-    film: Film,
+    film: FilmOption,
     radius: float,
     length: float,
     *,
@@ -321,7 +325,7 @@ def film_grid(
 
 
 def film_solver(
-    film: Film,
+    film: FilmOption,
     grid: FilmGrid,
     closure: Closure,
     *,

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.histories import draw_clearance
 from exudyn_ehd.pictures.maps import PRESSURE, draw_map, draw_rupture, field_values, on_picture
-from exudyn_ehd.pictures.records import History, JointFilm, label, unit_for
+from exudyn_ehd.pictures.records import HistoryRecord, JointFilm, label, unit_for
 from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, style_ticks, styled
 from exudyn_ehd.status import InputError, require_integer
 
@@ -26,10 +26,10 @@ class Frames:
     Parameters
     ----------
     films : sequence of JointFilm
-    history : History
+    history : HistoryRecord
     """
 
-    def __init__(self, films: Sequence[JointFilm], history: History) -> None:
+    def __init__(self, films: Sequence[JointFilm], history: HistoryRecord) -> None:
         self.films, self.history = films, history
         largest = max(float(np.max(film.pressure)) for film in films)
         lowest = min(float(np.min(film.pressure)) for film in films)
@@ -68,7 +68,7 @@ class Frames:
 
 def animate(
     films: Sequence[JointFilm],
-    history: History,
+    history: HistoryRecord,
     path: str | pathlib.Path,
     *,
     frames_per_second: int = 15,
@@ -79,7 +79,7 @@ def animate(
     Parameters
     ----------
     films : sequence of JointFilm
-    history : History
+    history : HistoryRecord
     path : path
         Ending in ``.gif`` or ``.mp4``.
     frames_per_second : int

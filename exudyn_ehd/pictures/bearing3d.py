@@ -14,7 +14,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled, span
-from exudyn_ehd.pictures.records import Film, Target, label, unit_for
+from exudyn_ehd.pictures.records import FilmRecord, Target, label, unit_for
 from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, headed, picture, style_ticks
 
 SIZE = (1.35 * COLUMN, 1.15 * COLUMN)
@@ -27,7 +27,7 @@ SIDE, CAP = (0.72, 0.74, 0.78), (0.82, 0.84, 0.87)
 
 
 def plot_bearing(
-    film: Film,
+    film: FilmRecord,
     *,
     camera: tuple[float, float] | None = None,
     title: str = "",
@@ -38,7 +38,7 @@ def plot_bearing(
 
     Parameters
     ----------
-    film : Film
+    film : FilmRecord
     camera : (float, float), optional
         Elevation and azimuth, degrees, with y upright and x to the right at azimuth -90; by default the hill is in
         view.
@@ -94,7 +94,7 @@ def pressure_surface(theta: np.ndarray, z: np.ndarray, pressure: np.ndarray) -> 
     return np.stack([r * np.cos(theta)[:, None], r * np.sin(theta)[:, None], np.broadcast_to(z, r.shape)], axis=-1)
 
 
-def journal_surface(film: Film, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+def journal_surface(film: FilmRecord, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Points (k, m, 3) of the journal, with the clearance enlarged to its share of the radius; z over the radius."""
     c, R = film.bearing.radial_clearance, film.bearing.journal_radius
     x, y, bx, by = film.motion[:4]
@@ -123,7 +123,7 @@ def _turned(points: np.ndarray) -> np.ndarray:
     return np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1)
 
 
-def _draw_arrows(ax: Axes3D, film: Film, z: np.ndarray) -> None:
+def _draw_arrows(ax: Axes3D, film: FilmRecord, z: np.ndarray) -> None:
     """The joint's x and y, and the load of the journal on the bush, at the end z = L/2 and in front of everything."""
     start = np.array([0.0, 0.0, z[-1]])
     box = {"boxstyle": "circle,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from exudyn_ehd.pictures.records import QUANTITIES, History, Target, Unit, label, unit_for
+from exudyn_ehd.pictures.records import QUANTITIES, HistoryRecord, Target, Unit, label, unit_for
 from exudyn_ehd.pictures.style import (
     BLUE,
     COLUMN,
@@ -36,7 +36,7 @@ _TICKS = [15.0, 30.0, *(45.0 * 2.0**k for k in range(40))]
 
 
 def plot_orbit(
-    history: History,
+    history: HistoryRecord,
     *,
     ends: bool = False,
     text: str = "",
@@ -48,7 +48,7 @@ def plot_orbit(
 
     Parameters
     ----------
-    history : History
+    history : HistoryRecord
     ends : bool
         Also draw the axis at both ends of the bearing.
     text : str
@@ -96,13 +96,13 @@ def draw_clearance(ax: Axes, c: float, unit: Unit) -> None:
 
 
 def plot_load(
-    history: History, *, text: str = "", title: str = "", ax: PolarAxes | None = None, path: Target = None
+    history: HistoryRecord, *, text: str = "", title: str = "", ax: PolarAxes | None = None, path: Target = None
 ) -> Figure:
     """Draw the tip of the load of the journal on the bush, housing's joint frame: the opposite of ``history.force``.
 
     Parameters
     ----------
-    history : History
+    history : HistoryRecord
     text : str
         Name in the legend.
     title : str
@@ -158,7 +158,7 @@ def _freest(angle: np.ndarray) -> float:
 
 
 def plot_traces(
-    history: History,
+    history: HistoryRecord,
     quantities: Enum | str | Sequence[Enum | str] = ("minimum_gap", "peak_pressure"),
     *,
     angle: np.ndarray | None = None,
@@ -172,7 +172,7 @@ def plot_traces(
 
     Parameters
     ----------
-    history : History
+    history : HistoryRecord
     quantities : Quantity or str, or a sequence of them
         Scalars of the history.
     angle : (n,) array, optional
@@ -244,12 +244,12 @@ def _new_panels(count: int, title: str, path: Target) -> np.ndarray:
     return np.asarray(panels)
 
 
-def _require_steps(where: str, history: History) -> None:
+def _require_steps(where: str, history: HistoryRecord) -> None:
     if history.time.size == 0:
         raise InputError(f"{where}: the history has no steps; run a solver first.")
 
 
-def _checked(history: History, quantity: Enum | str) -> str:
+def _checked(history: HistoryRecord, quantity: Enum | str) -> str:
     name = str(getattr(quantity, "value", quantity))
     if name not in QUANTITIES or name == "time":
         known = ", ".join(sorted(set(QUANTITIES) - {"time"}))

@@ -15,7 +15,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.projections.polar import PolarAxes
 
 from exudyn_ehd.film.supply.areas import covers, placed
-from exudyn_ehd.pictures.records import Film, Target, Unit, label, shown, unit_for
+from exudyn_ehd.pictures.records import FilmRecord, Target, Unit, label, shown, unit_for
 from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, headed, picture, style_ticks
 from exudyn_ehd.status import InputError
 
@@ -73,7 +73,7 @@ FIELDS = {
 PRESSURE = FIELDS["pressure"]
 
 
-def field_values(film: Film, field: MapField) -> np.ndarray:
+def field_values(film: FilmRecord, field: MapField) -> np.ndarray:
     """The field (n, m) of a film; a single temperature fills the whole map.
 
     Raises
@@ -104,12 +104,12 @@ def _around(theta: np.ndarray, values: np.ndarray, angles: np.ndarray) -> np.nda
     return np.stack([np.interp(angles, theta, column, period=TURN) for column in values.T], axis=1)
 
 
-def resampled(film: Film, values: np.ndarray, angles: np.ndarray, along: np.ndarray) -> np.ndarray:
+def resampled(film: FilmRecord, values: np.ndarray, angles: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Field on the grid of angles (k,) and places (l,) along the axis, linear between vertices."""
     return _around(film.theta, np.stack([np.interp(along, film.z, row) for row in values]), angles)
 
 
-def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) -> np.ndarray:
+def on_picture(film: FilmRecord, values: np.ndarray, *, prescribed_ends: bool = True) -> np.ndarray:
     """Field (n, m) on the uniform grid of a picture, linear between vertices.
 
     With ``prescribed_ends=False`` the two rows at the bearing's ends take their neighbours' values: there a film
@@ -120,19 +120,21 @@ def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) 
     return resampled(film, values, np.linspace(*span(film), FINE[0]), np.linspace(film.z[0], film.z[-1], FINE[1]))
 
 
-def span(film: Film) -> tuple[float, float]:
+def span(film: FilmRecord) -> tuple[float, float]:
     """First and last angle of a film, rad: those of its arc, or a turn."""
     return (0.0, TURN) if film.bearing.arc is None else (float(film.theta[0]), float(film.theta[-1]))
 
 
-def plot_map(film: Film, field: MapField, *, title: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
+def plot_map(
+    film: FilmRecord, field: MapField, *, title: str = "", ax: Axes | None = None, path: Target = None
+) -> Figure:
     """Draw the unrolled map of a field.
 
     The dashed line is the edge of the cavity, black lines bound the supply areas in the housing; a legend says so.
 
     Parameters
     ----------
-    film : Film
+    film : FilmRecord
     field : MapField
     title : str
         Stands above the field's telling value.
@@ -159,7 +161,7 @@ def plot_map(film: Film, field: MapField, *, title: str = "", ax: Axes | None = 
 
 def draw_map(
     ax: Axes,
-    film: Film,
+    film: FilmRecord,
     field: MapField,
     unit: Unit,
     limits: tuple[float, float] | None = None,
@@ -207,7 +209,7 @@ def colour_limits(values: np.ndarray, field: MapField) -> tuple[float, float]:
     return low, high
 
 
-def draw_rupture(ax: Axes, film: Film) -> ContourSet | None:
+def draw_rupture(ax: Axes, film: FilmRecord) -> ContourSet | None:
     """Draw the boundary of the unbroken film; None if there is none inside."""
     # vertices with a prescribed pressure are none of the solver's: full where the pressure is above the cavity's
     full = film.unbroken | (film.pressure > film.bearing.cavitation.cavity_pressure)
@@ -226,7 +228,7 @@ def draw_rupture(ax: Axes, film: Film) -> ContourSet | None:
     return edge
 
 
-def _draw_supply(ax: Axes, film: Film) -> bool:
+def _draw_supply(ax: Axes, film: FilmRecord) -> bool:
     """Outlines of the supply areas that lie in the housing; whether there are any."""
     theta = np.linspace(0.0, TURN, FINE[0])
     z = np.linspace(film.z[0], film.z[-1], FINE[1])
@@ -238,7 +240,7 @@ def _draw_supply(ax: Axes, film: Film) -> bool:
     return bool(fixed)
 
 
-def _extreme(film: Film, field: MapField, values: np.ndarray, unit: Unit) -> str:
+def _extreme(film: FilmRecord, field: MapField, values: np.ndarray, unit: Unit) -> str:
     """Title: the field's telling value with its place."""
     lowest = field.name in ("gap", "fill")
     i, j = np.unravel_index(np.argmin(values) if lowest else np.argmax(values), values.shape)

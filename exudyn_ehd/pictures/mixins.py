@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, cast
 
-from exudyn_ehd.pictures.records import Film, History, Target
+from exudyn_ehd.pictures.records import FilmRecord, HistoryRecord, Target
 
 if TYPE_CHECKING:
     from enum import Enum
@@ -23,7 +23,7 @@ class Titled:
 
 
 class FilmPictures(Titled):
-    """Pictures of a film at one instant; mixed into a `pictures.records.Film`, or into what has one by `_film`.
+    """Pictures of a film at one instant; mixed into a `pictures.records.FilmRecord`, or into what has one by `_film`.
 
     Every method draws into ``ax`` if given (a matplotlib Axes, so that pictures can be combined) or into a figure of
     its own, which ``plt.show()`` shows, writes it to ``path`` if given, and returns the figure.
@@ -61,9 +61,9 @@ class FilmPictures(Titled):
 
         return plot_bearing(self._film(), camera=camera, title=self._title(), ax=ax, path=path)
 
-    def _film(self) -> Film:
+    def _film(self) -> FilmRecord:
         """Return the film to draw."""
-        return cast(Film, self)
+        return cast(FilmRecord, self)
 
     def _map(self, field: str, ax: Axes | None, path: Target) -> Figure:
         from exudyn_ehd.pictures import maps
@@ -72,7 +72,7 @@ class FilmPictures(Titled):
 
 
 class HistoryPictures(Titled):
-    """Pictures of a history; mixed into a `pictures.records.History`, or into what has one by `_history`.
+    """Pictures of a history; mixed into a `pictures.records.HistoryRecord`, or into what has one by `_history`.
 
     See `FilmPictures`.
     """
@@ -97,6 +97,6 @@ class HistoryPictures(Titled):
 
         return plot_traces(self._history(), quantities, **{"title": self._title(), **options})
 
-    def _history(self) -> History:
+    def _history(self) -> HistoryRecord:
         """Return the history to draw."""
-        return cast(History, self)
+        return cast(HistoryRecord, self)

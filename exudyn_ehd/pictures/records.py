@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from exudyn_ehd.film.heat.conduction import Walls
 
 Target = str | pathlib.Path | None
-"""Where a picture is written; None: nowhere."""
+"""File that a picture is written to; None: it is not written."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Film:
+class FilmRecord:
     """A film at one instant; joint frame, SI units, arrays ``[theta, z]``.
 
     Attributes
@@ -63,7 +63,7 @@ class Film:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class JointFilm(Film):
+class JointFilm(FilmRecord):
     """The film of a joint at one instant of a run.
 
     Attributes
@@ -85,7 +85,7 @@ class JointFilm(Film):
 
 
 @dataclass(frozen=True, kw_only=True)
-class History:
+class HistoryRecord:
     """Accepted steps of a joint and the bearing's dimensions; joint frame, SI units.
 
     Attributes

@@ -16,7 +16,7 @@ from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.solid.unrolled import Surface
 from exudyn_ehd.status import InputError, require_number, require_vector
 
-History = Callable[[float], float]
+LoadHistory = Callable[[float], float]
 
 _EDGE_POINTS, _EDGE_WEIGHTS = np.polynomial.legendre.leggauss(3)
 _EDGE_SHAPES = np.stack(
@@ -47,7 +47,7 @@ class LineLoad:
 
     line: Line
     force_per_length: tuple[float, float, float] | np.ndarray
-    history: History | None = None
+    history: LoadHistory | None = None
 
     def __post_init__(self) -> None:
         require_vector("LineLoad.force_per_length", self.force_per_length, 3, "N/m")
@@ -87,7 +87,7 @@ class SurfaceLoad:
     surface: Surface
     traction: tuple[float, float, float] | np.ndarray
     distribution: np.ndarray | None = None
-    history: History | None = None
+    history: LoadHistory | None = None
 
     def __post_init__(self) -> None:
         require_vector("SurfaceLoad.traction", self.traction, 3, "Pa")
@@ -111,7 +111,7 @@ class _SurfacePressure:
     surface: Surface
     pressure: float
     distribution: np.ndarray | None = None
-    history: History | None = None
+    history: LoadHistory | None = None
 
     def __post_init__(self) -> None:
         name = type(self).__name__
@@ -211,14 +211,14 @@ class Gravity:
     """
 
     acceleration: tuple[float, float, float] | np.ndarray
-    history: History | None = None
+    history: LoadHistory | None = None
 
     def __post_init__(self) -> None:
         require_vector("Gravity.acceleration", self.acceleration, 3, "m/s^2")
         _require_history("Gravity.history", self.history)
 
 
-Load = LineLoad | SurfaceLoad | DeadPressure | FollowerPressure | Gravity
+BushLoad = LineLoad | SurfaceLoad | DeadPressure | FollowerPressure | Gravity
 
 
 def dead_forces(load: LineLoad | SurfaceLoad | DeadPressure | Gravity, solid: TotalLagrange) -> np.ndarray:
@@ -228,7 +228,7 @@ def dead_forces(load: LineLoad | SurfaceLoad | DeadPressure | Gravity, solid: To
     return load.nodal_forces(solid.mesh)
 
 
-def factor(load: Load, time: float) -> float:
+def factor(load: BushLoad, time: float) -> float:
     """Return the load's history at a time [s]."""
     return 1.0 if load.history is None else float(load.history(time))
 
@@ -246,7 +246,7 @@ def _at_points(distribution: np.ndarray | None, surface: Surface) -> np.ndarray:
     return np.asarray(distribution, dtype=float)[surface.local_faces] @ surface.kind.rule[1].T
 
 
-def _require_history(where: str, history: History | None) -> None:
+def _require_history(where: str, history: LoadHistory | None) -> None:
     if history is not None and not callable(history):
         raise InputError(
             f"{where} must be a function of time or None, got {history!r}; write history=lambda t: ... for a load "

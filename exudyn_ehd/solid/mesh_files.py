@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.solid.elements.kinds import ELEMENTS
 from exudyn_ehd.solid.mesh import BushMesh
-from exudyn_ehd.solid.mesh_import import Held, bush_mesh
+from exudyn_ehd.solid.mesh_import import HeldNodes, bush_mesh
 from exudyn_ehd.status import InputError, require_number
 
 # They would move nodes or add nodes and elements.
@@ -284,7 +284,7 @@ def mesh_from_file(
     path: str | pathlib.Path,
     *,
     bore_radius: float,
-    held: str | Held | None = None,
+    held: str | HeldNodes | None = None,
     instance: str | None = None,
     scale: float = 1.0,
     origin: tuple = (0.0, 0.0, 0.0),

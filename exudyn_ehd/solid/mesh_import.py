@@ -83,7 +83,7 @@ class OnPlane:
         return np.abs((positions - np.asarray(self.point)) @ normal) <= self.tolerance * np.linalg.norm(normal)
 
 
-Held: TypeAlias = Sequence[int] | np.ndarray | Callable[[np.ndarray], np.ndarray]
+HeldNodes: TypeAlias = Sequence[int] | np.ndarray | Callable[[np.ndarray], np.ndarray]
 """Nodes of a user's mesh by number, or flags (n,) of positions (n, 3) in the bush frame."""
 
 
@@ -91,7 +91,7 @@ def mesh_from_fem(
     fem: BodyMesh,
     *,
     bore_radius: float,
-    held: Held | None = None,
+    held: HeldNodes | None = None,
     origin: tuple = (0.0, 0.0, 0.0),
     axis: tuple = (0.0, 0.0, 1.0),
 ) -> BushMesh:
@@ -140,7 +140,7 @@ def mesh_from_arrays(
     elements: np.ndarray,
     *,
     bore_radius: float,
-    held: Held | None = None,
+    held: HeldNodes | None = None,
     origin: tuple = (0.0, 0.0, 0.0),
     axis: tuple = (0.0, 0.0, 1.0),
 ) -> BushMesh:
@@ -196,7 +196,7 @@ def bush_mesh(
     numbers: np.ndarray | None,
     *,
     bore_radius: float,
-    held: Held | None,
+    held: HeldNodes | None,
     origin: tuple,
     axis: tuple,
 ) -> BushMesh:
@@ -250,7 +250,7 @@ def bush_mesh(
 
 
 def _held_faces(
-    nodes: np.ndarray, boundary: np.ndarray, used: np.ndarray, held: Held | None, elsewhere: tuple[np.ndarray, ...]
+    nodes: np.ndarray, boundary: np.ndarray, used: np.ndarray, held: HeldNodes | None, elsewhere: tuple[np.ndarray, ...]
 ) -> np.ndarray:
     """Faces (f, a) that the housing holds; ``used`` are the user's numbers of the nodes, ``elsewhere`` flags (n,) of
     the ends and, last, of the bore."""

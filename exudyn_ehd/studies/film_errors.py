@@ -35,7 +35,7 @@ LOWEST_ORDER = 0.5
 Motions: TypeAlias = Sequence[np.ndarray] | np.ndarray
 Model: TypeAlias = BearingModel | ImpedanceModel
 Evaluated: TypeAlias = Evaluation | ImpedanceEvaluation
-Values: TypeAlias = dict[str, float | np.ndarray]
+QuantityValues: TypeAlias = dict[str, float | np.ndarray]
 # Quantities, and what their errors are divided by; None: the largest absolute value of the reference.
 SCALES: Mapping[str, float | None] = {
     "load": None,
@@ -164,13 +164,13 @@ def time_of_sweep(model: Model, motions: Motions) -> float:
             return spent / (rounds * len(motions))
 
 
-def _quantities(model: Model, evaluation: Evaluated, motion: np.ndarray) -> Values:
+def _quantities(model: Model, evaluation: Evaluated, motion: np.ndarray) -> QuantityValues:
     angle = math.atan2(motion[1], motion[0])
     turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     radial, tangential = turn @ evaluation.wrench[:2]
     tangent = _tangent(evaluation)
     known = evaluation.quantities()
-    row: Values = {
+    row: QuantityValues = {
         "load": math.hypot(radial, tangential),
         "attitude": math.atan2(tangential, -radial),
     }

@@ -22,7 +22,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
+from exudyn_ehd.film.models import FilmOption, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.model.rigid import BearingModel
@@ -58,7 +58,7 @@ class Recommendation:
     ----------
     found : bool
         False: nothing can be said of such a bearing, or no film on the ladder keeps the error; ``reason`` says which.
-    film : Film or None
+    film : FilmOption or None
         For ``JournalBearing(film=...)``.
     options : dict
         All fields of `JournalBearing` that the setting replaces: ``film``, and ``cavitation`` where the rupture line is
@@ -85,7 +85,7 @@ class Recommendation:
 
     found: bool
     reason: str
-    film: Film | None = None
+    film: FilmOption | None = None
     options: Options = dataclasses.field(default_factory=dict)
     error: float = math.nan
     seconds: float = math.nan
@@ -278,11 +278,11 @@ def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
     return places + (2.0 * math.pi / many * count if direction is None else direction)
 
 
-def _settings(bearing: JournalBearing) -> Iterator[tuple[Film, Options]]:
+def _settings(bearing: JournalBearing) -> Iterator[tuple[FilmOption, Options]]:
     """Films of the ladder and what they replace, the cheapest first."""
-    given: Film = bearing.film
+    given: FilmOption = bearing.film
     own = given if isinstance(given, FiniteLength) else FiniteLength()
-    found: list[tuple[float, Film, Options]] = []
+    found: list[tuple[float, FilmOption, Options]] = []
     for n, m in LADDER:
         film = FiniteLength(n_theta=n, n_z=m, stretch=own.stretch)
         found += [(cost * n * m, film, {"film": film, **options}) for options, cost in _closures(bearing)]

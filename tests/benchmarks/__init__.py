@@ -1,1 +1,1 @@
-"""What takes how long."""
+"""Benchmarks: measured times, and limits that they must keep."""

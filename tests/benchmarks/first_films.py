@@ -126,7 +126,7 @@ def run_bodies() -> None:
 
 
 def notes_of(film: str) -> list[Note]:
-    """What a film compiles, from a process with an empty cache."""
+    """Kernels that a film compiles, as noted by a process with an empty cache."""
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"NUMBA_CACHE_DIR": folder, HELPER_VARIABLE: "0"}
         call = [sys.executable, "-m", "tests.benchmarks.first_films", film]
@@ -135,7 +135,7 @@ def notes_of(film: str) -> list[Note]:
 
 
 def _is_kernel(name: str) -> bool:
-    """Whether a module has it under its name, unlike what is made within functions."""
+    """Return whether a module has a kernel of this name; one made within a function has none."""
     try:
         return hasattr(find(name), "signatures")
     except AttributeError:

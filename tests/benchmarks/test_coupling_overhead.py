@@ -1,4 +1,4 @@
-"""What the film element costs outside the film: a model that returns a constant."""
+"""Cost of the film element outside the film, measured with a model that returns a constant."""
 
 import sys
 import time
@@ -43,7 +43,7 @@ PAIRS = [("EP", "EP"), ("Rxyz", "Rxyz"), ("RotVec", "RotVec"), ("ground", "RotVe
 @pytest.mark.benchmark
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
 def test_share_of_a_film(pair):
-    """Of the time of a plain film with its tangent: the force 13 to 16 %, the Jacobian 13 to 23 %.
+    """The element's share of the time of a plain film with its tangent: force 13 to 16 %, Jacobian 13 to 23 %.
 
     The force goes through Exudyn, with its conversion of coordinates to lists and of the force back.
     """

@@ -37,7 +37,7 @@ def test_modal_step_over_the_rigid_one(name):
 
 
 def test_film_jacobian_grows_with_the_modes():
-    """From k to k^2 between 48 and 111 modes; with 48 at most 1.2 ms."""
+    """The time grows at most as k^2 between 48 and 111 modes k; with 48 modes it is at most 1.2 ms."""
     pairs = ((0.1, False), (0.05, False), (0.1, True), (0.05, True))
     runs = dict(bushes.jacobian_run(bushes.modal(tolerance, tilted)) for tolerance, tilted in pairs)
     times = {k: min(bushes.seconds(call) for _ in range(300)) for k, call in runs.items()}

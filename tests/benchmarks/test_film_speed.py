@@ -105,7 +105,7 @@ def _sor(kx, kz, b, pc, relax, tolerance, P):
 
 
 class _RelaxedFilm:
-    """The same film, solved by SOR from the last pressure, tangent by forward differences of all ten components."""
+    """A film solved by SOR from the last pressure, its tangent by forward differences of all ten components."""
 
     def __init__(self, bearing, relax, tolerance):
         self.model, self.relax, self.tolerance = build_model(bearing), relax, tolerance
@@ -148,7 +148,7 @@ class _RelaxedFilm:
 
 @pytest.mark.parametrize(("n_theta", "n_z"), GRIDS)
 def test_against_sor(make_bearing, n_theta, n_z, capsys):
-    """At least 15 times faster than SOR with its best relaxation and a difference tangent, in the same run.
+    """The film is at least 15 times faster than SOR with its best relaxation and a difference tangent, in one run.
 
     SOR stops when the largest change in a sweep falls below a share of the peak. The ratio counts at the loosest
     tolerance that keeps the force's error below 1e-8, which an implicit solver with a Newton tolerance of 1e-6 needs

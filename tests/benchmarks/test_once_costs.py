@@ -1,4 +1,4 @@
-"""What is paid once; ``-m benchmark``.
+"""Limits of the costs paid once; ``-m benchmark``.
 
 Targets: 20 s for the first film with an empty kernel cache, of which 8 s in the process that waits for it, 2 s from the
 cache, 10 s for an impedance map, 3 s for modes.

@@ -1,4 +1,4 @@
-"""What each law costs over the plain film: factor of one accepted step (three evaluations, two tangents, one history).
+"""Cost of each law over the plain film: factor of one accepted step (three evaluations, two tangents, one history).
 
 Interleaved minima of one thread; the limits are the targets with a margin for a noisy machine.
 """

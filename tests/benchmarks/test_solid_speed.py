@@ -53,7 +53,7 @@ def test_two_threads_are_faster(rule):
 
 
 def test_assembly_against_an_established_package():
-    """The same element, points and material in FElupe, whose material is differentiated by tensortrax."""
+    """Compare with FElupe on one element, point rule and material; tensortrax differentiates its material."""
     felupe = pytest.importorskip("felupe")
     solid, displacements = deformed_solid(GAUSS27)
     lam, mu = solid.material.lame

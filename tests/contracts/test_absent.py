@@ -1,4 +1,4 @@
-"""What is off is not called: nothing of an effect's modules runs in a film without it, and with it something does.
+"""Absent effects are not called: nothing of an effect's modules runs in a film without it, and with it something does.
 
 Every function, kernel and method of the modules that belong to an effect alone is replaced
 by one that raises, wherever it is bound. Films then give the bits that they gave before.

@@ -1,4 +1,4 @@
-"""What every cavitation closure keeps, with both film models."""
+"""Contract of every cavitation closure, with both film models."""
 
 from __future__ import annotations
 

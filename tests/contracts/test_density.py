@@ -109,7 +109,7 @@ def test_rates_at_an_instant_are_exact(pressure):
 
 @pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
 def test_vanishing_coefficient_recovers_the_incompressible_film(cavitation):
-    """With the first order in the coefficient."""
+    """The difference to the incompressible film is of first order in the coefficient."""
     plain = make(None, cavitation=cavitation).evaluate(MOTION).wrench
     errors = []
     for a in (1e-11, 1e-12):

@@ -57,7 +57,7 @@ def check_evaluation(model, motion, history, step, evaluation, directions):
 
 
 def check_mass(model, evaluation, history, step):
-    """What flows in at prescribed vertices is what the film's content gains, to round-off of the flows."""
+    """The inflow at prescribed vertices equals the gain of the film's content, to round-off of the flows."""
     after, s = evaluation.history(), model.solver
     inflow = s.inflow()
     # without squeeze the film has no memory: what flows in flows out

@@ -1,4 +1,4 @@
-"""What every law and every pair of laws must keep: exact tangent, recovery of the constant law, nothing when absent."""
+"""Contract of every law and pair of laws: exact tangent, recovery of the constant law, no cost when absent."""
 
 import dataclasses
 import itertools
@@ -219,7 +219,7 @@ def test_finite_over_the_range_of_states(speed, eccentricity):
 
 
 def test_no_pressure_in_a_bearing_is_a_status():
-    """With the loads of a law that goes on in a line, and their exact tangent: Newton's method comes back by them."""
+    """Loads are those of a law continued in a line, with their exact tangent, by which Newton's method returns."""
     far = make(pressure=ehd.BarusPressure(coefficient=1e-5)).evaluate(MOTION)
     assert far.status is ehd.Status.NO_PRESSURE
     assert np.all(np.isfinite(far.wrench)) and np.all(np.isfinite(far.tangent()))

@@ -1,5 +1,5 @@
-"""What every effect of the surfaces keeps, with every closure it goes with:
-exact tangent, off costs nothing, limits, robustness."""
+"""Contract of every effect of the surfaces, with every closure that supports it:
+exact tangent, no cost when off, limits, robustness."""
 
 import math
 
@@ -123,7 +123,7 @@ def test_tangent_in_contact(closure):
 
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_absent_effects_leave_every_seam_empty(closure):
-    """What nothing stands in calls nothing, see test_absent.py."""
+    """Empty seams call nothing, see test_absent.py."""
     off = bearing(cavitation=CLOSURES[closure], asperity=None, roughness=None, profile=None, wear=None, bush=None)
     effects = build_model(off).effects
     assert (effects.gap_terms, effects.contacts, effects.flux) == ((), (), ())

@@ -26,7 +26,7 @@ LOAD = [0.2, -1.0, 0.0]
 
 @dataclasses.dataclass
 class Body:
-    """What a test needs of a body in a system.
+    """A body in a system, with what a test needs to join and mark it.
 
     ``item`` is what the joint gets, ``point`` its place (None: a marker gives it), ``marker`` the function that makes a
     rigid marker there.

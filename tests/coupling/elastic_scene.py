@@ -227,8 +227,8 @@ class Scene:
         return float(np.sum((bush.solid.force(u, v) - bush.solid.force(u)) * v))
 
     def energy_error(self):
-        """What the balance of energy lacks over the run, as a share of what the film took; integrals by the trapezoidal
-        rule."""
+        """Error of the energy balance over the run, as a share of the energy that the film dissipates; integrals by the
+        trapezoidal rule."""
         t, rows, history = np.array(self.times), np.array(self.rows), self.joint.history
         assert np.allclose(history.time, t, rtol=0, atol=1e-12)
         kinetic, elastic, power, damping = rows[:, :4].T

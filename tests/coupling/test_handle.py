@@ -1,4 +1,4 @@
-"""What a joint has computed: its film at the last accepted state, pictures."""
+"""Results of a joint: its film at the last accepted state, pictures."""
 
 import numpy as np
 import pytest

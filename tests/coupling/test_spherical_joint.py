@@ -88,7 +88,7 @@ PAIRS = [p for p in itertools.product(("ground", "EP", "Rxyz", "2D"), repeat=2) 
     ],
 )
 def test_jacobian_is_the_derivative_of_the_force(socket, ball):
-    """As in `tests/coupling/element/test_jacobian.py`: with differences of 2e-8 in places, 1e-6 of a block."""
+    """Central differences of 2e-8 in places and 1e-4 in rates agree to 2e-6 of a row's largest entry."""
     rng = np.random.default_rng(1)
     bearing = ehd.SphericalBearing(
         ball_radius=0.05, radial_clearance=1e-3, lubricant=OIL, n_phi=16, n_chi=6, cavitation=ehd.FullSommerfeld()
@@ -185,7 +185,7 @@ def test_thin_oil_moves_like_exudyns_ideal_joint():
 
 
 def test_a_static_solve_rests_on_the_wall():
-    """From a place in the wall's range: a film at rest has no stiffness."""
+    """The start place lies in the wall's range, since a film at rest has no stiffness."""
     mbs = scenes.new_system()
     inertia, start = InertiaCuboid(7800, list(SIZE)), [1e-6, 0, -29e-6]
     body = mbs.CreateRigidBody(inertia=inertia, initialDisplacement=start, gravity=[0, 0, -9.81])
@@ -355,7 +355,7 @@ def test_errors_of_the_steps(viscosity):
 
 
 def test_the_audit_of_a_run():
-    """What the record tells: coarse steps by the number that would do, and the worst films."""
+    """The audit of the record names a sufficient number of steps and the worst films."""
     joint = swung(0.006, 80)
     audit = joint.audit()
     found = audit["time step"]

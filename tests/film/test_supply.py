@@ -89,7 +89,7 @@ def test_rows_lie_on_the_edges_of_circumferential_grooves():
 
 
 def test_rows_lie_on_the_edges_of_any_areas():
-    """With four intervals at least beside them, not many more than asked for; a smooth field is integrated as such."""
+    """Rows lie on the edges, with few more than asked for and at least four intervals outside the areas."""
     rng = np.random.default_rng(4)
     for _ in range(30):
         z, length = rng.uniform(-0.015, 0.015), LENGTH * rng.uniform(0.01, 0.35)
@@ -213,7 +213,7 @@ def test_small_holes_feed_as_the_well_model_of_a_square_grid():
 
 
 def test_factors_of_a_hole_follow_its_size_and_place():
-    """Of 60 sizes, and of places between two columns: none is far from the next one's, and the tables agree."""
+    """Factors of 60 sizes and of places between two columns change smoothly, and agree with the tables."""
     rng = np.random.default_rng(9)
     rows = (-9.0, -6.0, -3.5, -1.5, 0.0, 1.5, 4.0, 7.0, 10.0)
     for radius in rng.uniform(0.5, 3.0, 3):

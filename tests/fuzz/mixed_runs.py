@@ -32,7 +32,7 @@ POLYMER = ehd.SaintVenantKirchhoff(youngs_modulus=3.0e9, poisson_ratio=0.38, den
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Scene:
-    """What a seed stands for.
+    """Random scene made from one seed.
 
     Attributes
     ----------
@@ -321,7 +321,7 @@ class Model:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What became of a run: rows and the smallest step over those asked for, and the error that ended it or None."""
+    """Outcome of a run: rows and smallest step over those asked for, history, and the error that ended it or None."""
 
     rows: float
     smallest: float

@@ -131,7 +131,7 @@ def edge_contact():
 
 @hard_case("edge contact without contact", rejected=60, newton=20.0)
 def edge_without_contact():
-    """The same scene without contact has no film once the edge touches: it must stop with the error that names it."""
+    """Edge tilt without contact: there is no film once the edge touches, and the run must stop with that error."""
     rotor = edge_tilt(None)
     run = rotor.run(0.02, 1e-4, fails=True)
     text = str(run.error)

@@ -135,8 +135,8 @@ def soft_liner():
 
 @hard_case("soft liner pressed through its film", rejected=40, newton=10.0)
 def liner_touches():
-    """At its ends a liner carries no pressure and does not deflect: there the
-    gap closes first, for want of a contact."""
+    """A liner carries no pressure at its ends and does not deflect there: without a contact the gap closes there
+    first."""
     rotor, period = swinging_liner(1500.0)
     run = rotor.run(6 * period, period / 60, fails=True)
     text = str(run.error)
@@ -147,7 +147,7 @@ def liner_touches():
 
 @hard_case("soft liner pressed onto its edges", newton=5.0, slow=True)
 def liner_on_its_edges():
-    """The same with a wall, that presses on the liner: the ends deflect, by more than the clearance leaves."""
+    """Soft liner with a wall that presses on it: the ends deflect by more than the clearance leaves."""
     rotor, period = swinging_liner(1500.0, contact=ehd.RegularisedWall(onset=0.02 * CLEARANCE))
     run = rotor.run(6 * period, period / 60)
     h = run.history

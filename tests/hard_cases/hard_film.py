@@ -87,7 +87,7 @@ def step_load_mass_conserving():
 
 @hard_case("mass-conserving orbit, vented cavity")
 def step_load_vented():
-    """The same with the cavity at ambient pressure, fed by a groove alone: the ends give no oil back."""
+    """Step load with the cavity at ambient pressure, fed by a groove alone: the ends give no oil back."""
     groove = ehd.AxialGroove(angle=0.5 * math.pi, width_angle=0.3, pressure=1e5)
     made = bearing(cavitation=ehd.ElrodAdams(), supply=(groove,))
     rotor, run = step_load(made)
@@ -134,7 +134,7 @@ def tilted_orbit(closure):
 
 @hard_case("tilted Gümbel bearing, t_c = 0.3")
 def tilted_gumbel():
-    """Where other codes cycle: a tilted bearing whose clipped pressures change sides at each iteration."""
+    """Tilted bearing on which other codes cycle: its clipped pressures change sides at each iteration."""
     return tilted_orbit(ehd.Gumbel())
 
 

@@ -34,8 +34,8 @@ def load_reversal():
 
 @hard_case("reversed rotation")
 def reversed_rotation():
-    """The same orbit turned backwards: upstream and downstream, rupture and
-    reformation change places, to the last digits."""
+    """An orbit and its mirror image with reversed spin: upstream and downstream, rupture and reformation change
+    places."""
     made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
     runs = [Rotor(made, load=(0.0, -2000.0), speed=sign * SPEED).run(0.02, 2e-4) for sign in (1.0, -1.0)]
     one, other = (run.history for run in runs)
@@ -88,7 +88,7 @@ def nothing_moves():
 
 @hard_case("let go at rest, then turned")
 def released():
-    """From perfect rest the speed jumps within one step: from a film without any pressure to a full one."""
+    """The speed jumps from rest within one step: from a film without any pressure to a full one."""
     made = bearing()
     angle = (lambda t: SPEED * max(t - 2e-3, 0.0), lambda t: SPEED if t > 2e-3 else 0.0)
     rotor = Rotor(made, speed=angle, position=(0.0, -0.8 * CLEARANCE))

@@ -266,9 +266,10 @@ def balance_error(model):
 
 
 def beyond_law(model, motion, past):
-    """Whether the film of constant density and viscosity exceeds what the oil's laws reach.
+    """Return whether the film of constant density and viscosity exceeds the largest pressure of the oil's laws.
 
-    Of films with a density law and the line inside the cells: or the one with its line on the vertices has no pressure.
+    With a density law and the line inside the cells it suffices that the film with its line on the vertices has no
+    pressure.
     """
     law = model.effects.pressure_law
     if law is None:
@@ -292,13 +293,13 @@ def beyond_law(model, motion, past):
 
 
 def feeds(bearing):
-    """Whether an end or a supply has more than the cavity's pressure."""
+    """Return whether an end or a supply has more than the cavity pressure."""
     known = (*bearing.end_pressures, *(area.pressure for area in bearing.supply))
     return max(known) > bearing.cavitation.cavity_pressure
 
 
 def check(model, evaluation, past):
-    """What is wrong with an evaluation from the ``past`` (history, step), or None; and its balance error."""
+    """Return the fault of an evaluation from the ``past`` (history, step), or None; and its balance error."""
     if evaluation.status is ehd.Status.NO_PRESSURE and beyond_law(model, evaluation.motion, past):
         return SOLID, 0.0
     if evaluation.status is ehd.Status.NO_OIL and past[0] is None and not feeds(model.bearing):
@@ -326,8 +327,8 @@ def check(model, evaluation, past):
 
 
 def check_map(model, evaluation):
-    """What is wrong with an evaluation of an impedance map, or None: beyond its
-    table it must say so, within it heat what it brakes."""
+    """Return the fault of an evaluation of an impedance map, or None: beyond its table it must have that status, within
+    it the power loss must not be negative."""
     motion = evaluation.motion
     inside = math.hypot(*motion[:2]) <= model.bearing.film.largest_eccentricity_ratio * CLEARANCE
     if evaluation.status is not (ehd.Status.CONVERGED if inside else ehd.Status.OUTSIDE_MAP):

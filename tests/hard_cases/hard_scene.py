@@ -50,7 +50,7 @@ class Run:
 
     @property
     def history(self) -> ehd.JointHistory:
-        """Of the first joint."""
+        """History of the first joint."""
         return self.histories[0]
 
     @property

@@ -1,4 +1,4 @@
-"""What Exudyn's solvers are asked: coarse and fine steps, explicit and implicit, restarts."""
+"""Hard cases of Exudyn's solvers: coarse and fine steps, explicit and implicit, restarts."""
 
 from __future__ import annotations
 

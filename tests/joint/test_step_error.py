@@ -103,7 +103,7 @@ def test_what_is_not_known():
 
 @pytest.mark.parametrize("steps", [50, 100, 200])
 def test_lag_of_a_liner(steps):
-    """Of a stiff film on it: h/2 times the acceleration of its deflection, less what the film forgets in a step."""
+    """Lag of a stiff film on a liner: h/2 times the acceleration of its deflection, less what it forgets in a step."""
     time = np.linspace(0.0, 2.0 * np.pi / SPEED, steps + 1)
     h, motion = time[1], np.zeros((steps + 1, 10))
     angle = SPEED * time

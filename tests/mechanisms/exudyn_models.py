@@ -178,8 +178,8 @@ def outcomes(case: Case) -> tuple[Outcome, Outcome, Outcome, Outcome]:
 
 
 def energy_error(real: Outcome, ideal: Outcome) -> float:
-    """Of the energy that has gone beside the films' share of it, over that; what the steps of a run leave open without
-    films (its integrator, the sum over time of the power of springs and drives) is none of theirs."""
+    """Error of the energy balance over the energy that the films dissipate. The error of the run without films (of its
+    integrator, and the sum over time of the power of springs and drives) is subtracted."""
     return abs((real.lost - ideal.lost) / real.dissipated - 1.0)
 
 

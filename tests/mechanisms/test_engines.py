@@ -46,7 +46,7 @@ def lowest(history):
 
 @pytest.mark.parametrize("law", sample(list(LAWS)))
 def test_cavities_that_close_under_a_pressure_law(planar_rotor, law):
-    """Where a cavity closes, the film of a stiff oil has no pressure at the speed of before, however short the step:
+    """The film of a stiff oil has no pressure at the start-of-step speed when a cavity closes, however short the step:
     Newton's method has to come back from there, or no step is short enough."""
     history = swinging(planar_rotor, law, 100, 0.6)
     assert history.time[-1] == pytest.approx(3.0 * CYCLE)

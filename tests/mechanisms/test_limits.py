@@ -25,8 +25,8 @@ def _bearing(**options):
 
 @pytest.mark.slow
 def test_slider_crank_converges_to_the_ideal_joint(example):
-    """With viscosity proportional to clearance the film's scale of force grows
-    as 1/c, so that e = eps c falls as c^2."""
+    """The film's scale of force grows as 1/c if viscosity is proportional to clearance, so that e = eps c falls as
+    c^2."""
     slider_crank = example("slider_crank")
     ideal = slider_crank.simulate(None, turns=2, steps_per_turn=360)
     late = ideal.angle >= 2 * math.pi - 1e-6

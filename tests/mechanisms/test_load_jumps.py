@@ -69,7 +69,7 @@ class Scene:
         self.mass = between(0.005, 0.5) * min(*critical, 20.0 * math.hypot(*self.load) / 9.81)
 
     def share(self, time):
-        """Of the change that has set in."""
+        """Share of the change of load that has set in."""
         s = time - self.begin
         if s <= 0.0:
             return 0.0

@@ -58,7 +58,7 @@ PICTURES = {
 
 
 def pixels(figure):
-    """What a user's own ``savefig`` writes."""
+    """Pixels that a user's own ``savefig`` writes."""
     file = io.BytesIO()
     figure.savefig(file, dpi=60, format="rgba")
     return np.frombuffer(file.getvalue(), np.uint8)
@@ -72,7 +72,7 @@ def test_pictures_do_not_take_over_type_that_others_left(name, film, history):
 
 
 def test_exudyn_leaves_large_type_behind():
-    """What the pictures have to be immune to; where this fails they need it no longer."""
+    """Exudyn changes matplotlib's font size for good; if this test fails, the pictures no longer need their guard."""
     assert "rcParams.update({'font.size': fontSize})" in inspect.getsource(exudyn.plot.PlotSensor)
 
 

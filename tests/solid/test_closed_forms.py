@@ -174,7 +174,7 @@ def test_free_thin_ring_swings_in_plane_at_the_closed_form_frequencies(rule):
 
 @pytest.mark.parametrize(("counts", "sound"), [((1, 1, 16), False), ((2, 1, 16), True), ((1, 2, 16), True)])
 def test_reduced_integration_needs_two_rows_of_elements(counts, sound):
-    """With 8 points a ring of one row of elements has mechanisms besides its six rigid motions; two rows lock them."""
+    """A ring of one row of elements with 8 points has mechanisms besides its six rigid motions; two rows lock them."""
     axial, radial, around = counts
     mesh = HollowCylinder(
         inner_radius=0.225, thickness=0.05, length=0.2, axial=axial, radial=radial, circumferential=around

@@ -20,7 +20,7 @@ SMALL = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=2, 
 
 
 def straightened(mesh):
-    """The same mesh with mid-edge nodes half way between the corners."""
+    """Return the mesh with mid-edge nodes half way between the corners."""
     nodes = mesh.nodes.copy()
     edges = mesh.elements[:, EDGES].reshape(-1, 3)
     nodes[edges[:, 2]] = (nodes[edges[:, 0]] + nodes[edges[:, 1]]) / 2

@@ -22,7 +22,7 @@ FINE, DIRECTIONS = {"n_theta": 384, "n_z": 32}, 9
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Question:
-    """What a seed stands for: a bearing, where it works and what is asked."""
+    """Question made from one seed: a bearing, its working point and the quantity asked for."""
 
     bearing: ehd.JournalBearing
     eccentricity_ratio: float
@@ -33,7 +33,7 @@ class Question:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What `recommend` said, and the true error of the film that it named (nan: none was named)."""
+    """Advice of `recommend`, and the true error of the film that it named (nan: none was named)."""
 
     advice: ehd.Recommendation
     true: float

@@ -176,7 +176,7 @@ def test_input_is_checked(change, message):
 
 
 class Deferred:
-    """What a dask Client hands out: futures of its own kind."""
+    """Executor that returns futures of its own kind, as a dask Client does."""
 
     def submit(self, function, *arguments):
         return function, arguments
@@ -265,7 +265,7 @@ def test_an_interrupted_study_cancels_its_rows(tmp_path, monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["loky", "dask", "mpi4py.futures"])
 def test_executors_of_other_packages(kind, point, table):
-    """Of packages that are no extras of this one: where they are installed."""
+    """Executors of packages that are no extras of this one; skipped unless they are installed."""
     with contextlib.ExitStack() as open_ones:
         if kind == "loky":
             pool = pytest.importorskip("loky").ProcessPoolExecutor(2)

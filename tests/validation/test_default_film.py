@@ -106,7 +106,7 @@ def test_a_path_over_columns_is_smooth(make_bearing, measured, eps):
 
 
 def test_on_vertices_the_place_of_a_column_shows(make_bearing):
-    """What the line inside the cells is for: on the vertices K is off by several per cent in some directions."""
+    """The line inside the cells is needed: with it on the vertices K is off by several per cent in some directions."""
     fine = _model(make_bearing, 1.0, film=ehd.FiniteLength(n_theta=384, n_z=32))
     plain = _model(make_bearing, 1.0, cavitation=ehd.SwiftStieber(line_in_cells=False))
     found = worst_errors(plain, fine, (0.6, 0.8))

@@ -1,4 +1,4 @@
-"""What averaging across the film costs: `FilmEnergy` against a solution with a temperature profile across the film.
+"""Error of averaging across the film: `FilmEnergy` against a solution with a temperature profile across the film.
 
 And what is left of it with two temperatures across the film, ``across=2``.
 

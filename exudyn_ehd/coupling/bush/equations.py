@@ -20,7 +20,7 @@ from exudyn_ehd.coupling.bush.rigid_part import RigidPart
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.items.carrier import Carrier
 from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
-from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces, factor
+from exudyn_ehd.solid.loads import BushLoad, FollowerPressure, dead_forces, factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import RunError
 
@@ -62,7 +62,7 @@ class BushEquations:
         held: np.ndarray,
         slaved: np.ndarray,
         carrier: Carrier | None,
-        loads: Sequence[Load],
+        loads: Sequence[BushLoad],
         mass_rate: float,
         contained: RigidPart | None,
     ) -> None:

@@ -22,7 +22,7 @@ from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions,
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.elements.faces import face_of
-from exudyn_ehd.solid.loads import Load
+from exudyn_ehd.solid.loads import BushLoad
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
@@ -191,7 +191,7 @@ def CreateFlexibleBush(
     position: Sequence[float] = (0.0, 0.0, 0.0),
     rotationMatrix: np.ndarray | None = None,
     supports: Sequence[Support] = (),
-    loads: Sequence[Load] = (),
+    loads: Sequence[BushLoad] = (),
     initialVelocity: Sequence[float] = (0.0, 0.0, 0.0),
     initialAngularVelocity: Sequence[float] = (0.0, 0.0, 0.0),
     show: bool = True,
@@ -314,7 +314,7 @@ def add_bush(
     *,
     fixed: bool = False,
     supports: Sequence[Support] = (),
-    loads: Sequence[Load] = (),
+    loads: Sequence[BushLoad] = (),
     start: tuple[np.ndarray, np.ndarray] = (np.zeros(3), np.zeros(3)),
     show: bool = True,
     color: Sequence[float] = (0.6, 0.6, 0.7, 1.0),

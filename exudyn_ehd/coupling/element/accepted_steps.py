@@ -41,7 +41,7 @@ from exudyn_ehd.status import OverloadWarning, Status
 SAME_TIME = 1e-3
 
 
-class Film(Protocol):
+class SteppedElement(Protocol):
     """Element of a joint, as its accepted steps use it.
 
     Attributes
@@ -90,7 +90,7 @@ class AcceptedSteps:
 
     Parameters
     ----------
-    film : Film
+    film : SteppedElement
         The element.
 
     Attributes
@@ -130,9 +130,9 @@ class AcceptedSteps:
         Tangent of the film's wrench that Newton's method of an implicit run has evaluated last.
     """
 
-    def __init__(self, film: Film) -> None:
+    def __init__(self, film: SteppedElement) -> None:
         # the element holds its steps: without a circle it goes as soon as its system does
-        self.film: Film = weakref.proxy(film)
+        self.film: SteppedElement = weakref.proxy(film)
         self.start = self.began = np.nan
         self.solver: solver_state.Solver | None = None
         self.control: GapWatch | None = None

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.coupling.bush.object import FlexibleBush
-from exudyn_ehd.coupling.contract import CURRENT, Evaluation, Index, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, Index, JointEvaluation, Side, Trial
 from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
@@ -55,7 +55,7 @@ class NodalFilmElement(BoreFilmElement):
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
         self.place = bush.mesh.bore.positions
         self.count = len(self.place)
-        self._nodal: tuple[Evaluation | None, np.ndarray] = (None, np.zeros((0, 3)))
+        self._nodal: tuple[JointEvaluation | None, np.ndarray] = (None, np.zeros((0, 3)))
         self.arms = np.zeros((self.count, 3))
         self.drift = np.zeros((self.count, 3))
 
@@ -79,7 +79,7 @@ class NodalFilmElement(BoreFilmElement):
             self._nodal = evaluation, evaluation.nodal_forces()
         return complete(self.arms @ self.sides[0].frame[:, :3], evaluation.wrench, self._nodal[1])
 
-    def _quantities(self, evaluation: Evaluation) -> dict[str, float]:
+    def _quantities(self, evaluation: JointEvaluation) -> dict[str, float]:
         assert isinstance(evaluation, ElasticEvaluation)
         out = dict(evaluation.quantities())
         # the model knows the work on the radial displacement only, not that of the spread forces

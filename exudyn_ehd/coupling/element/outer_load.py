@@ -44,7 +44,7 @@ from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, SUDDEN, departure
 
 UNKNOWN = np.full(LOADS, np.nan)
-_State: TypeAlias = tuple[float, np.ndarray, np.ndarray]
+_LoadState: TypeAlias = tuple[float, np.ndarray, np.ndarray]
 # Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
 JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
 # Samples within a step; a pulse is seen if it is longer than a step over their number. Each costs a call of every load.
@@ -189,8 +189,8 @@ class OuterLoad:
         self.is_known = solver_state.is_implicit(solver)
         self.is_heavy, self.places = False, list[int]()
         # times, velocities and accelerations of the last accepted state, and of the one before the state at hand
-        self.state: _State | None = None
-        self.before: _State | None = None
+        self.state: _LoadState | None = None
+        self.before: _LoadState | None = None
 
     def take(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> None:
         """Keep the load at a state, an accepted one."""
@@ -203,12 +203,12 @@ class OuterLoad:
             if self.is_heavy and not begins:
                 self.before, self.state = self._before(time), self._state(mbs, where, time)
 
-    def _state(self, mbs: exu.MainSystem, where: exu.ConfigurationType, time: float) -> _State:
+    def _state(self, mbs: exu.MainSystem, where: exu.ConfigurationType, time: float) -> _LoadState:
         data, places = mbs.systemData, self.places
         rates, demanded = data.GetODE2Coordinates_t(where), data.GetODE2Coordinates_tt(where)
         return time, np.asarray(rates)[places], np.asarray(demanded)[places]
 
-    def _before(self, time: float) -> _State | None:
+    def _before(self, time: float) -> _LoadState | None:
         """The state accepted before a time; the end of a run is taken more than once."""
         return self.state if self.state is not None and self.state[0] < time else self.before
 

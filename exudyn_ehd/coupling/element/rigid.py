@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Evaluation, Index, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, JointEvaluation, JointModel, Side, Trial
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
@@ -31,7 +31,7 @@ from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_b
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
-from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
+from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.status import Status
 
 if TYPE_CHECKING:
@@ -378,14 +378,14 @@ class FilmElement:
         self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
     ) -> FilmFields:
         """Fields of the film at the last trial, that of the state in ``configuration``."""
-        assert isinstance(trial.evaluation, BearingEvaluation)
+        assert isinstance(trial.evaluation, Evaluation)
         return film_fields(trial.evaluation, time, self.bush_displacement(trial, configuration))
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:
         """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""
         return None
 
-    def _quantities(self, evaluation: Evaluation) -> Mapping[str, float]:
+    def _quantities(self, evaluation: JointEvaluation) -> Mapping[str, float]:
         """Scalars of an evaluation, to which the sides' arrays belong."""
         return evaluation.quantities()
 

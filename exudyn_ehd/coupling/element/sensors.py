@@ -26,7 +26,7 @@ _NO_ROW = np.full(WIDTH, np.nan)
 QUANTITIES = tuple(member.value for member in Quantity)
 
 
-class _State(NamedTuple):
+class _SensedState(NamedTuple):
     """Frames (3, 6) of housing and journal (see `kinematics`), local force and torque (3,) on the housing."""
 
     housing: np.ndarray
@@ -48,7 +48,7 @@ def _transformation(rotation: np.ndarray, place: np.ndarray) -> np.ndarray:
     return np.vstack([np.column_stack([rotation, place]), [0.0, 0.0, 0.0, 1.0]]).ravel()
 
 
-OUTPUTS: dict[str, Callable[[_State], np.ndarray]] = {
+OUTPUTS: dict[str, Callable[[_SensedState], np.ndarray]] = {
     "Position": lambda s: s.housing[:, 3],
     "Velocity": lambda s: s.housing[:, 4],
     "HomogeneousTransformation": lambda s: _transformation(s.housing[:, :3], s.housing[:, 3]),
@@ -64,7 +64,7 @@ OUTPUTS: dict[str, Callable[[_State], np.ndarray]] = {
     "Torque": lambda s: s.housing[:, :3] @ s.torque,
     "TorqueLocal": lambda s: s.torque,
 }
-"""What a sensor can read by the name of Exudyn's OutputVariableType."""
+"""Functions that read a sensor's value, by the names of Exudyn's OutputVariableType."""
 
 
 def reader(
@@ -98,7 +98,7 @@ def reader(
     return asked, read
 
 
-def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) -> _State:
+def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) -> _SensedState:
     """State of the joint; its sides are there once the film was asked."""
     trial = element.current(mbs)[1]
     load = np.full(6, np.nan) if trial.status is not Status.CONVERGED else -trial.found.wrench
@@ -110,7 +110,7 @@ def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) 
         multipliers = mbs.GetObjectOutput(constraint, output.TorqueLocal)
         load[3:] += [multipliers[1], -multipliers[0], 0.0]
     housing, journal = (side.frame.copy() for side in element.sides)
-    return _State(housing, journal, load[:3], load[3:])
+    return _SensedState(housing, journal, load[:3], load[3:])
 
 
 def add_sensor(

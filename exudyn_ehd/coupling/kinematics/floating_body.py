@@ -61,7 +61,7 @@ class BodyIntegrals(NamedTuple):
     damping: np.ndarray
 
 
-class _Place(NamedTuple):
+class _BodyTerms(NamedTuple):
     """Terms of a body that depend on coordinates: G (3, n), s (3,), J (3, 3), R (k, 3, 3), ``T + C z`` (3, k).
 
     The last two depend on rates too: ``sum z_t,i R_i^T`` (3, 3), changes of alpha (3, n).
@@ -92,7 +92,7 @@ class FloatingBody:
         n, k = frame.size, integrals.S.shape[1]
         self.rigid, self.size = n, n + k
         shapes = (3, n), (3,), (3, 3), (k, 3, 3), (3, k), (3, 3), (3, n)
-        self._at = _Place(*(np.zeros(shape) for shape in shapes))
+        self._at = _BodyTerms(*(np.zeros(shape) for shape in shapes))
 
     def mass(self, q: np.ndarray) -> np.ndarray:
         """Mass matrix (n + k, n + k) at q."""

@@ -28,7 +28,7 @@ import numpy as np
 from numba import njit
 
 GROUND, EULER_PARAMETERS, TAIT_BRYAN, ROTATION_VECTOR, PLANAR, POINT, PLANAR_POINT = range(7)
-"""How a node turns; GROUND has no coordinates, points move without turning."""
+"""Kinds of rotation coordinates of a node; GROUND has no coordinates, points move without turning."""
 POINTS = (POINT, PLANAR_POINT)
 
 COORDINATES = {

@@ -21,7 +21,7 @@ NODE_KINDS = {
     "RigidBodyRotVecLG": rigid_nodes.ROTATION_VECTOR,
     "RigidBody2D": rigid_nodes.PLANAR,
 }
-"""How the nodes of rigid bodies turn, by Exudyn's names."""
+"""Kinds of rotation coordinates of rigid-body nodes, by Exudyn's names of the nodes."""
 
 
 class NodeSide:

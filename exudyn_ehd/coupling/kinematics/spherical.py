@@ -17,7 +17,7 @@ from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE, SPIN, VELOCITY
 from exudyn_ehd.joint.spherical.model import SIZE
 
 ROWS = (0, 1, 2, 3, 4, 5, 6, 8, 9, 10)
-"""Of the motion (11,) of `exudyn_ehd.joint.spherical.model` what kernels for ten numbers take; the other one is 0."""
+"""Entries of the motion (11,) of `exudyn_ehd.joint.spherical.model` that kernels of ten entries take; the rest is 0."""
 
 
 def motion_of(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:

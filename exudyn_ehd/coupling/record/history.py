@@ -15,7 +15,7 @@ from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.joint.audit.samples import RecordedSteps
 from exudyn_ehd.joint.step_error import BLOCKS, LOADS
 from exudyn_ehd.pictures.mixins import HistoryPictures
-from exudyn_ehd.pictures.records import History, shown
+from exudyn_ehd.pictures.records import HistoryRecord, shown
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv
@@ -108,7 +108,7 @@ _NAMES = tuple(COLUMNS)[:-1]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class JointHistory(RecordedSteps, History, HistoryPictures):
+class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     """Accepted steps of one joint, first the initial state, last the state now.
 
     All vectors are in the joint frame (fixed in the housing, z = axis), force and moment act on the journal, moment

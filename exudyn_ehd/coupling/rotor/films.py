@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _LOADS, _SIGNS = [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 
 
-class Carrier:
+class SpinningSide:
     """One side of a joint: its node in the system, None for ground, its frame and its Jacobians.
 
     Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t: dp = Jp dx and
@@ -96,7 +96,7 @@ class RotorFilm:
         self.name, self.size = joint.name, system.size
         self.model = plain_model(joint)
         self.bearing = self.model.bearing
-        housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
+        housing, journal = (_spinning_side(joint, side, system) for side in joint.element.sides)
         self.mbs, self.sides = system.mbs, (housing, journal)
         self.frames, self.jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
         turning = [system.ratios.get(int(side.nodes[0]), 0.0) if side.nodes else 0.0 for side in joint.element.sides]
@@ -211,12 +211,12 @@ class RotorFilm:
         } | {name: known[name] for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss")}
 
 
-def _carrier(joint: Joint, side: object, system: SpinningSystem) -> Carrier:
+def _spinning_side(joint: Joint, side: object, system: SpinningSystem) -> SpinningSide:
     if isinstance(side, NodeSide):
         if not side.nodes:
-            return Carrier(side, None)
+            return SpinningSide(side, None)
         if int(side.nodes[0]) in system.nodes:
-            return Carrier(side, system.nodes[int(side.nodes[0])])
+            return SpinningSide(side, system.nodes[int(side.nodes[0])])
     kinds = sorted({system.mbs.GetNode(NodeIndex(int(node)))["nodeType"] for node in getattr(side, "nodes", ())})
     raise InputError(
         f"{WHERE}: both sides of joint '{joint.name}' must be ground, rigid bodies or nodes of types {list(TURNING)}, "

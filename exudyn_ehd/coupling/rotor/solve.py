@@ -40,7 +40,7 @@ SOFTEST = 1e-11
 LIGHTEST = 1e-13
 
 
-class Balance(NamedTuple):
+class ForceBalance(NamedTuple):
     """All forces at a state, in the N directions x.
 
     Attributes
@@ -182,7 +182,7 @@ class EquilibriumSearch:
             tangents.append(evaluation.tangent())
         return evaluations, tangents
 
-    def _balance(self, loads: list[FilmLoads]) -> Balance:
+    def _balance(self, loads: list[FilmLoads]) -> ForceBalance:
         """All forces at the state, for the last derivatives of the system without films."""
         system, size = self.system, sum(part.force @ part.force for part in loads)
         r, error = system.balance(system.q, system.spin())
@@ -207,9 +207,9 @@ class EquilibriumSearch:
         residual = float(np.abs(self.weights * (free @ (free.T @ r))).max()) / scale
         reach = max(float(np.abs(node.position(system.q)).max()) for node in system.nodes.values())
         rounding = ROUNDING * reach * float(np.abs(np.outer(self.weights, self.weights) * K).max()) / scale
-        return Balance(r, K, r_u, free, mend, -inverse.T @ r, residual, rounding)
+        return ForceBalance(r, K, r_u, free, mend, -inverse.T @ r, residual, rounding)
 
-    def _step(self, balance: Balance) -> np.ndarray:
+    def _step(self, balance: ForceBalance) -> np.ndarray:
         """Newton's step (size,)."""
         free, mend = balance.free, balance.mend
         return mend - free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ (balance.r + balance.K @ mend))

@@ -43,7 +43,7 @@ STEP, RATE_STEP = 1e-6, 1e-2
 UNIT = np.eye(3)
 
 
-Rates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
+NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class TurningNode:
@@ -70,7 +70,7 @@ class TurningNode:
         """Place (3,) in space, m."""
         return (self.side.reference + q[self.places])[:3]
 
-    def rates(self, q: np.ndarray, omega: np.ndarray) -> Rates:
+    def rates(self, q: np.ndarray, omega: np.ndarray) -> NodeRates:
         """B (n, 6), the rates (m,) of the rotation's coordinates for omega (3,), and their rates at constant omega."""
         own = q[self.places]
         rates = np.zeros(own.size)
@@ -185,7 +185,7 @@ class SpinningSystem:
         return q
 
     def balance(
-        self, q: np.ndarray, u: np.ndarray, known: Mapping[int, Rates] | None = None, moved: int = -1
+        self, q: np.ndarray, u: np.ndarray, known: Mapping[int, NodeRates] | None = None, moved: int = -1
     ) -> tuple[np.ndarray, np.ndarray]:
         """r (size,) at coordinates q (n,), rates u and u_t = 0, and the constraints' errors (m,).
 

@@ -49,7 +49,7 @@ from exudyn_ehd.solid.linear.solvers import solve_by_products
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Exudyn's stubs lack the self of its solvers' methods.
-Solver: TypeAlias = Any
+DynamicSolver: TypeAlias = Any
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
 # products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
@@ -188,13 +188,13 @@ def SolveDynamicSparse(
     run = SparseRun()
     start = StartGuess([joint.element for joint in joints_of(mbs)], settings)
     before = user_function(mbs, "PreNewtonResidual") or idle("PreNewtonResidual")
-    loop = _Newton(
+    loop = _SparseNewton(
         matrix=SystemMatrix(mbs),
         guess=partial(start.begin, before),
         reuse=FactorReuse() if reuse is None else reuse,
         run=run,
     )
-    solver: Solver = exu.MainSolverImplicitSecondOrder()
+    solver: DynamicSolver = exu.MainSolverImplicitSecondOrder()
     # the loop knows the films, and these the solver: a circle that Python can't see would keep the system alive
     solver.SetUserFunctionNewton(mbs, weakref.proxy(loop))
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
@@ -229,7 +229,7 @@ def _require_offered(integration: Any) -> None:
 
 
 @dataclass(kw_only=True, eq=False)
-class _Newton:
+class _SparseNewton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
@@ -241,7 +241,7 @@ class _Newton:
     baseline: int = 0
     excess: int = 0
 
-    def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
+    def __call__(self, solver: DynamicSolver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
         # Exudyn's Newton method forgets the multipliers of the step before, too
         state_of(mbs)[3][:] = 0.0
@@ -289,7 +289,7 @@ class _Newton:
             return not renewable and age <= FILMS_FIRST // 2
         return not renewable or iteration <= FILMS_FIRST
 
-    def _factorise(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
+    def _factorise(self, solver: DynamicSolver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         """Make the factor where there is none, else renew what is beside the meshes where only films join the two.
 
         Return False if the matrix is singular, upon which the step is rejected.
@@ -315,7 +315,7 @@ class _Newton:
         self.run.factor_bytes = self.factor.nbytes
         return True
 
-    def _solve(self, solver: Solver, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
+    def _solve(self, solver: DynamicSolver, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
         """Newton's step: with the factor, or with it and the films' operators."""
         assert self.factor is not None
         films = self.matrix.film_operators(mbs, solver)
@@ -340,7 +340,7 @@ class _Newton:
         load[touched] = solve_by_products(product, -forces(d), wanted, FILM_PRODUCTS)
         return d + factor.solve(load)
 
-    def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
+    def _update(self, solver: DynamicSolver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
         d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
         self.run.seconds_solve += time.perf_counter() - start

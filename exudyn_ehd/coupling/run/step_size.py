@@ -51,10 +51,10 @@ SHORTENED, ROUNDING = 0.99, 1e-6
 NEVER = 10**9
 
 
-_State: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np.ndarray | None]
+_StepState: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np.ndarray | None]
 
 
-class _Joint:
+class _JointError:
     """The error of one joint: at the start of the step, and behind the one at hand."""
 
     def __init__(self, film: FilmElement, error: float) -> None:
@@ -62,8 +62,8 @@ class _Joint:
         # start and size of the last step tried, and what a jump in it may make
         self.jump = (math.nan, 0.0, 0.0)
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
-        self.states: list[_State] = []
-        self.now: _State | None = None
+        self.states: list[_StepState] = []
+        self.now: _StepState | None = None
         self.before = list(NO_BALL_ERROR if film.failures.axes == 3 else NO_ERROR)
         self.after, self.wanted = self.before, math.inf
 
@@ -148,7 +148,7 @@ class StepSize:
         run, solution = settings.timeIntegration, settings.solution
         self.begin, self.end = run.startTime, run.endTime
         self.usual = (self.end - self.begin) / run.numberOfSteps
-        self.joints = [_Joint(film, error) for film in films]
+        self.joints = [_JointError(film, error) for film in films]
         self.periods = [solution.file.writePeriod] if solution.file.write else []
         self.periods += [solution.sensors.writePeriod] if sensors else []
         self.beyond = 2.0 * run.discontinuous.iterationTolerance

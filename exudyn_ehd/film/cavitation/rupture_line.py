@@ -98,6 +98,8 @@ class RuptureLine:
     def gradients(
         self,
         work: Workspace,
+        places: np.ndarray,
+        weights: np.ndarray,
         gaps: tuple[np.ndarray, np.ndarray],
         flux: LinkFlux | None,
         speeds: tuple[float, float],
@@ -105,11 +107,12 @@ class RuptureLine:
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> LineGradients:
-        """`LineGradients` of the last solution, to the film's ``gaps`` at vertices and links."""
-        places = np.flatnonzero(self.s < 1.0)
+        """`LineGradients` of the last solution at vertices ``places`` (c,) with their `weights`.
+
+        They are derivatives to the film's ``gaps`` at vertices and links.
+        """
         rows, by = work.number.reshape(-1)[places], np.zeros((8, places.size))
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        weights = self.weights(places)
         line_gradients(places, weights, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
         return LineGradients(rows, places, by)
 

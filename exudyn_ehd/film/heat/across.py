@@ -32,7 +32,8 @@ from numba import njit
 from numpy.polynomial import Polynomial
 
 from exudyn_ehd.film.differences import drops, to_ends
-from exudyn_ehd.film.heat.energy import downstream_weight, passed
+from exudyn_ehd.film.heat.energy import ViscosityField, downstream_weight, passed
+from exudyn_ehd.film.reynolds.links import LinkFlux
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
@@ -76,6 +77,33 @@ def flow_factors(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     """Factors (n, m) of conductance, carrier and shear stress for the fluidities (n, m, 4) at Lobatto's points."""
     J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)
     return 12.0 * (J2 - J1 * J1 / J0), 2.0 * (1.0 - J1 / J0), 1.0 / J0
+
+
+class FluidityField(ViscosityField):
+    """Viscosity over the height of a film: flux effect and shear factor.
+
+    Attributes
+    ----------
+    vertices, along, across : (n, m, 4) arrays
+        1 over the viscosity's ratio at Lobatto's points: at vertices, on links in theta and z.
+    """
+
+    changes_carriers = True
+
+    def set(self, ratio: np.ndarray) -> None:
+        """Take over the ratio at the vertices at Lobatto's points (n, m, 4); links take the mean of their vertices."""
+        self.vertices = 1.0 / ratio
+        self.along, self.across = on_links(self.vertices)
+        self.inverse_x, self.carried_x, _ = flow_factors(self.along)
+        self.inverse_z, self.carried_z, _ = flow_factors(self.across)
+        self.ratio = flow_factors(self.vertices)[2]
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Multiply conductances and carriers by their factors on the links."""
+        super().apply(flux, gap_x, gap_z, vx, vz)
+        for carriers, factor in (((flux.cx, flux.cx_h), self.carried_x), ((flux.cz, flux.cz_h), self.carried_z)):
+            for carrier in carriers:
+                carrier *= factor
 
 
 class Shapes(NamedTuple):

@@ -1,5 +1,7 @@
 """Film-averaged energy equation on the film grid: heat sources, flows, and the system of the temperatures.
 
+The temperatures act on the film by its viscosity, `ViscosityField`.
+
 Scaled: flows in units of c R^2 (1/s), heat in kelvin per second of such a flow, that is divided by rho c_p c R^2. The
 content m = fill H of a control volume changes by its flows and by what enters from outside, ``S = out - in + A dm/dt``
 (ends, supplies, and the oil that a cavitation model which does not conserve mass finds or loses). Energy minus T times
@@ -38,6 +40,42 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.differences import drop_weights, drops, following, to_ends
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+
+
+class ViscosityField(FluxEffect):
+    """Viscosity ratio of a temperature field at vertices and links: flux effect and shear factor."""
+
+    changes_carriers = False
+    depends_on_speed = False
+
+    def __init__(self) -> None:
+        self.ratio = np.ones((1, 1))
+        self.inverse_x = self.inverse_z = self.ratio
+
+    def set(self, ratio: np.ndarray) -> None:
+        """Take over the ratio at the vertices (n, m); links take the mean of their vertices."""
+        self.ratio = ratio
+        self.inverse_x = 2.0 / (ratio + np.roll(ratio, -1, axis=0))
+        self.inverse_z = 1.0 / ratio
+        self.inverse_z[:, :-1] = 2.0 / (ratio[:, :-1] + ratio[:, 1:])
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Divide the conductances by the ratio on the link."""
+        for conductances, inverse in (
+            ((flux.gx, flux.gx_h, flux.gx_v), self.inverse_x),
+            ((flux.gz, flux.gz_h, flux.gz_v), self.inverse_z),
+        ):
+            for conductance in conductances[: 2 + flux.speeds]:
+                conductance *= inverse
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """The ratio at the vertices; it depends neither on the gap nor on the speed."""
+        ratio_out[:] = self.ratio
+        ratio_h_out[:] = 0.0
+        ratio_v_out[:] = 0.0
 
 
 def film_heat(P: np.ndarray, q: np.ndarray, k: np.ndarray) -> np.ndarray:

@@ -150,9 +150,9 @@ class FilmAnswers(FilmArrays):
             return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
         if self.line is None:
             return None
-        (gaps, flux, _), v = self._at_line(), (self.vx, self.vz)
-        line = self.line.gradients(self.work, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh)
-        return self._to_motion(line)
+        (gaps, flux, _), v, at = self._at_line(), (self.vx, self.vz), np.flatnonzero(self.line.s < 1.0)
+        found = self.work, at, self.line.weights(at)
+        return self._to_motion(self.line.gradients(*found, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh))
 
     def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
         """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their

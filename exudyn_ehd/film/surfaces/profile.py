@@ -233,7 +233,7 @@ class ProfileTable:
         return np.asarray(ring(np.mod(theta - at[0], turn)))
 
 
-Profile = OutOfRound | Crown | EdgeRelief | AxialProfile | ProfileTable
+SurfaceProfile = OutOfRound | Crown | EdgeRelief | AxialProfile | ProfileTable
 
 
 class ProfileTerm:
@@ -241,7 +241,7 @@ class ProfileTerm:
 
     Parameters
     ----------
-    profiles : tuple of Profile
+    profiles : tuple of SurfaceProfile
     theta, z : (n,), (m,) arrays
         Grid, rad and m.
     length, clearance : float
@@ -249,7 +249,7 @@ class ProfileTerm:
     """
 
     def __init__(
-        self, profiles: tuple[Profile, ...], theta: np.ndarray, z: np.ndarray, length: float, clearance: float
+        self, profiles: tuple[SurfaceProfile, ...], theta: np.ndarray, z: np.ndarray, length: float, clearance: float
     ) -> None:
         def depth(at: np.ndarray, along: np.ndarray) -> np.ndarray:
             return np.sum([p.depth(at, along, length) for p in profiles], axis=0) / clearance

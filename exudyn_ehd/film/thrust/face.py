@@ -42,7 +42,7 @@ from exudyn_ehd.status import Status
 FACE_SIZE = 9
 
 
-class Scales:
+class FaceScales:
     """SI units of the scaled integrals: of pressure, N, and shear, N s / m, times lengths R; clearance and R in m."""
 
     def __init__(self, viscosity: float, clearance: float, radius: float) -> None:
@@ -105,7 +105,7 @@ class FaceFilm:
             # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
             self.closure = closure = replace(closure, line_in_cells=False)  # type: ignore[type-var]
         self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *face_grid(faces))
-        self.scales = Scales(viscosity, faces.clearance, a.scale)
+        self.scales = FaceScales(viscosity, faces.clearance, a.scale)
         self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)
         self.known = np.array([*pressures, closure.cavity_pressure]) / self.scales.pressure
         shape, grid = a.grid.shape, a.grid

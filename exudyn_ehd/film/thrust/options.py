@@ -24,7 +24,7 @@ from exudyn_ehd.status import (
 )
 
 # Attributes of a bearing by name.
-Options: TypeAlias = Mapping[str, Any]
+BearingOptions: TypeAlias = Mapping[str, Any]
 # Pads of a face up to which the error of its default grid was measured.
 MOST_PADS = 16
 
@@ -218,7 +218,7 @@ class ThrustFaces(Checked):
             )
 
 
-def check_faces(bearing: Options) -> None:
+def check_faces(bearing: BearingOptions) -> None:
     """Refuse faces that do not fit the bearing around them, and what their films would leave out.
 
     Parameters

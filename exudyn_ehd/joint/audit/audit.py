@@ -24,8 +24,8 @@ __all__ = ["Audit", "Finding", "audit_of", "audit_record"]
 
 _ON = {True: "on", False: "off", None: "-"}
 # Function that finds what an audit says about an effect, None where there is nothing to say.
-Row = Callable[[Case], Finding | None]
-ROWS: Mapping[str, Row] = {
+AuditRow = Callable[[Case], Finding | None]
+ROWS: Mapping[str, AuditRow] = {
     "misalignment": assumptions.misalignment,
     "elasticity": surfaces.elasticity,
     "journal elasticity": surfaces.journal_elasticity,
@@ -171,7 +171,7 @@ def _row(f: Finding) -> tuple[str, ...]:
     return f.effect, _ON[f.on], change, f"{f.value:.3g}", limit, share, verdict, f.indicator
 
 
-def audit_of(case: Case, rows: Mapping[str, Row] = ROWS) -> Audit:
+def audit_of(case: Case, rows: Mapping[str, AuditRow] = ROWS) -> Audit:
     """Audit the films of a case."""
     findings = [row(case) for row in rows.values()]
     return Audit(findings=tuple(finding for finding in findings if finding is not None))

@@ -41,7 +41,7 @@ NO_BALANCE = (
 )
 
 
-Film = tuple[History | None, float, float]
+FilmInput = tuple[History | None, float, float]
 
 
 class SolidElasticity(Elasticity):
@@ -93,7 +93,7 @@ class SolidElasticity(Elasticity):
         return np.concatenate((wrench, loads))
 
     def settle(
-        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
         """Find the balance of bore and film from the last balance, or else from the undeformed bush."""
         self.failure, self._linearised, self.reached = "", 0, (0.0, start)
@@ -119,7 +119,7 @@ class SolidElasticity(Elasticity):
         return found
 
     def _approach(
-        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
         """Find the balance by continuation of the pose, from that of the present displacements."""
         reached, part = 0.0, 0.5
@@ -138,7 +138,7 @@ class SolidElasticity(Elasticity):
         return None
 
     def _balance(
-        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
         """Film and bush in balance, from the present displacements on; None if it was not found."""
         try:
@@ -162,7 +162,7 @@ class SolidElasticity(Elasticity):
         return None
 
     def _settled(
-        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
         """The bore of the linear solid in balance with the film; None if it was not found.
 
@@ -189,7 +189,7 @@ class SolidElasticity(Elasticity):
         raise LinAlgError
 
     def _correct(
-        self, model: FilmOnBore[NodalEvaluation], film: Film, evaluation: NodalEvaluation
+        self, model: FilmOnBore[NodalEvaluation], film: FilmInput, evaluation: NodalEvaluation
     ) -> NodalEvaluation | None:
         """Balance by the same K and the film's slope at a film; None if that is slow."""
         full, k, nodes = evaluation.motion.copy(), self._q_free.size, self.solid.mesh.bore.nodes

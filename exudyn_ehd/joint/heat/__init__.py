@@ -2,7 +2,7 @@
 
 Module map
 ----------
-temperature   one temperature of a film; viscosity and heat of a field
+temperature   one temperature of a film
 band          banded systems at a film's vertices
 heat_balance  energy equation of one solved film
 across        two temperatures across the film

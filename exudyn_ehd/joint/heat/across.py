@@ -12,54 +12,24 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.across import (
     HEIGHTS,
+    FluidityField,
     at_heights,
     at_points,
     band_of_pairs,
     carry,
     crossed_tilt,
-    flow_factors,
     flow_shapes,
     heat_tilts,
-    on_links,
     start_heights,
     surfaces,
     weighed,
 )
-from exudyn_ehd.film.heat.energy import film_heat
+from exudyn_ehd.film.heat.energy import ViscosityField, film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.film.reynolds.links import LinkFlux
 from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.power import dropped, sheared
-from exudyn_ehd.joint.heat.temperature import ViscosityField
 from exudyn_ehd.joint.heat.walls import FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
-
-
-class FluidityField(ViscosityField):
-    """Viscosity over the height of a film: flux effect and shear factor.
-
-    Attributes
-    ----------
-    vertices, along, across : (n, m, 4) arrays
-        1 over the viscosity's ratio at Lobatto's points: at vertices, on links in theta and z.
-    """
-
-    changes_carriers = True
-
-    def set(self, ratio: np.ndarray) -> None:
-        """Take over the ratio at the vertices at Lobatto's points (n, m, 4); links take the mean of their vertices."""
-        self.vertices = 1.0 / ratio
-        self.along, self.across = on_links(self.vertices)
-        self.inverse_x, self.carried_x, _ = flow_factors(self.along)
-        self.inverse_z, self.carried_z, _ = flow_factors(self.across)
-        self.ratio = flow_factors(self.vertices)[2]
-
-    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
-        """Multiply conductances and carriers by their factors on the links."""
-        super().apply(flux, gap_x, gap_z, vx, vz)
-        for carriers, factor in (((flux.cx, flux.cx_h), self.carried_x), ((flux.cz, flux.cz_h), self.carried_z)):
-            for carrier in carriers:
-                carrier *= factor
 
 
 class PairBalance(HeatBalance):

@@ -11,9 +11,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
+from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
@@ -134,36 +134,3 @@ class LumpedTemperature(OilTemperature):
             "conducted": self.spec.housing_conductance * (temperature - self.housing),
             "stored": stored,
         }
-
-
-class ViscosityField(FluxEffect):
-    """Viscosity ratio of a temperature field at vertices and links: flux effect and shear factor."""
-
-    changes_carriers = False
-    depends_on_speed = False
-
-    def __init__(self) -> None:
-        self.ratio = np.ones((1, 1))
-        self.inverse_x = self.inverse_z = self.ratio
-
-    def set(self, ratio: np.ndarray) -> None:
-        """Take over the ratio at the vertices (n, m); links take the mean of their vertices."""
-        self.ratio = ratio
-        self.inverse_x = 2.0 / (ratio + np.roll(ratio, -1, axis=0))
-        self.inverse_z = 1.0 / ratio
-        self.inverse_z[:, :-1] = 2.0 / (ratio[:, :-1] + ratio[:, 1:])
-
-    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
-        """Divide the conductances by the ratio on the link."""
-        for conductance in (flux.gx, flux.gx_h, flux.gx_v)[: 2 + flux.speeds]:
-            conductance *= self.inverse_x
-        for conductance in (flux.gz, flux.gz_h, flux.gz_v)[: 2 + flux.speeds]:
-            conductance *= self.inverse_z
-
-    def factor(
-        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
-    ) -> None:
-        """The ratio at the vertices; it depends neither on the gap nor on the speed."""
-        ratio_out[:] = self.ratio
-        ratio_h_out[:] = 0.0
-        ratio_v_out[:] = 0.0

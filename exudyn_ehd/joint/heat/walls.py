@@ -17,11 +17,12 @@ from scipy.linalg import lu_factor, lu_solve
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Rings, Walls
+from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
 from exudyn_ehd.joint.heat.band import BandSolver
 from exudyn_ehd.joint.heat.heat_balance import HeatBalance, PassageData
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of
-from exudyn_ehd.joint.heat.temperature import OilTemperature, ViscosityField
+from exudyn_ehd.joint.heat.temperature import OilTemperature
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.linear.solvers import solve_by_products
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
@@ -21,7 +22,7 @@ from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.film.surfaces.wear import ArchardWear
-from exudyn_ehd.joint.heat.temperature import LumpedTemperature, ViscosityField
+from exudyn_ehd.joint.heat.temperature import LumpedTemperature
 from exudyn_ehd.joint.model.parts import grid_of
 from exudyn_ehd.joint.seams import (
     Contact,
@@ -136,7 +137,8 @@ def _rheology(
 
     kind, field = FilmTemperature, ViscosityField()
     if spec.across == 2:
-        from exudyn_ehd.joint.heat.across import CubicTemperature, FluidityField
+        from exudyn_ehd.film.heat.across import FluidityField
+        from exudyn_ehd.joint.heat.across import CubicTemperature
 
         kind, field = CubicTemperature, FluidityField()
     for law in laws:

@@ -7,7 +7,7 @@ import numpy as np
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
-from exudyn_ehd.pictures.records import Film, JointFilm, shown
+from exudyn_ehd.pictures.records import FilmRecord, JointFilm, shown
 
 
 class FilmFields(JointFilm, FilmPictures):
@@ -61,13 +61,13 @@ class FilmFields(JointFilm, FilmPictures):
         return f"<FilmFields at {shown('time', self.time)}: minimum film thickness {gap}, peak pressure {peak}>"
 
 
-def film_record(film: SolvedFilm) -> Film:
+def film_record(film: SolvedFilm) -> FilmRecord:
     """Return the common data of `FilmFields` and of a steady result for a solved film, copied."""
     film.require_current()
     solver, grid, temperature, bearing = film.solver, film.grid, film.temperature, film.parts.bearing
     liner, bore = film.parts.liner, film.bore
     yields = bore.displacement if bore is not None else None if liner is None else liner.deflection
-    return Film(
+    return FilmRecord(
         theta=grid.x.copy(),
         z=grid.z * grid.reference_length,
         pressure=film.oil.P * film.scales.pressure,
@@ -84,7 +84,7 @@ def film_record(film: SolvedFilm) -> Film:
     )
 
 
-def remembered(film: Film) -> History:
+def remembered(film: FilmRecord) -> History:
     """History with the temperatures of a film and its walls."""
     T = film.temperature
     return History(temperature=T if film.walls is None or T is None else film.walls.behind(T))

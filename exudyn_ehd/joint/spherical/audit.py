@@ -19,7 +19,7 @@ import numpy as np
 from exudyn_ehd.film.peak import refined_peak
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.joint.audit import surfaces
-from exudyn_ehd.joint.audit.audit import ROWS, Audit, Row, audit_of
+from exudyn_ehd.joint.audit.audit import ROWS, Audit, AuditRow, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
 from exudyn_ehd.joint.audit.samples import SMALLEST_GAP_SHARE, TENSION, FilmState, RecordedSteps, Sources, squeeze_share
@@ -160,7 +160,7 @@ def _grid(case: Case, effect: str, name: str, seen: str) -> Finding:
 
 # Rows of journals that say nothing about a ball, and those of its own.
 _JOURNALS = ("misalignment", "journal elasticity", "Taylor vortices")
-BALL_ROWS: dict[str, Row] = {name: row for name, row in ROWS.items() if name not in _JOURNALS} | {
+BALL_ROWS: dict[str, AuditRow] = {name: row for name, row in ROWS.items() if name not in _JOURNALS} | {
     "contact": _contact,
     "grid around": partial(_grid, effect="grid around", name="n_phi", seen="columns"),
     "grid along": partial(_grid, effect="grid along", name="n_chi", seen="rows"),

@@ -104,7 +104,7 @@ class BallFilm(NamedTuple):
 
 @dataclass(eq=False)
 class SphericalEvaluation:
-    """One film evaluation; as `exudyn_ehd.coupling.contract.Evaluation`.
+    """One film evaluation; as `exudyn_ehd.coupling.contract.JointEvaluation`.
 
     Attributes
     ----------

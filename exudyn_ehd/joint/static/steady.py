@@ -25,7 +25,7 @@ from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
-from exudyn_ehd.pictures.records import Film, shown
+from exudyn_ehd.pictures.records import FilmRecord, shown
 from exudyn_ehd.solid.modes.static import BoreModes
 from exudyn_ehd.status import (
     InputError,
@@ -47,7 +47,7 @@ SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 
 @dataclass(frozen=True, eq=False)
-class SteadyResult(Film, FilmPictures):
+class SteadyResult(FilmRecord, FilmPictures):
     """One position of the journal.
 
     ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.solved_film`; SI units.

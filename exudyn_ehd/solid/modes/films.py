@@ -200,7 +200,7 @@ def _points(low: float, high: float, cuts: np.ndarray, least: int) -> tuple[np.n
     return (edges[:-1, None] + size * (1.0 + node)).ravel(), (size * weight).ravel()
 
 
-class Film(NamedTuple):
+class SampleFilm(NamedTuple):
     """A film with the gap 1 + Re((e + b zeta) exp(-i theta) + a exp(-i n theta)) + k zeta^2, over the clearance."""
 
     eccentricity: complex
@@ -219,15 +219,15 @@ class Film(NamedTuple):
         return np.asarray(rise * (1.0 - np.cosh(self.decay * zeta) / np.cosh(self.decay)))
 
 
-def _films(choice: tuple, tilted: bool, directions: np.ndarray) -> list[Film]:
+def _films(choice: tuple, tilted: bool, directions: np.ndarray) -> list[SampleFilm]:
     """Return the films of a choice: undisturbed ones, tilted ones, and ones on a bore with waves or a crown."""
     eccentricities, shares, phases, waves, crowns, decays = choice
     found = []
     for e, decay, phi in itertools.product(eccentricities, decays, directions):
         turn, turned = np.exp(1j * phi), [(1.0 - e) * s * np.exp(1j * u) for s in shares for u in phases]
-        found += [Film(e * turn, b * turn, 0, 0.0, 0.0, decay) for b in ([0.0, *turned] if tilted else [0.0])]
-        found += [Film(e * turn, 0.0, n, WAVY * a * turn**n, 0.0, decay) for n in waves for a in turned]
-        found += [Film(e * turn, 0.0, 0, 0.0, k * (1.0 - e), decay) for k in crowns]
+        found += [SampleFilm(e * turn, b * turn, 0, 0.0, 0.0, decay) for b in ([0.0, *turned] if tilted else [0.0])]
+        found += [SampleFilm(e * turn, 0.0, n, WAVY * a * turn**n, 0.0, decay) for n in waves for a in turned]
+        found += [SampleFilm(e * turn, 0.0, 0, 0.0, k * (1.0 - e), decay) for k in crowns]
     return found
 
 

@@ -1,4 +1,4 @@
-"""What accuracy costs in time: scenes, ladders of settings, work-precision tables and pictures; the README's numbers.
+"""Cost of accuracy in time: scenes, ladders of settings, work-precision tables and pictures; the README's numbers.
 
 ``python -m tests.benchmarks.accuracy`` from the project's folder redoes everything in ``data``; ``--quick`` takes about
 a minute.

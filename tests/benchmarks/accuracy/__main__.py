@@ -100,7 +100,7 @@ def _measure_all(names: list[str], measure: Callable[[str], None]) -> dict[str, 
 
 
 def _processor_time() -> float:
-    """Of this process and those it started, s."""
+    """Processor time of this process and those it started, s."""
     return sum(os.times()[:4])
 
 

@@ -1,4 +1,4 @@
-"""Whether the shipped order of times can be trusted.
+"""Check of the shipped tables: the order of their times is reproducible.
 
 Points whose times differ by more than both spreads must keep their order over several runs. Every study is timed anew
 on some of its rungs, a few seconds each; errors need no check, since they are reproducible to rounding.
@@ -147,5 +147,5 @@ def check_order(
 
 
 def checkable() -> list[str]:
-    """What `check_order` knows."""
+    """Names of the studies that `check_order` can check."""
     return [EFFECTS, *catalogue.full_catalogue()]

@@ -75,7 +75,7 @@ class Row:
 
     @property
     def timed(self) -> bool:
-        """Whether there is a time and an error."""
+        """True if there is a time and an error."""
         return math.isfinite(self.seconds) and math.isfinite(self.error)
 
     @property
@@ -86,7 +86,7 @@ class Row:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Cost:
-    """What one thing costs.
+    """Cost of one option or call.
 
     Attributes
     ----------

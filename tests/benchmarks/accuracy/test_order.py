@@ -1,4 +1,4 @@
-"""Whether times keep their order over several runs: on made-up times, and which rungs are timed."""
+"""Tests of the order check, on made-up times, and of its choice of the rungs that are timed."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""Whose the mass of a bush is: a model weighs the same with every bush, unless the joint is told otherwise."""
+"""Mass of bushes: a model weighs the same with every bush, unless the joint is told otherwise."""
 
 import dataclasses
 from contextlib import nullcontext

@@ -94,7 +94,7 @@ def test_jacobian_is_the_derivative_of_the_force(housing, journal):
 
 @pytest.mark.parametrize("journal", ["EP", "Rxyz"])
 def test_jacobian_against_exudyns_own_differences(journal):
-    """The same through the assembled system, which sees the order of the coordinates and the sign.
+    """The Jacobian of the assembled system, which also shows the order of the coordinates and the sign.
 
     Central differences of the toy's force with steps of 1e-7, against a clearance of 1e-3: (1e-4)^2 of truncation and
     1e-16 / 1e-4 of rounding, so that 1e-6 of the largest entry holds with a margin. Lie group nodes are left out: here

@@ -1,4 +1,4 @@
-"""What a film remembers follows the state from run to run, whatever the clock says and is solved in between."""
+"""A film's history follows the state from run to run, whatever the clock shows and whatever is solved in between."""
 
 import warnings
 

@@ -157,7 +157,7 @@ def carrier(order, clearances=(C, C), moved=False, released=True):
 
 @pytest.mark.parametrize("released", [False, True])
 def test_bores_of_one_body_start_in_balance_together(released):
-    """What is the same at both ends is so in the run.
+    """The start is equal at both ends, and the run keeps it so.
 
     Out of balance the bores swing by as much as they deflect. Held, they stay; released, the tube flies off and swings,
     which moves the bores by 3.6 % in the first steps, with modes of the tolerance 0.02 too.

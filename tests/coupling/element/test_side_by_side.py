@@ -33,7 +33,7 @@ SOFT = on_bush(ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2))
 
 @pytest.fixture
 def crews(monkeypatch):
-    """What went side by side."""
+    """List of the `SideBySide` objects that the test makes."""
     found, begin = [], SideBySide.__init__
 
     def noted(self, *arguments):
@@ -174,7 +174,7 @@ class Fake:
         self.calls, self.last = self.calls + 1, trial
 
     def ask(self, crew, q):
-        """As an element's force does."""
+        """Ask for a film as an element's force does."""
         trial = self.trial(q)
         crew.evaluate(None, 0.0, self, trial)
         if trial is not self.last:

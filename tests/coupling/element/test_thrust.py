@@ -240,7 +240,7 @@ def test_audit():
 
 @pytest.mark.slow
 def test_forces_of_the_joint_and_momentum():
-    """What Exudyn's sensors call the joint's force is that of journal film and faces; two free bodies keep momentum."""
+    """Exudyn's sensors read the sum of the forces of journal film and faces; two free bodies keep momentum."""
     bearing = _bearing(profile=ehd.TaperLand(pads=4, depth=3e-5))
     mbs = exu.SystemContainer().AddSystem()
     inertia = InertiaCylinder(7800, 0.1, 0.05, 2)
@@ -263,7 +263,7 @@ def test_forces_of_the_joint_and_momentum():
 
 
 def test_without_faces_nothing_changes():
-    """The same objects with and without them; no column but nan."""
+    """A model has as many objects without faces as with them; the faces' columns of the history are nan."""
     counts = []
     for bearing in (_bearing(), dataclasses.replace(_bearing(), thrust=None)):
         mbs, joint, _ = _rotor(bearing)

@@ -134,7 +134,7 @@ def run(housing, steps=20, end=1e-3):
 
 @pytest.mark.slow
 def test_a_planar_housing_and_a_link_of_a_tree_carry_the_bush_like_a_body_in_space(measured):
-    """The same equations in other coordinates, Newton to 1e-10 of a step's first residual."""
+    """One set of equations in three sets of coordinates, Newton to 1e-10 of a step's first residual."""
     expected, *_ = run("space")
     assert np.ptp(expected.eccentricity_ratio) > 0.05
     for housing in ("planar", "tree"):
@@ -159,7 +159,7 @@ MODAL = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, tilted=False
 
 @pytest.mark.slow
 def test_modal_bushes_on_a_link_of_a_tree_start_and_run_as_on_a_planar_body(measured):
-    """The same equations in other coordinates, from the same start in equilibrium, which a tree's marker knows by
+    """One set of equations in two sets of coordinates, from one start in equilibrium; a tree's marker has its rates by
     differences."""
     records = []
     for housing in ("planar", "tree"):

@@ -1,4 +1,4 @@
-"""Where bore and journal start: bearings off a line misalign a shaft."""
+"""Start places of bore and journal: bearings off a line misalign a shaft."""
 
 import exudyn.itemInterface as eii
 import numpy as np

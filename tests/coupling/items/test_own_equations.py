@@ -42,7 +42,7 @@ def add(mbs, kind, *, own, modes=6, **options):
 
 
 def both(kind, **options):
-    """The same body twice: Exudyn's, and with its own equations."""
+    """Two systems with one body: Exudyn's own, and the body with equations of its own."""
     systems = []
     for own in (False, True):
         mbs = scenes.new_system()

@@ -48,7 +48,7 @@ def guided(mbs, place, velocity, *, point, planar):
 
 
 def run(is_journal, **slider):
-    """Where crank, rod and slider, started by the crank's spin, go on three films, and the load on the slider's."""
+    """Run crank, rod and slider on three films from the crank's spin; return their places and the slider's history."""
     mbs, planar = scenes.new_system(), slider["planar"]
     pin, slope = np.array([0.0, CRANK]), -np.arcsin(CRANK / ROD)
     end = np.array([ROD * np.cos(slope), 0.0])

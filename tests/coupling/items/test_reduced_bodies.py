@@ -201,8 +201,8 @@ def test_film_does_no_work_in_a_common_rigid_motion():
 
 
 def test_reduced_body_and_journal_fall_with_g(measured):
-    """With the momentum of all nodes. What is left, 2e-8, is the time integration's: 9e-7 at half of the steps, 5e-9 at
-    twice as many."""
+    """The momentum of all nodes grows by the weight. The error of 2e-8 is the time integration's: 9e-7 with half of the
+    steps, 5e-9 with twice as many."""
     mbs, gravity, rotation = scenes.new_system(), np.array([3.0, -9.81, 4.0]), scenes.rotation([0.3, -0.5, 0.2])
     weight = {"gravity": gravity.tolist()}
     body, fem, _ = bush_body(mbs, held=False, rotation=rotation, tolerance=0.2, tilted=False, **weight)

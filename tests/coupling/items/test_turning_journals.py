@@ -120,9 +120,9 @@ def moving(housing_moves=True):
 
 @pytest.mark.slow
 def test_jacobian_is_the_derivative_of_the_force():
-    """With housing, frame and modes moved together, as Exudyn moves them.
+    """Differences move housing, frame and modes together, as Exudyn moves them.
 
-    What is left out is the second order of the body's own deformation in its frame; steps as small as rounding allows.
+    The Jacobian omits the second order of the body's deformation in its frame; steps are as small as rounding allows.
     """
     mbs, joint, q, q_t = moving()
     element, rng = joint.element, np.random.default_rng(3)

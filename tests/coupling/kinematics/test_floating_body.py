@@ -61,7 +61,7 @@ class Particles:
         return q, q_t
 
     def jacobians(self, q, q_t):
-        """Of all particles (p, 3, n + k), and A, A u and A u_t."""
+        """Jacobians of all particles (p, 3, n + k); their arms A (x + u) and rates A u_t."""
         self.side.update(None, q[: self.n], q_t[: self.n], None)
         A, Jr = self.side.frame[:, :3], self.side.jac[1]
         arms = (self.places + self.shapes @ q[self.n :]) @ A.T

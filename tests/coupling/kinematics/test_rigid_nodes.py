@@ -201,7 +201,7 @@ def test_generalized_force_does_no_work_in_a_common_rigid_motion(node):
 
 
 def test_whole_model_rotated_and_translated_gives_the_same_wrench():
-    """The same scene, also through Exudyn's coordinates, in another place and orientation."""
+    """The scene is moved to another place and orientation, also through Exudyn's coordinates."""
     wrenches = []
     matrix, shift = scenes.rotation([0.5, -1.0, 0.7]), np.array([3.0, -2.0, 1.0])
     for a, s in ((np.eye(3), np.zeros(3)), (matrix, shift)):

@@ -1,4 +1,4 @@
-"""What Exudyn's renderer gets from a joint, asked for without a window; sensors in Exudyn's own plots."""
+"""Graphics that a joint gives Exudyn's renderer, requested without a window; sensors in Exudyn's own plots."""
 
 import exudyn as exu
 import matplotlib
@@ -142,7 +142,7 @@ def test_film_moves_with_its_housing(node):
 
 @pytest.mark.parametrize("name", AGAINST_CONNECTOR)
 def test_frame_of_every_kind_of_housing(name):
-    """What is drawn stands where the joint is, in the state that the renderer shows."""
+    """The drawing stands where the joint is, in the state that the renderer shows."""
     mbs, _, joint = joined(AGAINST_CONNECTOR[name], role="housing")
     mbs.Assemble()
     element, kind = joint.element, exu.ConfigurationType

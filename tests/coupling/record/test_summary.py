@@ -140,7 +140,7 @@ def test_effects_left_out_are_named_where_they_matter(lines, load, options, name
 
 @pytest.mark.slow
 def test_steps_that_are_too_coarse_are_named(lines):
-    """From 5 % of the film on, with a number of steps that would do; the audit says the same."""
+    """Step errors from 5 % of the film thickness on are named, with a sufficient number of steps; so does the audit."""
     mbs, joint = scene(30e3)
     ehd.SolveDynamic(mbs, scenes.settings(0.02, 400, tolerance=1e-8))
     history = joint.history
@@ -155,7 +155,7 @@ def test_steps_that_are_too_coarse_are_named(lines):
 
 @pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])
 def test_number_of_steps_that_would_do(spin, needed):
-    """Of 400 equal steps in 0.2 s: 2 % from 8 % take twice as many, here two turns."""
+    """An error of 8 % falls to 2 % with twice the 400 equal steps of 0.2 s, which are two turns at the spin."""
     error = np.full(401, np.nan)
     error[3:] = 0.01
     error[200] = 0.08

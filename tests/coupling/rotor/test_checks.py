@@ -1,4 +1,4 @@
-"""What the theory of rotors does not hold for is refused by name."""
+"""Models that the theory of rotors does not cover raise errors that name the cause."""
 
 import exudyn as exu
 import numpy as np

@@ -36,7 +36,7 @@ def spring(mbs, ground, body, place, stiffness):
 
 
 def eigenvalues(system, speed):
-    """Of the motion with the spin held, sorted by frequency."""
+    """Eigenvalues of the motion with the spin held, sorted by frequency."""
     system.spins[:] = speed
     r_x, r_u = system.derivatives()
     M, S = system.mass(), system.turning()

@@ -17,7 +17,7 @@ C, LENGTH, CYCLE = 25e-6, 0.02, 0.02
 
 
 def smallest_gap(motion):
-    """At the ends of the length, m."""
+    """Minimum film thickness at the ends of the length, m."""
     ends = [motion[:2] + z * motion[2:4] for z in (-0.5 * LENGTH, 0.5 * LENGTH)]
     return C - max(np.hypot(*end) for end in ends)
 

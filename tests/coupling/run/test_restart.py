@@ -124,7 +124,7 @@ def test_restart_in_the_same_system_and_from_memory():
 
 
 def test_without_memory_the_run_is_another():
-    """What the film remembers is needed: coordinates alone start with a bearing full of oil."""
+    """The film's history is needed: from coordinates alone a run starts with a bearing full of oil."""
     mbs, joint = system(BEARINGS["oil content"])
     ehd.SolveDynamic(mbs, settings(0, STEPS))
     whole = joint.history

@@ -1,5 +1,5 @@
-"""Where Newton's method starts in a step: the same motion with fewer iterations, for every integrator and node type,
-and hooks given back."""
+"""Initial guess of Newton's method in a step: an unchanged motion with fewer iterations, for every integrator and node
+type; hooks are given back."""
 
 import math
 
@@ -110,7 +110,7 @@ def test_newmark_and_index_2(newmark):
 
 @pytest.mark.slow
 def test_coarse_steps_of_a_crank_don_t_chatter():
-    """From zero accelerations steps of 1.5 degrees start farther from the solution than the film is thick."""
+    """Steps of 1.5 degrees that start from zero accelerations are farther from the solution than the film is thick."""
     settings, fine = turn(240), turn(1440)
     with pytest.warns(ehd.RingingWarning, match="'pin': from t = "):
         plain, more = run(settings, own=False)
@@ -228,8 +228,8 @@ def test_constraint_forces_are_those_of_exudyns_own_start():
 
 @pytest.mark.parametrize("clearance", [80e-6, 20e-6])
 def test_forces_are_smooth_where_newton_takes_another_pass(clearance):
-    """The same crank with its joint on a film, which is unloaded at the start and rings for some steps. Passes that
-    began again at zero accelerations threw its force of 2 N by 6 N, again and again."""
+    """The spatial crank with its joint on a film, which is unloaded at the start and rings for some steps. Passes that
+    began again at zero accelerations changed its force of 2 N by 6 N, again and again."""
     mbs = scenes.new_system()
     model = spatial_crank(mbs)
     bearing = ehd.JournalBearing(

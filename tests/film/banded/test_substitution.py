@@ -23,7 +23,7 @@ def test_twins(factors, count, width, sides):
 
 @pytest.mark.parametrize("sides", [1, 4, 7])
 def test_rows_of_any_order(factors, sides):
-    """What numpy's indexing hands over need not lie row after row in memory."""
+    """Right-hand sides from numpy's indexing need not lie row after row in memory."""
     f = factors(60, 5)
     b = np.random.default_rng(sides).normal(size=(sides, 60))
     for place in (np.asfortranarray, lambda rows: np.repeat(rows, 2, axis=1)[:, ::2]):

@@ -44,7 +44,7 @@ def _motion(eccentricity, tilt=0.0, length=0.0125, angle=1.9):
 
 
 def _closed_form(eccentricity):
-    """The same in the axes of the eccentricity, from those of the load."""
+    """Closed-form stiffness and damping in the axes of the eccentricity, turned from those of the load."""
     attitude = short_bearing.attitude(eccentricity)
     cos, sin = np.cos(attitude), np.sin(attitude)
     axes = np.array([[cos, sin], [-sin, cos]])
@@ -179,7 +179,7 @@ def test_flows_are_those_of_the_solved_film(make_bearing):
 
 
 def test_heat_is_the_power_loss(make_bearing):
-    """What a steady aligned film takes up is the heat of its oil, to rounding."""
+    """The power loss of a steady aligned film is the heat of its oil, to rounding."""
     model = build_model(make_bearing(0.25, film=SMALL))
     for eccentricity in (0.2, 0.6, 0.9):
         film = model.evaluate(_turned(_motion(eccentricity), 0.7)[0]).film

@@ -42,7 +42,7 @@ def _start(film, seed):
 
 
 def _unbalanced(film, pc, mass, step, dense_matrix):
-    """What the balances lack with the fills as they are, over the flows."""
+    """Largest residual of the mass balances at the film's fills, over the flows."""
     s, (n, m), carried = film.system, film.H.shape, film.carried
     out = (dense_matrix(s.kx, s.kz) @ (s.pressure - pc).ravel()).reshape(n, m)
     grow = film.H_t * s.fill if mass is None else (s.fill * film.H - mass) / step
@@ -108,7 +108,7 @@ def test_random_films_are_on_their_curves_from_any_start(dense_matrix):
 @pytest.mark.slow
 @pytest.mark.parametrize("tilt", (0.0, 1.0))
 def test_rupture_is_that_of_swift_and_stieber(tilt):
-    """Where the film is flooded in front of it, one condition is the other: to a higher order of the cell."""
+    """In a film flooded upstream both rupture conditions are one, to a higher order of the cell size."""
     motion = np.array([0.7 * C, 0.0, 2e-4 * tilt, 1e-4 * tilt, 0, 0, 0, 0, 100.0, 0])
     apart = []
     for n, nz in ((48, 8), (96, 12)):
@@ -141,7 +141,7 @@ def _ruptured_gap(eccentricity, inlet):
 
 
 def _cavity_flow(model, eccentricity):
-    """What flows in the cavity in front of the inlet over the flow of a gap of c."""
+    """Flow in the cavity upstream of the inlet, over the flow of a gap of c."""
     model.evaluate(np.array([eccentricity * C, 0, 0, 0, 0, 0, 0, 0, 100.0, 0]))
     s = model.solver
     last = np.flatnonzero(~s.work.active[:, 1] & ~s.grid.fixed[:, 1])[-1]
@@ -150,7 +150,7 @@ def _cavity_flow(model, eccentricity):
 
 @pytest.mark.slow
 def test_flow_of_the_cavity_against_the_closed_form(measured):
-    """What passes the rupture of a long film is the gap there, and so is its change with the eccentricity."""
+    """The flow past the rupture line of a long film is proportional to the gap there, and so is its derivative."""
     errors, slopes = {}, {}
     for closure in (LINE, PLAIN):
         for n in (64, 128):
@@ -330,7 +330,7 @@ def test_sudden_motions_meet_the_film_up_to_its_line(measured):
 
 @pytest.mark.slow
 def test_heat_is_the_power_of_the_motion():
-    """Of steady films: what flows with less than a full fill at the line takes part in the balance of power."""
+    """Power balance of steady films; the flow at partial fill at the rupture line takes part in it."""
     rng = np.random.default_rng(3)
     bearing = ehd.JournalBearing(
         journal_radius=R, length=0.03, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.02),

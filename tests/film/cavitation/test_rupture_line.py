@@ -59,7 +59,7 @@ def _random_film(film, rng):
 
 
 def _violation(film, pc, dense_matrix):
-    """What ``sqrt(2 k p) + sqrt(2 r) = sqrt(f)`` at the line and ``p r = 0`` elsewhere lack, over the flows."""
+    """Residual of ``sqrt(2 k p) + sqrt(2 r) = sqrt(f)`` at the line and of ``p r = 0`` elsewhere, over the flows."""
     s, fixed = film.system, film.grid.fixed
     p = s.pressure - pc
     r = (dense_matrix(s.kx, s.kz) @ p.ravel()).reshape(p.shape) - s.b
@@ -123,7 +123,7 @@ def test_a_supply_that_comes_and_goes_is_that_of_a_cold_film():
 
 
 def test_films_without_a_line_are_those_of_the_grid():
-    """At rest, and where the wedge builds up pressure everywhere: the same film, to rounding."""
+    """Both closures find one film, to rounding, at rest and with pressure built up everywhere by the wedge."""
     rng = np.random.default_rng(0)
     for line, plain in zip(_films(LINE), _films(SwiftStieber()), strict=True):
         for film in (line, plain):
@@ -204,7 +204,7 @@ def test_few_rows_with_a_large_stretch(measured):
 
 
 def test_heat_is_the_power_of_the_motion():
-    """Of steady films, less the work that presses oil out: what appears at the line has the pressure of the cavity."""
+    """Power balance of steady films, less the work that presses oil out: oil at the line has the cavity pressure."""
     rng = np.random.default_rng(3)
     bearing = ehd.JournalBearing(
         journal_radius=0.025, length=0.03, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02),
@@ -229,9 +229,9 @@ def test_what_does_not_know_the_line_is_refused(make_bearing):
 
 @pytest.mark.parametrize("cavity_pressure", [0.0, -5e4])
 def test_a_film_that_forgets_is_found_as_a_first_one_is(make_bearing, cavity_pressure):
-    """As fast, whatever film was there before: its pressures must not stand where the new one has its cavity.
+    """A solver that forgets its film is as fast as a new one: old pressures must not stay in the new cavity.
 
-    From the full film the line has at most half of the columns to go, one a step.
+    The line of a full film has at most half of the columns to go, one in each iteration.
     """
     bearing = make_bearing(4.0, cavitation=SwiftStieber(cavity_pressure=cavity_pressure))
     rng, model, c = np.random.default_rng(8), build_model(bearing), bearing.radial_clearance

@@ -64,7 +64,7 @@ class Run:
 
     @property
     def lost(self):
-        """What the mass misses of all flows, share of what has moved."""
+        """Error of the mass balance over the run, as a share of the mass moved."""
         return abs(float(np.sum(self.area * self.history.mass)) - self.first - self.fed) / self.moved
 
 

@@ -63,7 +63,7 @@ def test_flows_take_the_fill_from_upstream(fields):
 
 
 def test_outside_flows_are_the_balance_of_fixed_vertices(fields):
-    """Where the film next to an end is ruptured, only the link's flow passes."""
+    """An end next to a ruptured film passes the link's flow alone."""
     f = fields
     (_, qz), leaving = film_flows(f["q"], f["fill"], on_links(f, "k"), on_links(f, "f"))
     source = f["storage"] * f["rate"] + leaving

@@ -99,7 +99,7 @@ def test_barus_law_ends_where_oil_is_solid():
 
 @pytest.mark.parametrize("law", [BarusPressure(coefficient=ALPHA), RoelandsPressure(coefficient=ALPHA)])
 def test_laws_go_on_in_a_line(law):
-    """From the end of the table."""
+    """Beyond the end of its table a law continues as a straight line."""
     law = transform(law)
     q = law.q[-1] * np.array([[1.0, 1.2]])
     p, ratio, slope = (np.empty((1, 2)) for _ in range(3))

@@ -109,8 +109,8 @@ D2270 = {
 
 @pytest.mark.parametrize("name", list(D2270))
 def test_viscosity_index(name):
-    """Of both points after ASTM D2270, procedures A and B; as printed, to its
-    rounding, or 95 to 102 for plain mineral oils."""
+    """Viscosity index of both points by ASTM D2270, procedures A and B: the printed one, to its rounding, or 95 to 102
+    for plain mineral oils."""
     L, H, printed = D2270[name]
     U, Y = (ISO_GRADES | MULTIGRADES)[name][:2]
     index = 100.0 * (L - U) / (L - H)

@@ -39,7 +39,7 @@ def test_full_sommerfeld_in_theta(make_bearing):
 
 
 def test_full_sommerfeld_in_z(make_bearing):
-    """At least second order in z: control volumes on stretched vertices, fourth-order integration."""
+    """Convergence is at least of second order in z: control volumes on stretched vertices, fourth-order integration."""
     exact = _wrench(make_bearing, ehd.FullSommerfeld(), 48, 192)
     errors = [abs(_wrench(make_bearing, ehd.FullSommerfeld(), 48, n) - exact).max() for n in (8, 16, 32)]
     slopes = _slopes(errors)

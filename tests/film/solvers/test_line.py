@@ -166,7 +166,7 @@ def test_damping_of_a_slow_motion_that_the_liner_follows():
 
 
 def test_heat_is_the_power_of_the_motion():
-    """Of steady films: what appears at the line has the pressure of the cavity."""
+    """Power balance of steady films: oil that appears at the line has the cavity pressure."""
     for name in ("shear", "density", "liner"):
         model = _model(**CASES[name])
         film = model.evaluate(np.array([0.6 * C, 0.4 * C, 0, 0, 0, 0, 0, 0, 300.0, 0.0])).film

@@ -58,7 +58,7 @@ def transformed(p):
 
 
 def balance(P, p, fill, beta, eps, delta_old, mass_old):
-    """What leaves every vertex and what it stores (n, m), for the unknowns P and the pressures p on the elements."""
+    """Mass balance of every vertex (n, m), outflow plus storage, for the unknowns P and the elements' pressures p."""
     rigid, on_links, rate = undeformed(eps)
     rho, D = DENSITY.ratio(p * SCALE), beta * p
     H, area = rigid + D, np.outer(GRID.width_x, GRID.width_z)

@@ -14,6 +14,7 @@ from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.cavitation.states import OIL
 from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -26,7 +27,6 @@ from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_i
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor, shear_flow_factor
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.joint.heat.temperature import ViscosityField
 from tests.sampling import sample
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)

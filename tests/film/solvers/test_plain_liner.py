@@ -125,7 +125,7 @@ def test_heavy_and_soft_films_converge():
 
 
 def test_a_bore_that_touches_at_its_ends_has_no_film():
-    """Where the pressure is prescribed an element can't deflect."""
+    """An element with a prescribed pressure can't deflect, so the gap closes there."""
     solver = FilmSolver(GRID, ehd.SwiftStieber(), liner=Liner())
     solver.elements.beta = 0.01
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(1.01)

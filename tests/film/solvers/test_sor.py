@@ -74,7 +74,7 @@ def test_second_order_and_the_same_limit_as_finite_volumes(make_bearing, measure
 
 
 def test_rule_11_stops_early(make_bearing, measured):
-    """At the paper's tolerance 1e-5 the load is off by more than the tolerance, but by less than the grid's error."""
+    """The load at the paper's tolerance 1e-5 is off by more than the tolerance, but by less than the grid's error."""
 
     def force(tolerance):
         film = ehd.ClassicSOR(n_theta=96, n_z=24, tolerance=tolerance)
@@ -143,7 +143,7 @@ def test_equilibrium(make_bearing, measured):
 
 
 def test_divergence_is_reported(make_bearing):
-    """At a gap that changes severalfold between points the scheme loses its diagonal; finite volumes do not."""
+    """The scheme loses its diagonal in a gap that changes severalfold between points; finite volumes do not."""
     bearing = make_bearing(film=ehd.ClassicSOR(n_theta=16, n_z=8, relaxation=1.99), cavitation=ehd.Gumbel())
     with pytest.raises(ehd.FilmError, match="NOT_CONVERGED"):
         ehd.steady(bearing, speed=100.0, eccentricity_ratio=0.995)

@@ -83,7 +83,7 @@ def test_equally_rough_surfaces_have_no_shear_flow():
 @pytest.mark.parametrize("pattern", PATTERNS)
 @pytest.mark.parametrize("share", [0.0, 1.0])
 def test_all_factors_stay_positive_and_smooth(pattern, share):
-    """From the residual film to films without roughness; derivatives against central differences.
+    """Factors and derivatives from the thinnest film to smooth films, against central differences.
 
     Differences of step 1e-5 t of a cubic spline are good to 1e-6 of the slope's scale away from its knots.
     """

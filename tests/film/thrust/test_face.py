@@ -256,7 +256,7 @@ def test_tangent(closure, profile):
 
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_work_becomes_heat(closure):
-    """What the collar's motion puts in is ``power_loss`` to rounding, and the heat of shear and flow to 1 %."""
+    """The power of the collar's motion is ``power_loss`` to rounding, and the heat of shear and flow to 1 %."""
     rng = np.random.default_rng(11)
     for side in (1, -1):
         film = _film(_faces(n_theta=128, n_r=16), side, CLOSURES[closure])

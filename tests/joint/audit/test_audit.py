@@ -451,7 +451,7 @@ def test_step_of_a_record_against_the_gap(cavitation):
 
 
 def test_inertia_of_a_flow_that_swings_between_plates():
-    """What the limit of the row says: inertia takes Re / 10 of the viscous pressure, Re = rho w h^2 / mu up to 1."""
+    """The limit of the row holds: inertia takes Re / 10 of the viscous pressure, for Re = rho w h^2 / mu up to 1."""
     for reynolds in (1e-3, 1.0):
         k = 0.5 * np.sqrt(1j * reynolds)  # velocity profile 1 - cosh(k y) / cosh(k) over the half height
         pressure = 1j * reynolds / (1.0 - np.tanh(k) / k) / 12.0  # over that of the viscous flow

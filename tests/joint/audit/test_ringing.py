@@ -76,7 +76,7 @@ def test_a_time_that_steps_back_begins_anew():
 
 
 def test_balls_ring_in_any_direction():
-    """As along y, for forces turned into any direction."""
+    """Forces turned into any direction ring as those along y."""
     rng, y = np.random.default_rng(3), 1000.0 * (1.0 + 0.5 * SIGN)
     t = 1e-4 * K
     for _ in range(5):

@@ -172,7 +172,7 @@ def follow(number: int, rounds: int = 6) -> tuple[bool, int, dict[str, float]]:
 
 
 def flagged(scene: Scene) -> dict[str, bool]:
-    """What the audit of the scene's own film says."""
+    """Findings of the audit of the scene's own film: does an effect matter?"""
     audit = scene.film(scene.bearing).audit()
     said = {f.effect: f.matters for f in audit.findings}
     grids = ("grid around", "grid along", "supply resolution")

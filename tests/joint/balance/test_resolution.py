@@ -66,7 +66,7 @@ def places(seed, count):
 
 
 def errors(seed, count, rows=112):
-    """Of every film its error, whether it is called coarse, and the error on the grid that is named then."""
+    """Yield for every film: its error, if it is called coarse, and the error on the grid that is named then."""
     for ratio, middle, tilt, grid in places(seed, count):
         film, found = peak(bearing(ratio, **grid), middle, tilt)
         seen = resolution(film)
@@ -102,7 +102,7 @@ def test_films_that_are_off_by_more_than_five_per_cent_are_warned_of():
 
 @pytest.mark.slow
 def test_random_films_are_warned_of_where_their_peak_is_off():
-    """Of 100 films: those off by more than 5 % but not warned of, and those within 2 % that are."""
+    """Among 100 films few are off by more than 5 % without a warning, and few within 2 % have one."""
     check(errors(62, 100), 0.15, 0.05)
 
 

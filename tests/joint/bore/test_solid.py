@@ -66,7 +66,7 @@ def test_stiffness_is_that_about_the_deformed_state(law):
 
 @pytest.mark.slow
 def test_a_film_does_not_depend_on_the_one_before():
-    """From an undeformed bush, from one strained elsewhere, and behind a search that found nothing."""
+    """A film is found from an undeformed bush, from one strained elsewhere, and after a search without a solution."""
     model = build_model(bearing(1e7))
     first = model.evaluate_steady(motion(0.6 * C, -0.5 * C)).wrench.copy()
     model.evaluate_steady(motion(-1.1 * C))

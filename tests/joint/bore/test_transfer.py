@@ -36,7 +36,7 @@ def cylinder(axial, radial, circumferential, thickness=0.02):
 
 
 def pressure(theta, zeta):
-    """Of a tilted journal at eccentricity ratio 0.7."""
+    """Pressure under a tilted journal at eccentricity ratio 0.7."""
     local = 0.7 + 0.05 * zeta
     film = np.maximum(local * np.sin(theta - 0.3), 0.0) / (1.0 + local * np.cos(theta - 0.3)) ** 3
     return film * (1.0 - np.cosh(4.0 * zeta) / np.cosh(4.0))

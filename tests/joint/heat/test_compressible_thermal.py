@@ -158,7 +158,7 @@ def test_lumped_heat_is_the_dissipated_power(cavitation):
 
 @pytest.mark.parametrize("law", [ehd.DowsonHigginson(), SOFT], ids=["oil", "soft"])
 def test_lumped_heat_is_the_dissipated_power_while_the_film_is_compressed(law):
-    """From a flooded start at ambient density.
+    """Films start flooded at ambient density.
 
     Without the energy that stays in the oil up to a sixth would be left on any grid.
     """

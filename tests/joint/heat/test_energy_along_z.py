@@ -117,7 +117,7 @@ def test_orbits_keep_bounds_and_balance(seed):
 
 @pytest.mark.parametrize("cooling", [0.0, 200.0])
 def test_steady_film_has_no_wiggles(cooling):
-    """From the ends, where cold oil enters, it gets warmer up to the mid-plane, on coarse grids and fine ones."""
+    """The film gets warmer from the ends, where cold oil enters, to the mid-plane, on coarse grids and fine ones."""
     for n_z in (8, 10, 32):
         b = bearing(n_z, cooling=cooling, cavitation=UNSUPPLIED)
         T = ehd.steady(b, speed=500.0 if cooling else 300.0, eccentricity_ratio=0.8).temperature

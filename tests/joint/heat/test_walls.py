@@ -39,7 +39,7 @@ def motion(eccentricity=0.6, **rates):
 
 
 def defect(b):
-    """Of film and walls, and of the film alone."""
+    """Error of the heat balance of film and walls, over its largest term."""
     whole = b["heat_in"] - b["convected"] - b["conducted"] - b["stored"]
     return abs(whole) / max(abs(v) for v in b.values())
 
@@ -192,7 +192,7 @@ def _free_growth(inner, outer, T, expansion, at):
 
 
 def test_growth_is_that_of_free_walls_in_equilibrium():
-    """Of the steady profiles along the radius, by the elastic equations of a disc; to the rings' second order."""
+    """The growth is that of an elastic disc with the steady radial profiles, to the rings' second order."""
     expansion, cold = 1.2e-5, 300.0
     walls = {
         "bush": dataclasses.replace(BUSH, expansion=expansion, clearance_temperature=cold, rings=16),
@@ -233,7 +233,7 @@ def test_a_grown_film_is_that_of_the_changed_clearance(cavitation):
 
 
 def test_oil_is_kept_while_the_walls_grow():
-    """What a film that conserves mass holds is what flows have brought, also where growth takes the gap."""
+    """A film that conserves mass holds the oil that flows have brought, also when growth narrows the gap."""
     walls = {"bush": BUSH, "journal": dataclasses.replace(JOURNAL, density=200.0, expansion=1.2e-5)}
     model = build_model(bearing(energy(**walls), cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)))
     at, thermal, missing = motion(0.5), model.effects.thermal, []

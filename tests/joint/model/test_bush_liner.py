@@ -23,7 +23,7 @@ def liner(t):
 
 
 def solid(t):
-    """The same compliance t / E at every thickness."""
+    """A bush of thickness t whose compliance t / E does not depend on t."""
     mesh = ehd.HollowCylinder(inner_radius=R, thickness=t, length=L, axial=6, radial=1, circumferential=40)
     material = ehd.SaintVenantKirchhoff(youngs_modulus=t / UNIT, poisson_ratio=NU, density=7800.0)
     return ehd.ModalBush(mesh=mesh, material=material, tolerance=0.02, tilted=False)

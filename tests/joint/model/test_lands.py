@@ -131,7 +131,7 @@ def over_rectangle(at, low, high, bottom, top):
 
 
 def over_area(at, area, spin):
-    """The same over an area; over a disc in polar coordinates."""
+    """Integral of c / h over an area; over a disc in polar coordinates."""
     center = getattr(area, "angle", 0.0) + (spin if area.rotating else 0.0)
     if isinstance(area, ehd.Hole):
         r, phi = 0.25 * area.diameter * (1.0 + NODES[:, None]), 2.0 * math.pi * np.arange(200) / 200
@@ -200,7 +200,7 @@ def test_recesses_are_sheared_by_their_depth(kind):
 
 @pytest.mark.parametrize("thermal", [ehd.LumpedThermal, ehd.FilmEnergy])
 def test_heat_of_recesses_has_the_viscosity_of_their_temperature(thermal):
-    """What a film's temperature balance takes in grows by what its loss does."""
+    """The heat in a film's temperature balance grows by as much as its power loss."""
     effect, where = thermal(supply_temperature=325.0), motion(np.random.default_rng(2), 300.0)
     found = []
     for depth in (None, 5e-4):

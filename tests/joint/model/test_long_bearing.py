@@ -51,7 +51,7 @@ def test_second_order(make_bearing):
 
 
 def test_mass_conserving_film_equals_swift_stieber_before_the_inlet(make_bearing, measured):
-    """With a flooded inlet at the maximum gap the cavity reaches to it, and both closures agree."""
+    """Both closures agree: the inlet at the maximum gap is flooded, and the cavity reaches to it."""
     loads = [
         _steady(make_bearing, 0.6, c).sommerfeld_number
         for c in (ehd.ElrodAdams(), ehd.SwiftStieber(line_in_cells=False))

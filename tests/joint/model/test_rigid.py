@@ -156,7 +156,7 @@ def test_damping_at_rest_is_the_whole_film_s_off_the_centre(make_bearing, make_m
 
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_damping_at_rest_at_the_centre_is_what_a_slow_motion_meets(make_bearing, make_motion, closure):
-    """With Gümbel's condition half of the whole film's; Swift-Stieber's film reaches beyond the closing half."""
+    """Gümbel's condition halves the full film's damping; Swift-Stieber's film reaches beyond the closing half."""
 
     def model(cavitation):
         return build_model(make_bearing(1.0, cavitation=cavitation))
@@ -368,7 +368,7 @@ def test_place_of_the_smallest_gap_with_a_profile(make_bearing, make_motion):
     ],
 )
 def test_grids_beyond_any_use_are_refused_when_described(film, name):
-    """Of a million vertices and of the first number that is too many, each named with its limit."""
+    """Grids of a million vertices, and of the first number that is too many, raise errors that name the limit."""
     for count in (20_001, 1_000_000, 10**30):
         with pytest.raises(ehd.InputError, match=rf"{name} must be within \d+ and 20000, got {count}; "):
             film(**{name: count})
@@ -380,7 +380,7 @@ def test_grids_beyond_any_memory():
 
 
 def test_imported_bores_must_fit_the_film(make_bearing):
-    """As those of cylinders: a film on a bore of another radius is another film."""
+    """Imported bores are checked as those of cylinders: a film on a bore of another radius is another film."""
     cylinder = ehd.HollowCylinder(inner_radius=0.0225, thickness=0.008, length=0.05, circumferential=12).mesh()
     mesh = ehd.mesh_from_arrays(cylinder.nodes, cylinder.elements, bore_radius=0.0225)
     steel = ehd.SaintVenantKirchhoff(youngs_modulus=2e11, poisson_ratio=0.3, density=7800.0)

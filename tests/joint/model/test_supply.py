@@ -55,7 +55,7 @@ def test_tangent_against_differences(make_bearing, closure):
 
 
 def test_steady_oil_balance(make_bearing):
-    """What the areas feed in leaves through the ends."""
+    """The oil that the areas feed leaves through the ends."""
     bearing = make_bearing(film=GRID, cavitation=ehd.ElrodAdams(), supply=SUPPLY)
     for eps in (0.2, 0.7, 0.95):
         film = ehd.steady(bearing, speed=150.0, eccentricity_ratio=eps, direction=0.5, tilt=(1e-5, -2e-5))
@@ -141,7 +141,7 @@ def test_a_groove_off_the_middle_feeds_what_leaks(make_bearing, closure):
 
 
 def test_areas_in_the_journal(make_bearing):
-    """At a spin of k grid steps an area in the journal is the one in the housing k steps on."""
+    """An area in the journal, turned by k grid steps, is the one in the housing k steps on."""
     step = 2.0 * math.pi / GRID.n_theta
     turning = build_model(
         make_bearing(
@@ -369,7 +369,7 @@ def test_starved_films_on_the_default_grid(make_bearing):
 
 
 def test_flow_of_a_hole_grows_steadily_with_its_diameter(make_bearing):
-    """Of 25 diameters from a tenth of the grid's spacing to four times as much as it."""
+    """The flow grows over 25 diameters, from a tenth of the grid's spacing to four times the spacing."""
     flows = []
     for diameter in np.geomspace(2e-4, 8e-3, 25):
         hole = ehd.Hole(angle=2.0, z=0.003, diameter=diameter, pressure=1e6)

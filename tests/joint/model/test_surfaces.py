@@ -71,7 +71,7 @@ def normal_wrench(integrals, motion):
 @pytest.mark.parametrize("speed", [SPEED, -SPEED, 0.1, 0.0])
 @pytest.mark.parametrize("friction", [0.0, 0.08])
 def test_contact_tangent_is_the_derivative_of_the_wrench(speed, friction):
-    """For pressures that are linear in the gap, against central differences, whose error is 1e-10 of the columns."""
+    """Pressures are linear in the gap, so that the error of central differences is 1e-10 of the columns."""
     rng = np.random.default_rng(7)
     grid, scale, transition = ehd.bearing_grid(R, L, 24, 4), np.array([1.0 / C, 1.0 / C, R / C, R / C]), 0.01
     P, slope = rng.uniform(1e5, 1e6, grid.shape), -rng.uniform(1e5, 1e6, grid.shape)
@@ -231,7 +231,7 @@ def test_wear_grows_by_archard():
 
 
 def test_wear_relieves_the_contact():
-    """At a held position the contact pressure falls as the bore wears, and the wear never shrinks."""
+    """The contact pressure at a held position falls as the bore wears, and the wear never shrinks."""
     model = build_model(bearing(asperity=ASPERITY, wear=ehd.ArchardWear(wear_rate=1e-11)))
     motion, history, loads, worn = at(0.99), None, [], 0.0
     history = model.initial_history(motion)

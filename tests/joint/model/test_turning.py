@@ -188,7 +188,7 @@ OPTIONS = {
 
 @pytest.mark.parametrize("name", sample(list(OPTIONS), 0))
 def test_tangent_is_the_derivative(name):
-    """Of wrench and loads to motion, modes, rates and angle.
+    """Derivatives of wrench and loads to motion, modes, rates and angle.
 
     Differences over 1e-6 of the scales have errors of 1e-7 where films are thin; a film whose set of cavities changes
     within them would show as 1e-3. Fills at a line inside its cells bend more: truncation 3e-6 there, 3e-7 over 3e-7.

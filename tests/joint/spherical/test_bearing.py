@@ -1,4 +1,4 @@
-"""What `SphericalBearing` and `steady_spherical` refuse, and what they tell."""
+"""Input errors and messages of `SphericalBearing` and `steady_spherical`."""
 
 import math
 

@@ -75,8 +75,8 @@ def test_squeeze_of_the_cup_converges_with_second_order():
 @pytest.mark.parametrize("angles", [CUP, (0.0, 2.3), (0.7, math.pi - 0.7)])
 @pytest.mark.parametrize(("ratio", "bound"), [(0.8, 0.01), (0.9, 0.025)])
 def test_errors_of_the_default_grid(angles, ratio, bound):
-    """What `SphericalBearing` says of random motions, against a grid of twice as many rows and columns,
-    with a quarter of the error."""
+    """Errors that `SphericalBearing` states, for random motions against a grid of twice as many rows and columns, which
+    has a quarter of the error."""
     rng, film, fine = (
         np.random.default_rng(8),
         model(socket_angles=angles),

@@ -168,7 +168,7 @@ class TestEquilibrium:
 
     @pytest.mark.parametrize("closure", [*CLOSURES, ehd.ElrodAdams()])
     def test_refuses_areas_that_turn_with_the_journal(self, make_bearing, closure):
-        """Of any kind, next to areas in the housing, in all that look for a position of rest."""
+        """Turning areas of any kind, next to areas in the housing, raise in every search for a position of rest."""
         rng = np.random.default_rng(3)
         still = ehd.CircumferentialGroove(z=-0.011, width=0.001, pressure=1e5)
         for kind in (ehd.Hole, ehd.Pocket, ehd.AxialGroove):
@@ -271,7 +271,7 @@ def carries(seed):
 
 @pytest.mark.filterwarnings("ignore:.*the load is carried at:UserWarning")
 def test_random_loads_are_found():
-    """Those of films that end pressures keep from cavitating turn the journal across the load."""
+    """Random loads are carried; end pressures that prevent cavitation move the journal across the load."""
     same = [carries(seed) for seed in range(24)]
     # several positions carry some loads of starved films
     assert sum(same) >= 21
@@ -285,7 +285,7 @@ def test_many_random_loads_are_found():
 
 
 def test_of_several_positions_the_steadiest_is_returned_and_all_are_named():
-    """Of a load on a groove; stiffness from forces of films beside the position."""
+    """A load on a groove has several positions; stiffnesses are found from forces at positions nearby."""
     bearing, asked, _ = random_loads(191)
     load, c = np.array(asked["load"]), bearing.radial_clearance
     with pytest.warns(

@@ -174,8 +174,8 @@ class TestSolveFilm:
 
 @pytest.mark.parametrize("bush", [None, ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9)])
 def test_force_at_an_instant_is_the_same_at_any_speed(bush):
-    """Of similar films: the step that stands for none goes with the speeds, as those of slow gates and of dental
-    drills; it was 1e-6 s on liners, which took a tenth of the force at 1e5 rad/s, and 1e-9 s elsewhere."""
+    """Similar films have similar forces: the short step that stands for none is scaled by the speeds, from slow gates
+    to dental drills. A fixed step of 1e-6 s on liners took a tenth of the force at 1e5 rad/s."""
     forces = []
     for faster in (1.0, 2.0**-20, 2.0**9):
         bearing = ehd.JournalBearing(

@@ -71,7 +71,7 @@ def test_order_of_speeds_does_not_matter():
 
 @pytest.mark.filterwarnings("ignore::exudyn_ehd.HotFilmWarning")
 def test_a_branch_is_kept_whatever_the_other_speeds():
-    """At 40 rad/s a film of 320 K carries the load, and one of 613 K that rubs; the curve comes from the first."""
+    """Two films carry the load at 40 rad/s, one of 320 K and one of 613 K that rubs; the curve follows the first."""
     b = ehd.JournalBearing(
         journal_radius=0.01,
         length=0.02,
@@ -144,7 +144,7 @@ def test_every_point_is_the_equilibrium_with_whatever_the_bearing_names(option):
 
 
 def test_boundary_friction_is_full_however_slow_the_sliding():
-    """What asperities carry rubs with their coefficient, whatever their transition speed; the rest is the film's."""
+    """The asperities' load rubs with their coefficient, whatever their transition speed; the rest is the film's."""
     rough = dataclasses.replace(ASPERITY, transition_speed=0.01)
     curve = ehd.stribeck(bearing(asperity=rough), load=2000.0, speeds=np.geomspace(1e-4, 300.0, 10))
     contact = 0.1 * curve.contact_load_share

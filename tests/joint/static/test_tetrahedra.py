@@ -1,4 +1,4 @@
-"""The same bearing on hexahedra and on tetrahedra."""
+"""One bearing on hexahedra and on tetrahedra."""
 
 import dataclasses
 

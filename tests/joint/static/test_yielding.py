@@ -236,7 +236,7 @@ def test_hard_bores_respond_as_rigid_ones_with_a_cavity(surface, closure):
 
 @pytest.mark.parametrize("surface", ["pin", pytest.param("bush", marks=pytest.mark.slow)])
 def test_bores_answer_in_a_small_space(surface, monkeypatch):
-    """As with all of their coordinates, from standstill to four times the spin."""
+    """A small space gives the dynamic stiffness of all coordinates, from standstill to four times the spin."""
     made = bearing(surface, **ELROD)
     small = ehd.equilibrium(made, speed=SPEED, load=(2000.0, 0.0))
     monkeypatch.setattr(dynamic_stiffness, "SAMPLES", (0.0,) * 1000)

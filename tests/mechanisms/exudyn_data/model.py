@@ -1,4 +1,4 @@
-"""What the models of Exudyn have in common: what a test looks at in each, and the work that the rest of it does."""
+"""Common record of Exudyn's models: the parts that a test looks at, and the work of the other parts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GRAVITY = 9.81
 
 @dataclasses.dataclass
 class Model:
-    """What a test looks at.
+    """Parts of a model that a test looks at.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Model:
         return moving + self.potential(mbs)
 
     def power(self, mbs: exu.MainSystem) -> float:
-        """What workers, torques and drive put into the bodies [W]."""
+        """Power that workers, torques and drive put into the bodies [W]."""
         output = exu.OutputVariableType
         speeds = mbs.systemData.GetODE2Coordinates_t()
         given = sum(

@@ -17,7 +17,7 @@ A = 0.01
 
 
 def cylinder(inner, z, nu=NU):
-    """With as many elements through the wall as a journal's."""
+    """A cylinder with as many elements through the wall as a journal has."""
     growth = np.concatenate(([0.0], np.cumsum(GROWTH_INWARDS ** np.arange(FINE[0])[::-1])))
     material = ehd.SaintVenantKirchhoff(youngs_modulus=E, poisson_ratio=nu, density=7800.0)
     return Cylinder(inner + (A - inner) * growth / growth[-1], z, material.lame)
@@ -64,7 +64,7 @@ def test_plane_strain(inner):
 
 
 def test_free_pin_is_moved_by_nothing():
-    """What keeps the balance is spread as the mass is; momentum and its moment vanish, and so do rigid loads' modes."""
+    """Balancing forces are spread as the mass is: momentum and its moment vanish, and so do rigid loads' modes."""
     body = cylinder(0.3 * A, np.linspace(-2.0 * A, 3.0 * A, 21))
     rng = np.random.default_rng(1)
     for n in (0, 1):

@@ -124,7 +124,7 @@ def test_told_error_is_that_of_the_elements_under_films(held, inner, tolerance):
 
 @pytest.mark.parametrize("held", HELD)
 def test_even_pressures_displace_the_modes_as_they_displace_the_elements(held):
-    """Those of pressurised ends, which the modes hold but for 1e-3."""
+    """Even pressures, as those of pressurised ends, displace the modes as the elements, to 1e-3."""
     journal = pin(held, tolerance=0.1)
     found, reduced = journal_modes(journal, RADIUS, LENGTH), _Reduction(journal, RADIUS, LENGTH)
     for shape in (np.ones_like(reduced.zeta), 1.0 + 0.5 * reduced.zeta):

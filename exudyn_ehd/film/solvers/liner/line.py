@@ -157,6 +157,8 @@ class FilmLine(RuptureLine):
     def gradients(
         self,
         work: Workspace,
+        places: np.ndarray,
+        weights: np.ndarray,
         gaps: tuple[np.ndarray, np.ndarray],
         flux: LinkFlux | None,
         speeds: tuple[float, float],
@@ -165,8 +167,8 @@ class FilmLine(RuptureLine):
         mesh: tuple[np.ndarray, ...],
     ) -> LineGradients:
         """Return `RuptureLine.gradients`, with what the liner adds, for gaps and flux at the cavity's pressure."""
-        line = super().gradients(work, gaps, flux, speeds, flow_x, squeeze, mesh)
-        add_yielding(line.places, self.block, self.lean, gaps[1], self.liner, line.by)
+        line = super().gradients(work, places, weights, gaps, flux, speeds, flow_x, squeeze, mesh)
+        add_yielding(places, self.block, self.lean, gaps[1], self.liner, line.by)
         return line
 
 

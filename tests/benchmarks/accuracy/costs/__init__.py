@@ -1,4 +1,4 @@
-"""What options cost in time.
+"""Cost of options in time.
 
 Module map
 ----------

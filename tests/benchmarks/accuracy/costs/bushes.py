@@ -1,4 +1,4 @@
-"""What a bush costs under a film: steps and Newton iterations of a run, the film's Jacobian, assembly of its elements.
+"""Cost of a bush under a film: steps and Newton iterations of a run, the film's Jacobian, assembly of its elements.
 
 A free journal of 6.6 kg on six coordinates (R 30 mm, L 66 mm, c 30 um, 9 mPa s, 3000 rpm, film 80 x 16, steel bush of
 20 mm) under a load of 15 kN that swings at the speed of rotation, h = 0.1 ms, Newton to 1e-6; tilted cases load it
@@ -76,7 +76,7 @@ class Case:
 
     @property
     def sparse(self) -> bool:
-        """Whether a mesh is part of the model."""
+        """True if a mesh is part of the model."""
         return isinstance(self.bush, ANCFBush)
 
 
@@ -143,7 +143,7 @@ def scene(bush: Any, offset: float) -> Any:
 
 
 def settings(steps: int, solver: Any = exu.LinearSolverType.EigenDense) -> Any:
-    """Of the solver; ``solver`` for the linear equations."""
+    """Settings of a run with this number of steps; ``solver`` solves the linear equations."""
     chosen: Any = ConfigureSolver(exu.SimulationSettings())
     chosen.timeIntegration.endTime, chosen.timeIntegration.numberOfSteps = steps * STEP, steps
     chosen.timeIntegration.verboseMode = 0
@@ -196,7 +196,7 @@ def assembly_run(rule: Quadrature, *, parallel: bool = False) -> Callable[[], An
 
 @dataclass
 class Block:
-    """What one process has measured.
+    """Measurements of one process.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What every effect, closure and reduced film costs over the plain film.
+"""Cost of every effect, closure and reduced film over that of the plain film.
 
 The journal moves along an orbit at eccentricity ratios of 0.75 to 0.85, a degree per evaluation, and every state is
 evaluated with its exact tangent, as in a time integration; three states are a step, of which the last is accepted. From

@@ -1,4 +1,4 @@
-"""How cost grows with the film's grid, the modes of a bush and the joints in a model: times and fitted exponents.
+"""Growth of cost with the film's grid, the modes of a bush and the joints in a model: times and fitted exponents.
 
 ``t ~ n^k``: k is the slope of a straight line through log t over log n. Processor time of one thread, median of several
 rounds in turns.
@@ -196,7 +196,7 @@ def write_growths(path: pathlib.Path, growths: list[Growth], note: str) -> None:
 
 
 def read_growths(path: pathlib.Path) -> tuple[list[Growth], list[str]]:
-    """What `write_growths` wrote, and its notes."""
+    """Read the rows that `write_growths` wrote, and their notes."""
     rows, notes = read_rows(path, HEAD)
     points: dict[tuple[str, str], list[tuple[int, float]]] = {}
     for row in rows:

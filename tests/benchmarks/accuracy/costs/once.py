@@ -1,4 +1,4 @@
-"""What is paid once: compiling the kernels, tabulating a map, building the modes of a bush; and reading them again."""
+"""Costs paid once: compiling the kernels, tabulating a map, building the modes of a bush; and reading them again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which settings stand on a ladder."""
+"""Ladders: lists of settings from coarse to fine, for every kind of study."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ class Study:
 
 @dataclass
 class _Measured:
-    """What is known about one setting."""
+    """Results and times of one setting, as far as they have been measured."""
 
     outcome: Outcome | None = None
     run: Callable[[], Outcome] | None = None

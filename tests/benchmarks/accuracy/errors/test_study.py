@@ -72,7 +72,7 @@ def test_errors_repeat_to_rounding(rows):
 
 
 def test_in_parallel(rows):
-    """The same errors, and no times."""
+    """A study in two processes finds the errors of one in a single process, and measures no times."""
     study = _study(settings=_study().settings[:2])
     parallel = run_study(study, processes=2, progress=None)
     for row in parallel:

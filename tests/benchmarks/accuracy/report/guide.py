@@ -101,7 +101,7 @@ def paper_text(folder: pathlib.Path) -> str:
 
 
 def numbers_text(folder: pathlib.Path) -> str:
-    """What a reader wants to know first: five numbers."""
+    """Five key numbers as a list, for the start of the guide."""
     rows, notes = read_table(folder / "steady_800_film.csv", Row)
     coarse, default, film_map = (_row(rows, name, "load") for name in ("2D 48 x 6", "2D 96 x 10", "map"))
     (paper,) = (row for row in rows if "(paper)" in row.setting and row.quantity == "load")
@@ -144,7 +144,7 @@ def _missed(row: Row) -> str:
 
 
 def step_text(folder: pathlib.Path) -> str:
-    """What runs tell of their steps, next to what these have missed."""
+    """Table of the step errors that runs estimate, next to their true errors."""
     lines: list[list[str]] = []
     for name in ("orbit", "slider_pin", "big_end"):
         rows, notes = read_table(folder / f"{name}_integration.csv", Row)
@@ -247,7 +247,7 @@ def assembly_text(folder: pathlib.Path) -> str:
 
 
 def once_text(folder: pathlib.Path) -> str:
-    """What is paid once."""
+    """Table of the costs paid once."""
     costs, notes = read_table(folder / f"{PAID_ONCE}.csv", Cost)
     lines = []
     for name in dict.fromkeys(cost.what for cost in costs):

@@ -296,7 +296,7 @@ def write_pictures(folder: pathlib.Path, tables: Iterable[tuple[Sequence[Row], s
 
 
 def unit_of(notes: Sequence[str]) -> str:
-    """What a study's times are the time of, from its table's notes."""
+    """Unit of work that a study's times refer to (a step, a film), from its table's notes."""
     return notes[1].split(";")[0].removeprefix("time per ")
 
 

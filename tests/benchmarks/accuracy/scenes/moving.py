@@ -142,7 +142,7 @@ def extremes(history: JointHistory, instants: np.ndarray) -> dict[str, Any]:
 
 
 def extremes_quantities(clearance: float) -> tuple[QuantityOfInterest, ...]:
-    """What `extremes` gives."""
+    """Quantities of interest that `extremes` returns."""
     return (
         QuantityOfInterest(
             name="path", unit="m", scale=clearance, text="path of the journal, error over the clearance"
@@ -187,7 +187,7 @@ def mixed(history: JointHistory, instants: np.ndarray) -> dict[str, Any]:
 
 
 def mixed_quantities(clearance: float) -> tuple[QuantityOfInterest, ...]:
-    """What `mixed` gives."""
+    """Quantities of interest that `mixed` returns."""
     return (
         QuantityOfInterest(name="friction torque", unit="Nm", text="friction torque, largest error of the run"),
         QuantityOfInterest(name="friction work", unit="J", text="work of friction"),

@@ -1,4 +1,4 @@
-"""What a rung of a ladder changes, what a run gives back, and what a scene has to offer."""
+"""Records of the study: settings on a ladder, outcome of a run; protocol of a scene."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from exudyn_ehd.status import require_integer, require_number
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Integration:
-    """How a moving scene is integrated.
+    """Time integration of a moving scene.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Setting:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class QuantityOfInterest:
-    """What an error is measured in.
+    """Quantity whose error is measured.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class QuantityOfInterest:
     text: str = ""
 
     def scale_of(self, reference: np.ndarray) -> float:
-        """What errors against ``reference`` are divided by."""
+        """Divisor of errors against ``reference``."""
         largest = float(np.max(np.abs(reference))) if self.scale is None else self.scale
         return largest if largest > 0.0 else 1.0
 
@@ -104,7 +104,7 @@ class QuantityOfInterest:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class Outcome:
-    """What one run gives back.
+    """Results of one run.
 
     Attributes
     ----------
@@ -129,22 +129,22 @@ class Scene(Protocol):
 
     @property
     def name(self) -> str:
-        """For files."""
+        """Name of the scene in files."""
         ...
 
     @property
     def title(self) -> str:
-        """For people."""
+        """Title of the scene in tables and pictures."""
         ...
 
     @property
     def quantities(self) -> tuple[QuantityOfInterest, ...]:
-        """What errors can be measured in."""
+        """Quantities whose errors can be measured."""
         ...
 
     @property
     def per(self) -> str:
-        """What `Outcome.seconds` is the time of."""
+        """Unit of work that `Outcome.seconds` refers to."""
         ...
 
     def prepare(self, setting: Setting) -> Callable[[], Outcome]:
