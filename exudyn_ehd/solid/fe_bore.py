@@ -78,14 +78,14 @@ class FEBore(FESurface):
     ----------
     fem : FEMinterface
         The mesh that the body was made of, with its elements.
-    nodes : sequence of int, optional
+    nodes : sequence of int or None, default None
         Mesh nodes on the bore; by default those on the cylinder around the joint's axis.
-    radius_tolerance : float
+    radius_tolerance : float, default 0.02
         Largest relative difference of a node's radius from the bearing's bore radius.
-    settled : bool
+    settled : bool, default True
         Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
         where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
-    exact_jacobian : bool
+    exact_jacobian : bool, default True
         The joint gives the body its exact Jacobian (`ReplaceReducedBody`); False leaves the body to Exudyn and its
         differences.
 
@@ -182,7 +182,7 @@ def _rigid_fit(place: np.ndarray, weight: np.ndarray, field_: np.ndarray) -> np.
 
 @dataclass(frozen=True, kw_only=True)
 class BoreModesReport:
-    """Result of `add_bore_modes`.
+    """Result of `add_bore_modes`: how many modes were added, and the error before and after.
 
     Parameters
     ----------
@@ -238,10 +238,13 @@ def add_bore_modes(
         Radius and length of the bore under the film [m].
     fixed_nodes : sequence of int
         Mesh nodes held: those of the first interface, which carries the body's frame.
-    tolerance, tilted
-        As in `ModalBush`, but of the bore's shape: see `BoreModesReport`. Odd modes come with ``tilted=False`` too
-        where the body is not symmetric about the bore's mid-plane.
-    radius_tolerance, nodes
+    tolerance : float, default 0.07
+        As in `ModalBush`, but of the bore's shape: see `BoreModesReport`.
+    tilted : bool, default True
+        As in `ModalBush`, but odd modes come with False too where the body is not symmetric about the bore's mid-plane.
+    radius_tolerance : float, default 0.02
+        As in `FEBore`.
+    nodes : sequence of int or None, default None
         As in `FEBore`.
 
     Returns

@@ -130,7 +130,7 @@ class HollowCylinder(Checked):
     ----------
     inner_radius, thickness, length : float
         [m]
-    axial, radial, circumferential : int
+    axial, radial, circumferential : int, default 4, 2, 40
         Elements in each direction. One radial layer is 2 % too stiff for a bore pressure cos(4 theta), three give 1 %
         up to cos(5 theta) with 40 elements around.
 

@@ -45,7 +45,7 @@ class File:
     ----------
     path : path
         Of a file of its own for each joint; "{name}" in it stands for the joint's name.
-    every : Every, Period or None
+    every : Every, Period or None, default None
         Keep some of the steps; None: all of them.
 
     Examples

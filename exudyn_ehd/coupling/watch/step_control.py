@@ -45,10 +45,10 @@ class StepControl:
 
     Parameters
     ----------
-    largest_gap_change : float
+    largest_gap_change : float, default 0.25
         Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the
         step (or of the contact's range, if that is larger), and the same of the end faces; 0.01 to 1. Of a joint.
-    error : float, optional
+    error : float or None, default None
         Error of the gap to aim at, as a share of the minimum film thickness; 1e-4 to 0.5. Of a run. The gaps of end
         faces do not count: their films have no estimate.
 

@@ -80,12 +80,12 @@ class ElasticJournal:
         Axial places of its end faces in the joint frame, about the bearing's mid-plane [m]; the film lies between them.
     held : HeldEnds, HeldBands or None
         Bands or ends where its body holds it; None: the journal is the body, and its mean motion is the body's.
-    inner_radius : float
+    inner_radius : float, default 0.0
         Inner radius of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
-    tolerance : float
+    tolerance : float, default 0.05
         Error of the surface's displacement under sampled films, as in `ModalBush`; 2e-3 to 0.2. Of a pin that bends by
         more than it flattens, over what it deforms locally.
-    tilted : bool
+    tilted : bool, default True
         False leaves out the modes that are odd in z: for journals that stay parallel.
 
     Examples

@@ -46,13 +46,13 @@ class FEJournal(FESurface):
     ----------
     fem : FEMinterface
         The mesh that the body was made of, with its elements.
-    nodes : sequence of int, optional
+    nodes : sequence of int or None, default None
         Mesh nodes on the journal; by default those on the cylinder around the joint's axis.
-    radius_tolerance : float
+    radius_tolerance : float, default 0.02
         Largest relative difference of a node's radius from the bearing's journal radius.
-    settled : bool
+    settled : bool, default True
         As in `FEBore`, with a shape that stands under the turning journal. Stiff modes that start undeformed ring.
-    exact_jacobian : bool
+    exact_jacobian : bool, default True
         As in `FEBore`.
 
     Examples
