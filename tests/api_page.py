@@ -206,8 +206,11 @@ def callables():
 
 def call_text(item):
     """Arguments with their defaults: first those that have to be given, last those that are None by default."""
-    required = {name for e in section(item, "Parameters") or () if e.text.startswith("Required") for name in e.names}
-    defaults = {p.name: p.empty if p.name in required else p.default for p in parameters(item).values()}
+    entries = section(item, "Parameters") or ()
+    required = {name for e in entries if e.text.startswith("Required") for name in e.names}
+    gone = {name for e in entries if e.kind.startswith("not supported") for name in e.names}
+    known = [p for p in parameters(item).values() if p.name not in gone]
+    defaults = {p.name: p.empty if p.name in required else p.default for p in known}
     texts = [name for name, value in defaults.items() if value is inspect.Parameter.empty]
     texts += [
         f"{name}={default_text(value)}"

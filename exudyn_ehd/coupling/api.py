@@ -38,7 +38,7 @@ _WHERE = "CreateLubricatedJoint"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Free:
-    """``axial``: the journal slides freely along the axis; ``tilt``: it tilts as far as the film lets it.
+    """``axial`` of a joint: the journal slides along its axis; ``tilt``: it tilts as far as the film lets it.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Free:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Held:
-    """``axial``: the relative axial displacement keeps its reference value; ``tilt``: the axes keep their directions.
+    """``axial`` of a joint: a constraint holds the journal along its axis; ``tilt``: the axes keep their directions.
 
     Both by one algebraic constraint, which carries what the film does not.
 

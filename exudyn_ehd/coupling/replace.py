@@ -40,10 +40,10 @@ def ReplaceJoint(
     journal: int = 1,
     **options: Any,
 ) -> LubricatedJoint:
-    """Put a film in the place of a revolute or cylindrical joint of a model; before Assemble.
+    """Replace a revolute or cylindrical joint of a model by a film; before Assemble.
 
-    The joint is switched off and hidden (``activeConnector=False``), so that every number of the model stays valid. It
-    holds the journal along the axis (`Held`) if the joint did. Explicit solvers of Exudyn refuse systems with
+    The joint is switched off and hidden (``activeConnector=False``), so that every number of the model stays valid. The
+    film holds the journal along the axis (`Held`) if the joint did. Explicit solvers of Exudyn refuse systems with
     constraints, also inactive ones.
 
     Parameters
@@ -127,7 +127,7 @@ def ReplaceJoints(
     types: Sequence[str] = TYPES,
     **options: Any,
 ) -> dict[int, LubricatedJoint]:
-    """`ReplaceJoint` for all active joints of a model that leave one rotation free.
+    """Replace all active joints of a model that leave one rotation free by films; see `ReplaceJoint`.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class Rayleigh(Checked):
-    """Rayleigh damping D = mass_rate M + stiffness_time K.
+    """Damping of an `ANCFBush` by Rayleigh, D = mass_rate M + stiffness_time K.
 
     Parameters
     ----------

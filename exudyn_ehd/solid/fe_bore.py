@@ -69,7 +69,7 @@ class FESurface:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FEBore(FESurface):
-    """The film acts on the bore of the housing, an ObjectFFRFreducedOrder; its modes deform under the oil pressure.
+    """Bore of a finite-element housing (ObjectFFRFreducedOrder), whose modes deform under the oil pressure.
 
     Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes
     let it.
@@ -222,7 +222,7 @@ def add_bore_modes(
     radius_tolerance: float = 0.02,
     nodes: tuple[int, ...] | None = None,
 ) -> BoreModesReport:
-    """Add to the mode basis of a ``FEMinterface`` what its bore does under an oil film.
+    """Add modes to a finite-element body (``FEMinterface``): deflections of its bore under an oil film.
 
     The modes are the static displacements under smooth pressures on the bore, as many as `ModalBush` would take, with
     ``fixed_nodes`` held; they are orthogonal in energy to the modes that are there. Call it after the modes of the

@@ -124,7 +124,7 @@ def surface_of(nodes: np.ndarray, boundary: np.ndarray, member: np.ndarray) -> S
 
 @dataclass(frozen=True, kw_only=True)
 class HollowCylinder(Checked):
-    """A hollow cylinder and the counts of its structured mesh.
+    """Mesh of a hollow cylinder: its dimensions and its numbers of elements.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number, req
 
 @dataclass(frozen=True, kw_only=True)
 class OnCylinder(Checked):
-    """Nodes on a cylinder about the bush's axis: ``held`` of an imported mesh.
+    """``held`` of an imported mesh: its nodes on a cylinder about the bush's axis.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class OnCylinder(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class OnPlane:
-    """Nodes on a plane: ``held`` of an imported mesh.
+    """``held`` of an imported mesh: its nodes on a plane.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ LARGEST_GAP_CHANGE = 0.25
 
 @dataclass(frozen=True, kw_only=True)
 class StepControl:
-    """Limits what an implicit step may do to the film, or chooses the steps by the error that they make.
+    """Step control of a run: limit the change of the gap in a step, or choose steps by the error that they make.
 
     **Of a joint** (``CreateLubricatedJoint(stepControl=StepControl(largest_gap_change=0.1))``): Newton may well
     converge for a step in which the journal falls from the centre onto its contact, or crosses the contact's range at

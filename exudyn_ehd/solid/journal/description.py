@@ -23,7 +23,7 @@ from exudyn_ehd.status import InputError, require_bool, require_number, require_
 
 @dataclass(frozen=True, kw_only=True)
 class HeldEnds:
-    """The body holds the journal at both end faces, as the webs of a crank hold its pin.
+    """``held`` of an `ElasticJournal`: its body holds both end faces, as the webs of a crank hold its pin.
 
     Examples
     --------
@@ -33,7 +33,7 @@ class HeldEnds:
 
 @dataclass(frozen=True, kw_only=True)
 class HeldBands:
-    """The body holds the journal on bands of its cylinder, as the bosses of a piston hold its pin.
+    """``held`` of an `ElasticJournal`: its body holds bands of the cylinder, as a piston's bosses hold its pin.
 
     The surface does not move there against the body, in no direction: bosses as stiff as the body, without play. One
     band beside the film: an overhung pin.
