@@ -1,5 +1,8 @@
 """Elastohydrodynamic (oil-filled) revolute and cylindrical joints for Exudyn.
 
+All public names by task, with their defaults, and the columns of histories with units and signs: `exudyn_ehd/API.md`,
+a text file in the package's folder.
+
 Module map
 ----------
 bearing    what a scene writes: `JournalBearing` and its options

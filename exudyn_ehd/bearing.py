@@ -59,7 +59,7 @@ THICKEST_FILM_RATIO = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class Periodic:
-    """The film closes around the bearing.
+    """Default ``inlet``: the film closes around the bearing.
 
     Examples
     --------
@@ -73,7 +73,7 @@ class Periodic:
 
 @dataclass(frozen=True, kw_only=True)
 class MaximumGap:
-    """The film starts with ambient pressure on the line of maximum gap, as in the classical tables.
+    """``inlet`` of classical tables: ambient pressure on the line of maximum gap; for prescribed positions only.
 
     Only for prescribed positions (`steady`): the line is undefined for a concentric journal and jumps with a moving
     one, so that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it lowers the load by 2 % against `Periodic`.
@@ -94,7 +94,7 @@ Inlet = Periodic | MaximumGap
 
 @dataclass(frozen=True, kw_only=True)
 class JournalBearing(Checked):
-    """A journal bearing, described once for steady studies and joints alike.
+    """Description of a journal bearing for joints and static studies: dimensions, oil, and the effects in its film.
 
     Parameters
     ----------
@@ -105,41 +105,41 @@ class JournalBearing(Checked):
     radial_clearance : float
         c = bore radius - journal radius, half the diametral clearance, m. A ratio c/R outside 1e-4 to 1e-2 warns.
     lubricant : Lubricant
-    film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR
+    film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR, default FiniteLength()
         Film model and grid.
-    cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams
+    cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams, default SwiftStieber()
         Closure at the cavity pressure.
-    inlet : Periodic or MaximumGap
+    inlet : Periodic or MaximumGap, default Periodic()
         Circumferential condition.
     arc : Arc or None, default None
         Part of the circle that the bore has; None: all of it.
-    end_pressures : (float, float)
+    end_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at z = -L/2 and z = +L/2, Pa.
-    squeeze : bool
+    squeeze : bool, default True
         False leaves the squeeze term out (quasi-static film: no damping).
-    contact : RegularisedWall or None
+    contact : RegularisedWall or None, default None
         Contact that carries load before the gap vanishes; None: a vanishing gap ends the run with an error.
-    supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket
+    supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket, default ()
         Areas with a prescribed supply pressure; empty: none.
-    thermal : LumpedThermal, FilmEnergy or None
+    thermal : LumpedThermal, FilmEnergy or None, default None
         Temperature of the film; None: isothermal.
-    bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None
+    bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None, default None
         Flexible bore that deflects under the film's pressure; the outer surface of a bush moves with the housing.
         None: a rigid bore.
-    journal : ElasticJournal, FEJournal or None
+    journal : ElasticJournal, FEJournal or None, default None
         A pin that deflects, with a rigid bore or a `ModalBush` around it; or the joint's journal, a reduced
         finite-element body, by its own modes in a rigid bore. None: a rigid journal.
-    asperity : GreenwoodTripp or None
+    asperity : GreenwoodTripp or None, default None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
-    roughness : PatirCheng or None
+    roughness : PatirCheng or None, default None
         Flow factors of rough surfaces.
-    profile : SurfaceProfile, tuple of SurfaceProfile or None
+    profile : SurfaceProfile, tuple of SurfaceProfile or None, default None
         Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
-    wear : ArchardWear or None
+    wear : ArchardWear or None, default None
         Wear of the bore by the asperity contact.
-    turbulence : NgPan, Hirs or None
+    turbulence : NgPan, Hirs or None, default None
         Turbulent film by the local Reynolds number; None: laminar.
-    thrust : ThrustFaces or None
+    thrust : ThrustFaces or None, default None
         Films on the two end faces, which carry axial load; None: the joint has no axial force but the film's drag.
 
     Raises

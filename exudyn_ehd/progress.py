@@ -24,11 +24,11 @@ _asked: list[bool | None] = [None]
 
 
 def show_progress(on: bool | None = True) -> None:
-    """Show how far long work is, or do not: runs, parameter studies, modes, maps, compilation.
+    """Switch the display of progress on or off: runs, parameter studies, modes, maps, compilation.
 
     Parameters
     ----------
-    on : bool or None
+    on : bool or None, default True
         True: also in pipes and files; False: never; None, as at the start: on a terminal and in notebooks.
 
     Raises

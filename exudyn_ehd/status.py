@@ -26,7 +26,7 @@ MOST_VERTICES = 20_000
 
 
 class Status(enum.IntEnum):
-    """Outcome of one film evaluation; ``advice`` says what to do about it.
+    """Outcome of one film evaluation: converged, or why not; ``advice`` says what to do about it.
 
     Examples
     --------
@@ -72,7 +72,7 @@ _ADVICE = {
 
 
 class EHDError(Exception):
-    """Base of all errors of this package.
+    """Base class of all errors of this package.
 
     Examples
     --------
@@ -85,7 +85,7 @@ class EHDError(Exception):
 
 
 class InputError(EHDError, ValueError):
-    """A scene was described with values that can't be meant; raised before anything runs.
+    """An argument has a value that can't be meant; raised before anything runs, with the allowed range.
 
     Examples
     --------
@@ -97,7 +97,7 @@ class InputError(EHDError, ValueError):
 
 
 class FilmError(EHDError, RuntimeError):
-    """A film could not be evaluated; names the joint, the state and the remedy.
+    """A film could not be evaluated; the message names the joint, the state and the remedy.
 
     Examples
     --------
@@ -111,7 +111,7 @@ class FilmError(EHDError, RuntimeError):
 
 
 class RunError(EHDError, RuntimeError):
-    """A solver of Exudyn failed although every film could be evaluated; names the joints and their state.
+    """A solver of Exudyn failed although every film could be evaluated; the message tells the state of every joint.
 
     Examples
     --------
@@ -121,7 +121,7 @@ class RunError(EHDError, RuntimeError):
 
 
 class MemoryWarning(UserWarning):
-    """The film of a joint goes on with what it remembers of another state than that of the run.
+    """A run starts at a new state, but the film of a joint keeps oil content, wear and heat of its last run.
 
     Examples
     --------
@@ -131,7 +131,7 @@ class MemoryWarning(UserWarning):
 
 
 class RingingWarning(UserWarning):
-    """Steps are too large for the time integration: forces of a joint alternate, or its mesh turns too far in one.
+    """Time steps are too large: forces of a joint alternate, or its mesh turns too far in one step.
 
     Examples
     --------
@@ -171,7 +171,7 @@ class GridWarning(UserWarning):
 
 
 class OverloadWarning(UserWarning):
-    """The film of a joint presses with what neither oil nor steel bears: most likely the time integration's doing.
+    """A film has a pressure that neither oil nor steel bears; most likely a step of the time integration was wrong.
 
     Examples
     --------
@@ -181,7 +181,7 @@ class OverloadWarning(UserWarning):
 
 
 class HotFilmWarning(UserWarning):
-    """A film is hotter than oils bear for long.
+    """A film is hotter than mineral oils bear for long.
 
     Examples
     --------
@@ -191,7 +191,7 @@ class HotFilmWarning(UserWarning):
 
 
 class StrainWarning(UserWarning):
-    """A bush that is taken as linear strains by more than that describes.
+    """A `ModalBush`, which is linear, strains by more than 1 %.
 
     Examples
     --------

@@ -70,7 +70,8 @@ def test_what_the_guides_name_exists(name):
     prose = FENCE.sub("", TEXTS[name])
     names = [n for n in re.findall(r"`([\w./-]+)`", prose) if "/" in n or n.endswith((".py", ".csv"))]
     names += re.findall(r"(?:examples|tests|exudyn_ehd)/[\w./-]*", TEXTS[name])
-    names += [n.replace(".", "/") for n in re.findall(r"python -m ((?:tests|exudyn_ehd)[\w.]*)", TEXTS[name])]
+    modules = [n.replace(".", "/") for n in re.findall(r"python -m ((?:tests|exudyn_ehd)[\w.]*)", TEXTS[name])]
+    names += [f"{n}.py" if (ROOT / f"{n}.py").exists() else n for n in modules]
     package, tables = ROOT / "exudyn_ehd", ROOT / "tests" / "benchmarks" / "accuracy" / "data"
     places = ((ROOT / name).parent, ROOT, package, package / "joint", package / "joint" / "audit", tables)
     # made by the examples

@@ -38,7 +38,7 @@ _WHERE = "CreateLubricatedJoint"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Free:
-    """``axial``: the journal slides freely along the axis; ``tilt``: it tilts as far as the film lets it.
+    """``axial`` of a joint: the journal slides along its axis; ``tilt``: it tilts as far as the film lets it.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Free:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Held:
-    """``axial``: the relative axial displacement keeps its reference value; ``tilt``: the axes keep their directions.
+    """``axial`` of a joint: a constraint holds the journal along its axis; ``tilt``: the axes keep their directions.
 
     Both by one algebraic constraint, which carries what the film does not.
 
@@ -146,55 +146,56 @@ def CreateLubricatedJoint(
     ----------
     mbs : exudyn.MainSystem
         The system, before Assemble.
-    name : str
+    name : str, default ""
         Name of the joint, used in messages too; by default "lubricated joint" and the number of its object.
-    itemNumbers : sequence of two
-        Housing, journal: each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams, geometrically exact
-        beams and cables, mass points, Mass1D, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables,
-        points) or a rigid marker (MarkerIndex: on any of these, on a link of a kinematic tree, on a superelement).
+    itemNumbers : sequence of two, default (None, None)
+        Required: housing, journal; each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams,
+        geometrically exact beams and cables, mass points, Mass1D, RotationalMass1D), a node (NodeIndex: of rigid
+        bodies, beams, cables, points) or a rigid marker (MarkerIndex: on any of these, on a link of a kinematic tree,
+        on a superelement).
         Beams are joined where ``position`` lies along the element. A cable turns with its slope; it has no roll:
         spatial ones take joints along the cable, without spin of their own, and across it, for motion in the plane
         normal to the axis. A mass point never turns, as a slider in its guide, which takes the moments of the film.
-    position : (3,) [m]
+    position : (3,) [m], default ()
         Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
         ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
-    axis : (3,)
+    axis : (3,), default ()
         Joint axis z, global or in the frame of the housing item; may be [] if ``rotationMatrixAxes`` is given. It is
         that of bore and journal: tilted axes do not misalign a shaft, bearings off a line do (two markers, see
         ``position``).
-    bearing : JournalBearing
-        Geometry, lubricant, film and effects.
-    rotationMatrixAxes : (3, 3), optional
+    bearing : JournalBearing, default None
+        Required: geometry, lubricant, film and effects.
+    rotationMatrixAxes : (3, 3) or None, default None
         Joint frame as in ``mbs.CreateGenericJoint``: columns x, y, z = axis, global or in the housing's frame. By
         default x is the local x of the housing item, projected normal to the axis (its local y, if x is parallel to
         the axis). Every angle of the film counts from x about z.
-    axial : Free or Held
+    axial : Free or Held, default Free()
         Whether the journal may slide along the axis; with ``bearing.thrust`` films on its end faces hold a free one.
-    tilt : Free or Held
+    tilt : Free or Held, default Free()
         Free: the film alone carries tilting moments, by its length. Held: journal and bore stay parallel and a
         constraint carries them, where one joint of a model stands for a shaft's several bearings.
-    stepControl : StepControl or None
+    stepControl : StepControl or None, default None
         Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are
         halved.
-    bushGravity : (3,) [m/s^2], optional
+    bushGravity : (3,) [m/s^2] or None, default None
         By default the housing's mass, inertia and weight contain those of the bush, so that a model weighs the same
         with every kind of bush. Give this for a housing that does not contain its `ANCFBush` (a beam, a cable, a
         mesh). The bush's mass then counts in addition to the housing's, and this global gravity acts on it.
-    useGlobalFrame : bool
+    useGlobalFrame : bool, default True
         See position, axis, rotationMatrixAxes.
-    show : bool
+    show : bool, default True
         Draw the bearing in Exudyn's renderer: a ring of the housing, and the film of the last accepted step in the
         colours of its pressure, its thickness enlarged.
-    axisRadius, axisLength : float
+    axisRadius, axisLength : float, default 0.1, 0.4
         Arguments of ``mbs.CreateRevoluteJoint``, so that its calls can be taken over; without effect: the film is drawn
         in the bearing's own size.
-    color : (4,)
+    color : (4,), default (-1.0, -1.0, -1.0, -1.0)
         Colour of the film element's nodes, RGBA; Exudyn's default for -1.
-    bodyNumbers : sequence of two, optional
+    bodyNumbers : sequence of two or None, default None
         The name that ``itemNumbers`` had in older calls of Exudyn; a DeprecationWarning says so.
-    returnDict : bool
+    returnDict : bool, default False
         Return a dictionary of numbers in place of the handle.
-    record : File, Every, Period or None
+    record : File, Every, Period or None, default None
         Accepted steps that `LubricatedJoint.history` keeps, and their place: all of them or some, in a file or in
         memory; None: all, in memory.
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
-    """Handle of one lubricated joint.
+    """A lubricated joint in a model, as `CreateLubricatedJoint` returns it: history, films, pictures, sensors, audit.
 
     The ``plot_...`` methods draw the film at the last accepted state, or the history over all accepted steps.
 
@@ -110,7 +110,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         ----------
         load : (2,) [N]
             Force on the journal in the joint's x and y that the film has to carry: what acts on its body, with inertia.
-        speed : float, optional
+        speed : float or None, default None
             Relative spin, rad/s; by default that of the initial state.
 
         Returns
@@ -139,9 +139,9 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
 
         Parameters
         ----------
-        liner : ElasticLiner, optional
+        liner : ElasticLiner or None, default None
             Liner whose elasticity is assessed, for bearings without one.
-        measure_time : bool
+        measure_time : bool, default False
             Measure the share of computing time of each active effect.
 
         Returns
@@ -179,11 +179,11 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
             global, Position and Velocity of the housing's joint point, HomogeneousTransformation,
             HomogeneousTransformationLocal. Loads are then those that the journal hands on to the housing, torques are
             about the bearing's centre.
-        fileName : str
+        fileName : str, default ""
             File to write to, as in Exudyn's sensors.
-        name : str
+        name : str, default ""
             Name of the sensor; by default joint and quantity.
-        writeToFile : bool, optional
+        writeToFile : bool or None, default None
             By default whether a file name is given; the values are stored in the sensor in any case.
 
         Returns
@@ -228,9 +228,9 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
 
         Parameters
         ----------
-        period : float
+        period : float, default 0.0
             Time between two films, s; 0 keeps every accepted step.
-        frames : int
+        frames : int, default 400
             Most films that are kept; when they are full, every second one is dropped and the period doubled, so that
             memory is bounded and the films span the whole run.
         """
@@ -263,8 +263,8 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         ----------
         path : path
             Ending in ``.gif``, or in ``.mp4`` where the program ffmpeg is installed.
-        frames_per_second : int
-        largest_count : int
+        frames_per_second : int, default 15
+        largest_count : int, default 150
             Most frames; of more films an even selection is shown. A frame takes about 0.2 s.
 
         Raises
@@ -292,7 +292,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         ----------
         path : path
             Ending in ``.pvd``: the file to open; the data lie in a folder of the same name next to it.
-        magnification : float
+        magnification : float, default 1.0
             Factor on the displacements of bore and bush.
 
         Returns

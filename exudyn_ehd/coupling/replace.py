@@ -40,10 +40,10 @@ def ReplaceJoint(
     journal: int = 1,
     **options: Any,
 ) -> LubricatedJoint:
-    """Put a film in the place of a revolute or cylindrical joint of a model; before Assemble.
+    """Replace a revolute or cylindrical joint of a model by a film; before Assemble.
 
-    The joint is switched off and hidden (``activeConnector=False``), so that every number of the model stays valid. It
-    holds the journal along the axis (`Held`) if the joint did. Explicit solvers of Exudyn refuse systems with
+    The joint is switched off and hidden (``activeConnector=False``), so that every number of the model stays valid. The
+    film holds the journal along the axis (`Held`) if the joint did. Explicit solvers of Exudyn refuse systems with
     constraints, also inactive ones.
 
     Parameters
@@ -55,9 +55,9 @@ def ReplaceJoint(
         ObjectJointGeneric or ObjectJointRevolute2D.
     bearing : JournalBearing
         Geometry, lubricant, film and effects.
-    name : str
+    name : str, default ""
         Name of the film; by default that of the joint, with "film of" before it.
-    journal : int
+    journal : int, default 1
         Index of the joint's marker on the journal, 0 or 1; the other is on the housing.
     options
         Further arguments of `CreateLubricatedJoint`: axial, tilt, stepControl, bushGravity, show, record. A short film
@@ -127,7 +127,7 @@ def ReplaceJoints(
     types: Sequence[str] = TYPES,
     **options: Any,
 ) -> dict[int, LubricatedJoint]:
-    """`ReplaceJoint` for all active joints of a model that leave one rotation free.
+    """Replace all active joints of a model that leave one rotation free by films; see `ReplaceJoint`.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def ReplaceJoints(
         The system, before Assemble.
     bearing : JournalBearing or function
         One bearing for all joints, or a function of the joint's object number; None of it leaves that joint as it is.
-    types : sequence of str
+    types : sequence of str, default ("JointRevoluteZ", "JointGeneric", "JointRevolute2D")
         Exudyn's object types that count.
     options
         As for `ReplaceJoint`.
@@ -186,7 +186,7 @@ def ReplaceJoints(
 
 
 def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
-    """Give an ObjectFFRFreducedOrder its exact Jacobian; before Assemble.
+    """Give a finite-element body (ObjectFFRFreducedOrder) its exact Jacobian, for faster runs; before Assemble.
 
     Exudyn differentiates the body numerically, which with many modes takes most of a step: at every Jacobian, two
     evaluations of all its forces for each coordinate. Here an ObjectGenericODE2 beside it has the same equations with

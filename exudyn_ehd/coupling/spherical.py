@@ -105,26 +105,38 @@ class SphericalFilmElement(FilmElement):
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class SphericalHistory(FilmSteps):
-    """Accepted steps of a ball joint, first the initial state, last the state now; socket's frame, SI units.
+    """Accepted steps of a ball joint, first the initial state, last the state now; an array for each quantity.
+
+    `exudyn_ehd/API.md` has these columns as a table. All vectors are in the socket's frame (origin in its centre, z =
+    its axis), SI units.
 
     Attributes
     ----------
-    time : (n,) array
-        s.
-    place, velocity, angular_velocity : (n, 3) arrays
-        Motion of the ball's centre and of the ball as seen from the socket, m, m/s, rad/s; velocities as the film
-        takes them (`exudyn_ehd.joint.step_rates`).
-    force, torque : (n, 3) arrays
-        On the ball, N; torque about its centre, N m.
-    eccentricity_ratio : (n,) array
-        Distance of the centres over the radial clearance.
-    minimum_gap, peak_pressure : (n,) arrays
-        m, Pa.
-    power_loss, contact_load : (n,) arrays
-        W that turn into heat, N of the wall in ``force``.
-    step_error : (n,) array
-        Estimated error of the ball's place that the time steps have made, over the minimum film thickness; of implicit
-        solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
+    time : (n,) [s]
+        Time at the end of the step. In a static solve Exudyn's load parameter.
+    place : (n, 3) [m]
+        Centre of the ball. From the socket's centre, along x, y, z.
+    velocity : (n, 3) [m/s]
+        Velocity of the ball's centre. As seen from the socket, as the film takes it (`exudyn_ehd.joint.step_rates`).
+    angular_velocity : (n, 3) [rad/s]
+        Angular velocity of the ball. As seen from the socket, as the film takes it.
+    force : (n, 3) [N]
+        Force of film and contact. On the ball, along x, y, z.
+    torque : (n, 3) [N m]
+        Torque of the film's shear. On the ball, about its centre.
+    eccentricity_ratio : (n,) [-]
+        Distance of the two centres over the radial clearance. From 0.
+    minimum_gap : (n,) [m]
+        Minimum film thickness. Above 0; in contact, the distance of the rigid surfaces, which may be below 0.
+    peak_pressure : (n,) [Pa]
+        Highest film pressure. Above ambient.
+    power_loss : (n,) [W]
+        Mechanical power that turns into heat. Positive: taken from the motion.
+    contact_load : (n,) [N]
+        Force that the wall carries by contact. From 0, a part of ``force``.
+    step_error : (n,) [-]
+        Estimated error of the ball's place that the time steps have made, over the minimum film thickness. From 0; of
+        implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
 
     Examples
     --------
@@ -181,7 +193,7 @@ class SphericalDisplay(FilmDisplay):
 
 
 class LubricatedSphericalJoint(Joint):
-    """Handle of one lubricated ball joint.
+    """A lubricated ball joint in a model: history, film, sensors, audit; from `CreateLubricatedSphericalJoint`.
 
     Attributes
     ----------
@@ -214,7 +226,10 @@ class LubricatedSphericalJoint(Joint):
 
     @property
     def history(self) -> SphericalHistory:  # type: ignore[override]
-        """All accepted steps up to now; as `LubricatedJoint.history`."""
+        """All accepted steps up to now; as `LubricatedJoint.history`, with the arrays of `SphericalHistory`.
+
+        `exudyn_ehd/API.md` describes them with their units and signs.
+        """
         return spherical_history(super().history)
 
     def film(self) -> SphericalResult:
@@ -264,7 +279,9 @@ class LubricatedSphericalJoint(Joint):
         quantity : str or exudyn.OutputVariableType
             ``eccentricity_ratio``, ``force`` (on the ball, socket's frame), ``minimum_gap``, ``peak_pressure``,
             ``power_loss``, ``contact_load``; or what Exudyn's joints give, as for `LubricatedJoint.AddSensor`.
-        fileName, name, writeToFile
+        fileName, name : str, default ""
+            As for `LubricatedJoint.AddSensor`.
+        writeToFile : bool or None, default None
             As for `LubricatedJoint.AddSensor`.
 
         Returns
@@ -301,25 +318,26 @@ def CreateLubricatedSphericalJoint(
     ----------
     mbs : exudyn.MainSystem
         The system, before Assemble.
-    name : str
+    name : str, default ""
         Name of the joint, used in messages too.
-    itemNumbers : sequence of two
-        Socket, ball: bodies, nodes or rigid markers as for `CreateLubricatedJoint`.
-    position : (3,) [m]
+    itemNumbers : sequence of two, default (None, None)
+        Required: socket, ball; bodies, nodes or rigid markers as for `CreateLubricatedJoint`.
+    position : (3,) [m], default ()
         Centre of socket and ball in the reference configuration, global, or in the socket's frame with
         ``useGlobalFrame=False``; [] if a marker is given.
-    bearing : SphericalBearing
-    axis : (3,)
+    bearing : SphericalBearing, default None
+        Required: dimensions, lubricant, cavitation and contact.
+    axis : (3,), default (0.0, 0.0, 1.0)
         The socket's axis, from which its colatitudes count: into a cup.
-    rotationMatrixAxes : (3, 3), optional
+    rotationMatrixAxes : (3, 3) or None, default None
         The socket's frame, its third column in place of ``axis``.
-    stepControl : StepControl or None
+    stepControl : StepControl or None, default None
         Lets Exudyn halve steps in which the gap changes by too much.
-    useGlobalFrame : bool
+    useGlobalFrame : bool, default True
         See position, axis, rotationMatrixAxes.
-    show : bool
+    show : bool, default True
         Draw the socket in Exudyn's renderer, in the colours of its pressure.
-    color : (4,)
+    color : (4,), default (-1.0, -1.0, -1.0, -1.0)
         Colour of the film element's nodes, RGBA; Exudyn's default for -1.
 
     Returns

@@ -265,7 +265,7 @@ def bearing_grid(
     open_ring: bool = False,
     rows: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> FilmGrid:
-    """Film grid of a journal bearing.
+    """Grid of a journal bearing's film, for `solve_film`.
 
     Parameters
     ----------
@@ -273,13 +273,13 @@ def bearing_grid(
         R and L in m.
     n_theta, n_z : int
         Vertices in theta, intervals in z.
-    stretch : float
+    stretch : float, default 0.75
         Axial stretching a in [0, 1); 0 is uniform.
-    start_angle : float
+    start_angle : float, default 0.0
         theta of the first column, rad.
-    open_ring : bool
+    open_ring : bool, default False
         True: the first column carries a prescribed pressure (the film starts there).
-    rows : tuple of (m,) arrays, optional
+    rows : tuple of (m,) arrays or None, default None
         Axial vertices over R, from end to end, and their weights; they replace ``n_z`` and ``stretch``.
 
     Returns
@@ -326,7 +326,7 @@ class Arc(Checked):
         Angle of the leading edge from the joint's x about its z axis, rad.
     extent : float
         Angle from there to the trailing edge, rad, below 2 pi.
-    leading_pressure, trailing_pressure : float, default 0
+    leading_pressure, trailing_pressure : float, default 0.0
         Gauge pressures at both edges, Pa.
 
     Examples
@@ -410,7 +410,7 @@ def slider_grid(
     sealed_sides: bool = False,
     reference_length: float | None = None,
 ) -> FilmGrid:
-    """Film grid of a plane slider, x in [0, length], z in [-width/2, width/2].
+    """Grid of a plane slider's film, for `solve_film`: x in [0, length], z in [-width/2, width/2].
 
     Columns are cell centres between two end columns of zero width, which carry the pressures at x = 0 and x = length,
     so that a gap may jump at the faces between cells. With ``sealed_sides`` no flow leaves through z = +-width/2 (a
@@ -422,11 +422,11 @@ def slider_grid(
         m.
     n_x, n_z : int
         Cells in x, intervals in z.
-    stretch : float
+    stretch : float, default 0.75
         Axial stretching, 0 is uniform.
-    sealed_sides : bool
+    sealed_sides : bool, default False
         No side flow instead of prescribed side pressures.
-    reference_length : float, optional
+    reference_length : float or None, default None
         Scale of all lengths, m; default ``length``.
 
     Returns

@@ -59,7 +59,7 @@ class _OnVertices(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class FiniteLength(_OnVertices):
-    """Two-dimensional film: the full Reynolds equation on the (theta, z) grid.
+    """Default film: the full, two-dimensional Reynolds equation on a grid over angle and length.
 
     Largest error of the load (Swift-Stieber, L/D from 1/8 to 1, any direction of the journal, against extrapolated
     grids):
@@ -100,11 +100,11 @@ class FiniteLength(_OnVertices):
 
     Parameters
     ----------
-    n_theta : int or None
+    n_theta : int or None, default None
         Vertices around the circumference, at least 16. None: `columns_for` the bearing's L/D.
-    n_z : int
+    n_z : int, default 10
         Intervals along the bearing, at least 4.
-    stretch : float
+    stretch : float, default 0.75
         Axial stretching of the vertices towards the ends, 0 (uniform) to 0.95.
 
     Examples
@@ -161,7 +161,9 @@ class ShortBearing(_OnVertices):
 
     Parameters
     ----------
-    n_theta, n_z, stretch
+    n_theta, n_z : int, default 160, 8
+        As for `FiniteLength`.
+    stretch : float, default 0.75
         As for `FiniteLength`.
 
     Examples
@@ -191,9 +193,9 @@ class LongBearing(Checked):
 
     Parameters
     ----------
-    n_theta : int
+    n_theta : int, default 192
         Vertices around the circumference, at least 16.
-    n_z : int
+    n_z : int, default 4
         Slices along the bearing, at least 2; 2 do without tilt.
 
     Examples

@@ -19,13 +19,13 @@ SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class Rayleigh(Checked):
-    """Rayleigh damping D = mass_rate M + stiffness_time K.
+    """Damping of an `ANCFBush` by Rayleigh, D = mass_rate M + stiffness_time K.
 
     Parameters
     ----------
-    mass_rate : float
+    mass_rate : float, default 0.0
         [1/s], acts on the absolute velocity: it brakes rigid motion too.
-    stiffness_time : float
+    stiffness_time : float, default 0.0
         [s]; taken as the Kelvin-Voigt law of `TotalLagrange`, which equals stiffness_time K in the small and does no
         work in a rigid motion.
 
@@ -72,7 +72,7 @@ class _Solid:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ANCFBush(_Solid):
-    """A bush of 20-node hexahedra or 10-node tetrahedra in absolute nodal coordinates.
+    """A bush as a finite-element mesh whose nodes all move in the run (ANCF): any strain, slowest.
 
     Any strain and rotation in a joint; `steady` and `equilibrium` take its static equilibrium.
 
@@ -82,11 +82,11 @@ class ANCFBush(_Solid):
         A structured cylinder, or a mesh of `mesh_from_file`, `mesh_from_arrays` or `mesh_from_fem`.
     material : SaintVenantKirchhoff or NeoHooke
         `NeoHooke` for soft bushes, beyond strains of a few per cent.
-    quadrature : Quadrature, optional
+    quadrature : Quadrature or None, default None
         Of hexahedra (`exudyn_ehd.solid.elements.hex20`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
         speed; of tetrahedra (`exudyn_ehd.solid.elements.tet10`) `HAMMER4` by default, `WALKINGTON14` for the reference.
-    damping : Rayleigh, optional
-    parallel : bool
+    damping : Rayleigh or None, default None
+    parallel : bool, default False
         Loops over elements on numba's threads.
 
     Examples
@@ -133,7 +133,7 @@ class ModalBush(_Solid):
         Bush frame = joint frame. Build it fine: two or more radial layers; the modes cost the same in a run.
     material : SaintVenantKirchhoff
         Its density is not used.
-    tolerance : float
+    tolerance : float, default 0.07
         Largest error of the bore's displacement on the film's own length under sampled films of all directions, in the
         root mean square over the surface, over that displacement; of a bush that moves as a whole over what it deforms
         locally (`exudyn_ehd.solid.modes.films`); 2e-3 to 0.2. The sampled films have an eccentricity ratio of 0.9, on
@@ -143,10 +143,10 @@ class ModalBush(_Solid):
         nodal bush's (33 to 128 modes aligned, 57 to 164 tilted). The largest error under 600 random films with ratios
         of 0.5 to 0.93 is 0.67 to 1.5 of the error that `BoreModes.error` tells, for 9 bushes. Under films on round
         bores it is at most 1.1 of it at 0.9, 1.4 at 0.93 and 1.9 at 0.95; aligned at most 1.2 at 0.95.
-    tilted : bool
+    tilted : bool, default True
         False leaves out the modes that are odd in z: for journals that stay parallel, others are warned of. A bush
         that is not symmetric about its mid-plane gets them all the same.
-    quadrature : Quadrature, optional
+    quadrature : Quadrature or None, default None
         Quadrature of the stiffness, as in `ANCFBush`.
 
     Examples

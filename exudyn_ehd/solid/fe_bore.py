@@ -69,7 +69,7 @@ class FESurface:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FEBore(FESurface):
-    """The film acts on the bore of the housing, an ObjectFFRFreducedOrder; its modes deform under the oil pressure.
+    """Bore of a finite-element housing (ObjectFFRFreducedOrder), whose modes deform under the oil pressure.
 
     Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes
     let it.
@@ -78,14 +78,14 @@ class FEBore(FESurface):
     ----------
     fem : FEMinterface
         The mesh that the body was made of, with its elements.
-    nodes : sequence of int, optional
+    nodes : sequence of int or None, default None
         Mesh nodes on the bore; by default those on the cylinder around the joint's axis.
-    radius_tolerance : float
+    radius_tolerance : float, default 0.02
         Largest relative difference of a node's radius from the bearing's bore radius.
-    settled : bool
+    settled : bool, default True
         Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
         where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
-    exact_jacobian : bool
+    exact_jacobian : bool, default True
         The joint gives the body its exact Jacobian (`ReplaceReducedBody`); False leaves the body to Exudyn and its
         differences.
 
@@ -182,7 +182,7 @@ def _rigid_fit(place: np.ndarray, weight: np.ndarray, field_: np.ndarray) -> np.
 
 @dataclass(frozen=True, kw_only=True)
 class BoreModesReport:
-    """Result of `add_bore_modes`.
+    """Result of `add_bore_modes`: how many modes were added, and the error before and after.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def add_bore_modes(
     radius_tolerance: float = 0.02,
     nodes: tuple[int, ...] | None = None,
 ) -> BoreModesReport:
-    """Add to the mode basis of a ``FEMinterface`` what its bore does under an oil film.
+    """Add modes to a finite-element body (``FEMinterface``): deflections of its bore under an oil film.
 
     The modes are the static displacements under smooth pressures on the bore, as many as `ModalBush` would take, with
     ``fixed_nodes`` held; they are orthogonal in energy to the modes that are there. Call it after the modes of the
@@ -238,10 +238,13 @@ def add_bore_modes(
         Radius and length of the bore under the film [m].
     fixed_nodes : sequence of int
         Mesh nodes held: those of the first interface, which carries the body's frame.
-    tolerance, tilted
-        As in `ModalBush`, but of the bore's shape: see `BoreModesReport`. Odd modes come with ``tilted=False`` too
-        where the body is not symmetric about the bore's mid-plane.
-    radius_tolerance, nodes
+    tolerance : float, default 0.07
+        As in `ModalBush`, but of the bore's shape: see `BoreModesReport`.
+    tilted : bool, default True
+        As in `ModalBush`, but odd modes come with False too where the body is not symmetric about the bore's mid-plane.
+    radius_tolerance : float, default 0.02
+        As in `FEBore`.
+    nodes : sequence of int or None, default None
         As in `FEBore`.
 
     Returns

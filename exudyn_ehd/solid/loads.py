@@ -27,7 +27,7 @@ _EDGE_SLOPES = np.stack([_EDGE_POINTS - 0.5, _EDGE_POINTS + 0.5, -2 * _EDGE_POIN
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LineLoad:
-    """Dead force per length along a line.
+    """Force per length along a line of a bush, of constant direction.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class LineLoad:
         For example ``mesh.generatrix(mesh.outer, pi / 2)``.
     force_per_length : three numbers
         [N/m] per reference length, global frame.
-    history : function of time, optional
+    history : function of time or None, default None
         Factor on the force.
 
     Examples
@@ -65,16 +65,16 @@ class LineLoad:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfaceLoad:
-    """Dead force per area on a surface.
+    """Force per area on a surface of a bush, of constant direction.
 
     Parameters
     ----------
     surface : Surface
     traction : three numbers
         [N/m^2] per reference area, global frame.
-    distribution : ndarray, shape (k,), optional
+    distribution : ndarray, shape (k,) or None, default None
         Factor at every node of the surface, interpolated between them; without it the traction is uniform.
-    history : function of time, optional
+    history : function of time or None, default None
         Factor on the force.
 
     Examples
@@ -136,9 +136,9 @@ class DeadPressure(_SurfacePressure):
     surface : Surface
     pressure : float
         [Pa]; positive pushes onto the solid.
-    distribution : ndarray, shape (k,), optional
+    distribution : ndarray, shape (k,) or None, default None
         Factor at every node of the surface, interpolated between them.
-    history : function of time, optional
+    history : function of time or None, default None
         Factor on the pressure.
 
     Examples
@@ -160,7 +160,9 @@ class FollowerPressure(_SurfacePressure):
 
     Parameters
     ----------
-    surface, pressure, distribution, history
+    surface, pressure
+        As in `DeadPressure`.
+    distribution, history : array, function or None, default None
         As in `DeadPressure`.
 
     Examples
@@ -202,7 +204,7 @@ class Gravity:
     ----------
     acceleration : three numbers
         [m/s^2], global frame.
-    history : function of time, optional
+    history : function of time or None, default None
         Factor on it.
 
     Examples

@@ -298,16 +298,18 @@ def mesh_from_file(
         An Abaqus input file (``.inp``: ``*Node``, ``*Element`` of a type C3D20 or C3D10, ``*Nset``, ``*Part``,
         ``*Instance`` with its translation and rotation), or any format with these elements that meshio reads
         (``pip install 'exudyn-ehd[mesh]'``). Elements on surfaces and lines are passed over.
-    held : str, or as in `mesh_from_arrays`
+    held : str, or as in `mesh_from_arrays`, or None, default None
         A string names a node set of the file; ``"instance.set"`` one of an instance's part where the assembly has a set
         of that name, too.
-    instance : str, optional
+    instance : str or None, default None
         Which instance of an Abaqus assembly (without instances: which part) is the bush, if several have solid
         elements.
-    scale : float
+    scale : float, default 1.0
         Metres per unit of the file: 1e-3 for millimetres.
-    bore_radius, origin, axis
-        As in `mesh_from_arrays`, in metres after scaling, in the frame of the assembly; it also says what comes back.
+    bore_radius : float
+        As in `mesh_from_arrays`, in metres after scaling; it also says what comes back.
+    origin, axis : three numbers, default (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+        As in `mesh_from_arrays`, in metres after scaling, in the frame of the assembly.
 
     Returns
     -------

@@ -19,13 +19,13 @@ from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number, req
 
 @dataclass(frozen=True, kw_only=True)
 class OnCylinder(Checked):
-    """Nodes on a cylinder about the bush's axis: ``held`` of an imported mesh.
+    """``held`` of an imported mesh: its nodes on a cylinder about the bush's axis.
 
     Parameters
     ----------
     radius : float
         [m]
-    tolerance : float
+    tolerance : float, default 0.005
         On a node's radius, over the radius.
 
     Examples
@@ -48,13 +48,13 @@ class OnCylinder(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class OnPlane:
-    """Nodes on a plane: ``held`` of an imported mesh.
+    """``held`` of an imported mesh: its nodes on a plane.
 
     Parameters
     ----------
     point, normal : three numbers
         A point of the plane [m] and its normal, bush frame.
-    tolerance : float
+    tolerance : float, default 1e-5
         Distance from the plane [m].
 
     Examples
@@ -101,8 +101,12 @@ def mesh_from_fem(
     ----------
     fem : FEMinterface
         Exudyn's, with Hex20 elements (Abaqus C3D20 order) or Tet10 elements (C3D10) only.
-    bore_radius, held, origin, axis
+    bore_radius : float
         As in `mesh_from_arrays`, which also says what comes back and what is refused.
+    held : nodes, `OnCylinder`, `OnPlane`, function or None, default None
+        As in `mesh_from_arrays`.
+    origin, axis : three numbers, default (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+        As in `mesh_from_arrays`.
 
     Returns
     -------
@@ -154,11 +158,11 @@ def mesh_from_arrays(
         Hexahedra in the node order of Abaqus C3D20 or tetrahedra in that of C3D10 (VTK's, not Gmsh's), zero-based.
     bore_radius : float
         Radius [m] of the bore; its corners must lie within 1 % of the radius.
-    held : nodes, `OnCylinder`, `OnPlane` or function, optional
+    held : nodes, `OnCylinder`, `OnPlane`, function or None, default None
         Where the housing holds the bush: the faces all of whose nodes are among these (numbers, or flags of the user's
         nodes), or have the function of positions (n, 3) in the bush frame [m] true. By default every face that belongs
         neither to the bore nor to the ends.
-    origin, axis : three numbers
+    origin, axis : three numbers, default (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
         A point on the bearing's mid-plane and axis, and the axis direction, user's frame. The mesh comes back in the
         bush frame; with the default axis its x and y are the user's.
 

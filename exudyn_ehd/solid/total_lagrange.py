@@ -26,7 +26,7 @@ from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
 @dataclass(frozen=True, kw_only=True)
 class SaintVenantKirchhoff(Checked):
-    """Isotropic material of a bush, linear in the Green-Lagrange strain.
+    """Material of a bush or pin, such as steel: isotropic, linear in the Green-Lagrange strain.
 
     For small strain at any rotation: steel, bronze, polymers. It softens under compression, has no stiffness left at
     half its length or so, and lets elements turn inside out: soft bushes take `NeoHooke`.

@@ -114,11 +114,11 @@ class StudyTable(Table):
         ----------
         name : str
             Of the column.
-        along : str
+        along : str, default ""
             The parameter; by default the first one.
-        ax : matplotlib Axes, optional
+        ax : matplotlib Axes or None, default None
             Where to draw; by default a new figure, which ``plt.show()`` shows.
-        path : path, optional
+        path : path or None, default None
             Where to write the figure.
 
         Returns
@@ -219,7 +219,7 @@ class EquilibriumPoint:
 
 
 def varied(bearing: JournalBearing, parameters: Mapping[str, float]) -> JournalBearing:
-    """The bearing with dimensions and ``viscosity`` (of its lubricant) replaced by name.
+    """Return a bearing with dimensions and ``viscosity`` (of its lubricant) replaced by name.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ def parameter_study(
     mpi: bool = False,
     hosts: Sequence[str] = (),
 ) -> StudyTable:
-    """Evaluate a function at every combination of parameters; see the module's docstring for where it runs.
+    """Evaluate a function at every combination of parameters, in one or many processes.
 
     Parameters
     ----------
@@ -279,19 +279,19 @@ def parameter_study(
         processes it must be importable: a function or an instance of a class defined at the top of a module.
     parameters : dict
         Name: sequence of numbers.
-    processes : int
+    processes : int, default 1
         Number of processes on this machine.
-    executor : Executor, optional
+    executor : Executor or None, default None
         Of `concurrent.futures`, or one that follows it; it stays open. More than 512 rows go to it in parts.
-    mpi, hosts
-        Not supported any more; an `InputError` names the executor that takes their place.
-    file : path, optional
+    mpi, hosts : not supported any more, default False, ()
+        An `InputError` names the executor that takes their place.
+    file : path or None, default None
         Keeps finished rows, each as soon as it is there. A second call reads them and computes the rest: what was
         interrupted, what failed, what was added to the lists. A change of the function itself, or of the bearing and
         other things that it holds, is noticed; one of what it calls is not: delete the file then.
-    units : dict, optional
+    units : dict or None, default None
         Units of parameters and results by name, for print and CSV; common names have theirs.
-    show_progress : bool, optional
+    show_progress : bool or None, default None
         Whether to print a line for every finished row; by default on a terminal and in notebooks (`show_progress`).
 
     Returns

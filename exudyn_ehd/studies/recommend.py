@@ -52,7 +52,7 @@ ECCENTRICITY, TILT, RATIO = (0.1, 0.95), (0.0, 0.7), (0.25, 2.0)
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Recommendation:
-    """Outcome of `recommend`.
+    """Result of `recommend`: the film, its error and its time, or the reason why none was found.
 
     Attributes
     ----------
@@ -116,19 +116,19 @@ def recommend(
     ----------
     bearing : JournalBearing
         Any but those with an `ANCFBush` or ``inlet=MaximumGap()``; L/D 0.25 to 2. Its own film does not count.
-    error : float
+    error : float, default 0.01
         Relative.
-    quantity : str
+    quantity : str, default "load"
         "load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "supply flow",
         "stiffness", "damping" or "critical mass".
-    eccentricity_ratio : float or (lowest, highest)
-        Where the bearing works, 0.1 to 0.95; the worst of a range counts.
-    tilt_ratio : float
+    eccentricity_ratio : float or (lowest, highest), default None
+        Required: where the bearing works, 0.1 to 0.95; the worst of a range counts.
+    tilt_ratio : float, default 0.0
         Share of the mid-plane's minimum film thickness that the tilt takes at one end, 0 to 0.7.
-    direction : float, optional
+    direction : float or None, default None
         Of the eccentricity, rad; without it all around, which matters for supplied and other uneven bearings. All
         around in any case with supply areas that turn with the journal.
-    speed : float
+    speed : float or None, default None
         rad/s; not needed for plain bearings, whose relative errors do not depend on it.
 
     Returns

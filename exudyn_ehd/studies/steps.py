@@ -50,7 +50,7 @@ THINNEST = 0.01
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class StepRecommendation:
-    """Outcome of `recommend_steps`.
+    """Result of `recommend_steps`: the number of steps and its error, or the reason why none was found.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ def recommend_steps(
     ----------
     bearing : JournalBearing
         Any that moves in a plane; with an `ANCFBush` it takes minutes.
-    error : float
+    error : float, default 0.01
         Error of the minimum film thickness, relative to its smallest value in the period.
     speed : float or (n,) array
         Spin of the journal in the housing, rad/s; of a pin that swings at the instants of the load.

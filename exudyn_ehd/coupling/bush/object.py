@@ -31,13 +31,13 @@ from exudyn_ehd.status import InputError, require_type, require_vector
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Support:
-    """Nodes that can't move in some global directions.
+    """Nodes of a bush that can't move in some global directions.
 
     Parameters
     ----------
     nodes : ndarray of int
         Mesh node numbers, for example ``mesh.end_low.nodes`` or ``mesh.generatrix(...).nodes``.
-    directions : three bools
+    directions : three bools, default (True, True, True)
         True for those of x, y, z that are held.
 
     Examples
@@ -53,7 +53,7 @@ class Support:
 
 @dataclass(frozen=True, kw_only=True)
 class FreeOuter:
-    """The outer surface is free.
+    """``outer`` of a bush: its outer surface is free.
 
     Where such a bush spins, Exudyn's integrator loses angular momentum with the square of the angle per step, on
     absolute coordinates that a turn takes around: of a ring of any wall 3.1 % in the first turn at 20 steps a turn,
@@ -69,7 +69,7 @@ class FreeOuter:
 
 @dataclass(frozen=True, kw_only=True)
 class FixedOuter:
-    """The outer surface is fixed in space.
+    """``outer`` of a bush: its outer surface is fixed in space.
 
     Examples
     --------
@@ -79,7 +79,7 @@ class FixedOuter:
 
 @dataclass(frozen=True, kw_only=True)
 class CarriedOuter:
-    """The outer surface moves with the rigid frame of a body, without constraint equations.
+    """``outer`` of a bush: its outer surface moves with the rigid frame of a body, without constraint equations.
 
     Parameters
     ----------
@@ -102,9 +102,9 @@ class CarriedOuter:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FlexibleBush:
-    """A bush in a model: its items and its state.
+    """A bush in a model, from `CreateFlexibleBush`: its items in Exudyn, displacements, stresses, energy.
 
-    Parameters
+    Attributes
     ----------
     mbs : exudyn.MainSystem
     mesh : BushMesh
@@ -202,22 +202,24 @@ def CreateFlexibleBush(
     Parameters
     ----------
     mbs : exudyn.MainSystem
-    name : str
+    name : str, default ""
         Name of the object.
     bush : ANCFBush
     outer : FreeOuter, FixedOuter or CarriedOuter
         Support of the outer surface.
-    position : three numbers
+    position : three numbers, default (0.0, 0.0, 0.0)
         Global reference position of the bush frame [m].
-    rotationMatrix : ndarray, shape (3, 3), optional
+    rotationMatrix : ndarray, shape (3, 3) or None, default None
         Bush frame to global frame; identity by default.
-    supports : sequence of Support
-    loads : sequence of LineLoad, SurfaceLoad, DeadPressure, FollowerPressure or Gravity
+    supports : sequence of Support, default ()
+    loads : sequence of LineLoad, SurfaceLoad, DeadPressure, FollowerPressure or Gravity, default ()
         Vectors are global.
-    initialVelocity, initialAngularVelocity : three numbers
+    initialVelocity, initialAngularVelocity : three numbers, default (0.0, 0.0, 0.0)
         Rigid initial motion [m/s], [rad/s], global, about ``position``. A carried bush takes the carrier's instead.
-    show, color
-        For Exudyn's renderer.
+    show : bool, default True
+        Draw the bush in Exudyn's renderer.
+    color : (4,), default (0.6, 0.6, 0.7, 1.0)
+        Colour of the bush, RGBA.
 
     Returns
     -------

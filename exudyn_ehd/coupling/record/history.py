@@ -34,7 +34,7 @@ _MOTION_UNITS = ("m", "m", "rad", "rad", "m/s", "m/s", "rad/s", "rad/s", "rad/s"
 
 
 class Quantity(enum.Enum):
-    """Quantities that a sensor can record; the value is the name in `JointHistory`.
+    """Names of quantities that a sensor can record; their values are the names in `JointHistory`.
 
     Examples
     --------
@@ -109,49 +109,99 @@ _NAMES = tuple(COLUMNS)[:-1]
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
-    """Accepted steps of one joint, first the initial state, last the state now.
+    """Accepted steps of one joint, first the initial state, last the state now; an array for each quantity.
 
-    All vectors are in the joint frame (fixed in the housing, z = axis), force and moment act on the journal, moment
-    about the bearing's centre. A quantity that the film does not provide is nan.
+    `exudyn_ehd/API.md` has the columns below as a table, with those of ball joints and of tables of revolutions.
+
+    All vectors are in the joint frame (fixed in the housing, origin on the bearing's mid-plane, z = axis). Forces act
+    on the journal. A quantity that the film does not provide is nan.
 
     Attributes
     ----------
-    time : ndarray (n,)
-        [s]; in a static solve Exudyn's load parameter.
-    motion : ndarray (n, 10)
-        x, y [m], bx, by [rad], their rates as the film takes them (`exudyn_ehd.joint.step_rates`), relative spin omega
-        [rad/s], axial velocity w [m/s].
-    eccentricity : ndarray (n, 2)
-        Journal axis in the mid-plane [m].
-    eccentricity_ratio : ndarray (n,)
-        |eccentricity| / radial clearance in the mid-plane.
-    largest_eccentricity_ratio : ndarray (n,)
-        The largest along the length, at one of the ends.
-    force, moment : ndarray (n, 3)
-        [N], [N m], of the journal's film and contact; the films on the end faces are apart.
-    minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load : ndarray (n,)
-        Minimum film thickness [m], [Pa], [N m], [W], [m3/s], [N].
-    contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
-        [N m], [m3/s], [K], [K].
-    minimum_gap_angle, minimum_gap_z, peak_angle : ndarray (n,)
-        Place of the minimum film thickness [rad, m] and angle of the peak pressure [rad], 0 to 2 pi.
-    bore_displacement : ndarray (n,)
-        Largest displacement of a liner or of a flexible bore [m].
-    stored_power : ndarray (n,)
-        Power that a liner and touching surfaces take up, negative: give back [W]; not in ``power_loss``.
-    bush_temperature, journal_temperature, clearance : ndarray (n,)
-        Mean temperatures at the film of walls that conduct, or with two temperatures across the film, of all surfaces
-        [K], and the radial clearance that they leave [m].
-    axial_position, thrust_force, thrust_torque : ndarray (n,)
-        Of a joint with ``thrust``, else nan as all ``thrust_...``: place of the journal between its faces [m], axial
-        force of their films [N] and torque about the bearing's axis [N m] on the journal.
-    thrust_minimum_gap, thrust_peak_pressure, thrust_power_loss, thrust_contact_load : ndarray (n,)
-        Smallest film thickness [m], highest pressure [Pa], loss [W] and load carried by contact [N] of all faces.
-    step_error : ndarray (n,)
-        Estimated error of the gap that the time steps have made, over the minimum film thickness of the step; of
-        implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
-    step_count : ndarray (n,)
-        Number of the accepted step, 0 for the initial state; it has gaps where the record was thinned (`Every`,
+    time : (n,) [s]
+        Time at the end of the step. In a static solve Exudyn's load parameter.
+    motion : (n, 10) [m, rad, m/s, rad/s]
+        Motion of the journal against the housing: x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w. The journal's axis is
+        at x + bx z, y + by z, in m and rad; x_t to by_t, m/s and rad/s, are the rates of these four as the film takes
+        them (`exudyn_ehd.joint.step_rates`); omega, rad/s, is the spin about z, w, m/s, the velocity along z.
+    eccentricity : (n, 2) [m]
+        Journal axis in the mid-plane. Along x and y, the first two of ``motion``.
+    eccentricity_ratio : (n,) [-]
+        Distance of the journal axis from the bore's in the mid-plane, over the radial clearance. From 0; 1
+        where rigid, round surfaces touch.
+    largest_eccentricity_ratio : (n,) [-]
+        The same ratio at the end of the bearing where it is larger. From 0, as ``eccentricity_ratio``.
+    force : (n, 3) [N]
+        Force of film and contact. On the journal, along x, y, z; without the films on the end faces.
+    moment : (n, 3) [N m]
+        Moment of film and contact. On the journal, about the frame's origin, along x, y, z; without the films on the
+        end faces. Its z part is ``friction_torque`` and what ``force`` does about the origin.
+    minimum_gap : (n,) [m]
+        Minimum film thickness over the whole bearing, its edges included. Above 0; in contact,
+        the distance of the surfaces as if nothing were flattened, which may be below 0.
+    peak_pressure : (n,) [Pa]
+        Highest film pressure. Above ambient; without contact pressure; nan with an `ImpedanceMap`.
+    friction_torque : (n,) [N m]
+        Torque of the film's shear and of contact on the journal about its own axis. Negative where it brakes a spin in
+        the positive sense about z.
+    power_loss : (n,) [W]
+        Mechanical power that turns into heat in film and contact or pumps oil. Positive: taken from the motion; without
+        ``stored_power`` and without the films on the end faces.
+    leakage : (n,) [m3/s]
+        Oil that leaves through both ends together. Positive outwards; nan with an `ImpedanceMap`.
+    contact_load : (n,) [N]
+        Force that touching surfaces carry: the size of the vector sum of their pressure. From 0, a part of ``force``.
+    contact_torque : (n,) [N m]
+        Torque of the friction of touching surfaces on the journal about its own axis. Sign as
+        ``friction_torque``, of which it is a part; nan with an `ImpedanceMap`.
+    supply_flow : (n,) [m3/s]
+        Oil that comes from all supply areas together. Positive into the film; nan without ``supply``.
+    film_temperature : (n,) [K]
+        Mean temperature of the film over its area. Absolute; nan without ``thermal``.
+    peak_temperature : (n,) [K]
+        Highest temperature in the film. Absolute; nan without ``thermal``.
+    minimum_gap_angle : (n,) [rad]
+        Angle at which the film is thinnest. From x about z, 0 to 2 pi.
+    minimum_gap_z : (n,) [m]
+        Place along the axis at which the film is thinnest. Along z, from -length/2 to length/2; 0 where the film is as
+        thin along the whole bearing.
+    peak_angle : (n,) [rad]
+        Angle of the highest film pressure. From x about z, 0 to 2 pi; nan with an `ImpedanceMap`.
+    bore_displacement : (n,) [m]
+        Largest displacement of the surface of a liner or of a flexible bore. Size, from 0; nan between rigid surfaces.
+    stored_power : (n,) [W]
+        Power that a liner and touching surfaces take up as elastic energy. Negative where they give it back; not in
+        ``power_loss``.
+    bush_temperature : (n,) [K]
+        Mean temperature of the bore's surface. Absolute; nan unless a wall conducts (`Conduction`) or the film has two
+        temperatures across it.
+    journal_temperature : (n,) [K]
+        Mean temperature of the journal's surface. As ``bush_temperature``.
+    clearance : (n,) [m]
+        Radial clearance that warm walls leave. Smaller than cold where the journal grows more; nan as
+        ``bush_temperature``.
+    axial_position : (n,) [m]
+        Place of the journal along the axis between the faces of ``thrust``. Along z, 0 in the middle; nan without
+        ``thrust``, as all that follow up to ``thrust_contact_load``.
+    thrust_force : (n,) [N]
+        Axial force of the films on the end faces. On the journal, along z; not in ``force``.
+    thrust_minimum_gap : (n,) [m]
+        Minimum film thickness on the end faces. As ``minimum_gap``.
+    thrust_peak_pressure : (n,) [Pa]
+        Highest film pressure on the end faces. Above ambient.
+    thrust_torque : (n,) [N m]
+        Torque of the films on the end faces. On the journal about z: negative where it brakes a spin in the positive
+        sense; not in ``moment`` or ``friction_torque``.
+    thrust_power_loss : (n,) [W]
+        Power that turns into heat or pumps oil on the end faces. Positive: taken from the motion; not in
+        ``power_loss``.
+    thrust_contact_load : (n,) [N]
+        Sum of the loads that the end faces carry by contact. From 0, a part of ``thrust_force``.
+    step_error : (n,) [-]
+        Estimated error of the gap that the time steps have made, over the minimum film thickness of the step. From 0;
+        of implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
+    step_count : (n,) [-]
+        Number of the accepted step. 0 for the initial state; it has gaps where the record was thinned (`Every`,
         `Period`): the first, last and worst steps are there, and ``step_error`` is the largest since the row before.
     radial_clearance, journal_radius, length : float
         Dimensions of the bearing [m].
@@ -233,7 +283,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
 
         Parameters
         ----------
-        start, end : float
+        start, end : float, default -inf, inf
             s.
 
         Returns
@@ -304,7 +354,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
 
         Parameters
         ----------
-        period : float, optional
+        period : float or None, default None
             Duration of a cycle, s, counted from the first row; for journals that swing. By default revolutions of the
             journal against the housing are counted.
 

@@ -35,7 +35,7 @@ NAME = "{name}"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class File:
-    """``record`` of `CreateLubricatedJoint`: accepted steps go to a file, and memory holds the last ones only.
+    """``record`` of a joint: accepted steps go to a file, and memory holds the last ones only.
 
     A step takes 0.5 KB on disk. `load_history` reads the file, during a run and after a kill as well. A history of it
     reads each of its arrays when it is asked for: 8 bytes a step and number. A new record of the joint replaces the
@@ -45,7 +45,7 @@ class File:
     ----------
     path : path
         Of a file of its own for each joint; "{name}" in it stands for the joint's name.
-    every : Every, Period or None
+    every : Every, Period or None, default None
         Keep some of the steps; None: all of them.
 
     Examples

@@ -185,12 +185,12 @@ def history_of(parts: Callable[[str], Sequence[np.ndarray]], dimensions: Mapping
 
 
 def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: float = math.inf) -> JointHistory:
-    """Read what `JointHistory.save` has written, or the `File` of a record, as far as it has come.
+    """Read a history from a file of `JointHistory.save`, or from the `File` of a record, during its run as well.
 
     Parameters
     ----------
     path : path
-    start, end : float
+    start, end : float, default -inf, inf
         s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` no others are read. Without
         both the history of a `File` reads each of its arrays when it is asked for.
 

@@ -20,22 +20,40 @@ _UNITS = {"start": "s", "end": "s"}
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class Revolutions(Table):
-    """One row per revolution; SI units, nan where the film does not provide a quantity. ``print`` shows a table.
+    """Table of a history, a row per revolution: minimum film thickness, peak pressure, losses; ``print`` shows it.
+
+    SI units; nan where the film does not provide a quantity.
 
     Attributes
     ----------
-    start, end : (k,) arrays
-        s.
-    minimum_gap, minimum_gap_time, minimum_gap_angle, minimum_gap_z : (k,) arrays
-        Minimum film thickness of the revolution (m), when (s) and where (rad, m).
-    peak_pressure, peak_pressure_time, peak_angle : (k,) arrays
-        Largest pressure (Pa), when (s) and at which angle (rad).
-    largest_eccentricity_ratio : (k,) array
-        Along the whole length.
-    largest_load : (k,) array
-        Of the force in the plane normal to the axis, N.
-    mean_power_loss, mean_leakage, mean_friction_torque : (k,) arrays
-        Means over time, W, m3/s and N m.
+    start : (k,) [s]
+        First instant of the revolution. As ``time`` of the history.
+    end : (k,) [s]
+        Last instant of the revolution. As ``time`` of the history.
+    minimum_gap : (k,) [m]
+        Minimum film thickness of the revolution. As in the history.
+    minimum_gap_time : (k,) [s]
+        Instant of that minimum. As ``time`` of the history.
+    minimum_gap_angle : (k,) [rad]
+        Angle at which the film was thinnest at that instant. From x about z, 0 to 2 pi.
+    minimum_gap_z : (k,) [m]
+        Place along the axis at which the film was thinnest at that instant. Along z, 0 in the mid-plane.
+    peak_pressure : (k,) [Pa]
+        Highest film pressure of the revolution. Above ambient.
+    peak_pressure_time : (k,) [s]
+        Instant of that pressure. As ``time`` of the history.
+    peak_angle : (k,) [rad]
+        Angle of that pressure. From x about z, 0 to 2 pi.
+    largest_eccentricity_ratio : (k,) [-]
+        Largest eccentricity ratio along the bearing and in time. From 0.
+    largest_load : (k,) [N]
+        Largest force of film and contact across the axis. Size of the x and y part of ``force``.
+    mean_power_loss : (k,) [W]
+        Mean over time of ``power_loss``. Positive: taken from the motion.
+    mean_leakage : (k,) [m3/s]
+        Mean over time of ``leakage``. Positive outwards.
+    mean_friction_torque : (k,) [N m]
+        Mean over time of ``friction_torque``. On the journal, about z.
 
     Examples
     --------

@@ -49,11 +49,11 @@ def SolveEquilibrium(
         Assembled, with lubricated joints whose journals spin.
     speeds : float or (k,) array
         Speeds of the first rotor about its joint's z axis, rad/s, not 0. Each is looked for from the one before.
-    rotors : sequence, optional
+    rotors : sequence or None, default None
         One entry for every rotor: a body or node, to which all is added that turns with it through beams, fixed joints
         and springs that hold all rotations; or a sequence of all of its bodies and nodes. The first one is driven at
         the constant speed, the others may twist against it. By default those of all journals.
-    ratios : (r,) sequence, optional
+    ratios : (r,) sequence or None, default None
         Speeds of the rotors over that of the first; 1 by default.
 
     Returns
@@ -105,7 +105,9 @@ def SolveThreshold(
 
     Parameters
     ----------
-    mbs, rotors, ratios
+    mbs : exudyn.MainSystem
+        As in `SolveEquilibrium`.
+    rotors, ratios : sequence or None, default None
         As in `SolveEquilibrium`.
     lowest, highest : float
         Speeds of the first rotor, rad/s, 0 < lowest < highest.

@@ -57,7 +57,7 @@ class Layout:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RotorResult:
-    """Equilibria of rotors in their films at k speeds; j films, N directions of all bodies, n of them free.
+    """Result of `SolveEquilibrium` at k speeds: places, films, vibrations; j films, N directions, n of them free.
 
     Attributes
     ----------

@@ -32,7 +32,7 @@ _ANGLES, _PLACES, _SAME_MODES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11,
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class JointState:
-    """State of a joint besides Exudyn's coordinates.
+    """Memory of one joint in a `SystemState`: oil content, wear, temperature, and the record of its steps.
 
     Attributes
     ----------
@@ -97,6 +97,8 @@ class Joint:
     @property
     def history(self) -> JointHistory:
         """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
+
+        `exudyn_ehd/API.md` and `JointHistory` describe the arrays with their units and signs.
 
         The last row is the end of the last run, during a run the start of the current step. Behind Exudyn's own
         ``mbs.SolveDynamic`` read it before the system's state is changed (a linearisation, Assemble): it is completed
@@ -173,9 +175,9 @@ class Joint:
 
         Parameters
         ----------
-        force : float
+        force : float, default inf
             Largest force of film and contact, N.
-        pressure : float
+        pressure : float, default 3e9
             Largest peak pressure of the film, and mean pressure of film and contact on the projected area, Pa;
             `math.inf` allows any.
         """

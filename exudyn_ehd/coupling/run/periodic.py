@@ -46,7 +46,7 @@ class UntilPeriodic:
     ----------
     period : float
         Period of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
-    tolerance : float
+    tolerance : float, default 0.01
         Largest difference of the last cycle from the one before, and from the limit of the changes from cycle to
         cycle. Distances of the journal's axis at both ends, and of the journal between its thrust faces, count over
         the radial clearance. The film's temperature counts over its rise since the start of the run.
@@ -73,7 +73,7 @@ class UntilPeriodic:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class LastCycle:
-    """The cycle at whose end a run's orbits had closed.
+    """Result of a run with `UntilPeriodic`: its last cycle, at whose end the orbits had closed.
 
     Attributes
     ----------

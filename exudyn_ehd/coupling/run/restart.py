@@ -27,7 +27,7 @@ _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class SystemState:
-    """The last accepted state of a system with its lubricated joints; see `SaveState` and `SolveDynamic`.
+    """State at the end of a run, with that of all joints, from `SaveState`: `SolveDynamic` restarts from it.
 
     Attributes
     ----------

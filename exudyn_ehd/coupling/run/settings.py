@@ -43,7 +43,7 @@ def ConfigureSolver(
     absoluteTolerance: float | None = None,
     spectralRadius: float | None = None,
 ) -> exu.SimulationSettings:
-    """Set what a model with lubricated joints needs in dynamic and static solves; everything else stays.
+    """Set the tolerances, Newton's method and the spectral radius that lubricated joints need; all else stays.
 
     - Newton's relative tolerance 1e-6 in place of 1e-8: a film's force is the result of a solve of its own and carries
       rounding noise of about 1e-10, so that residuals can't always fall by eight orders.
@@ -67,14 +67,14 @@ def ConfigureSolver(
     ----------
     simulationSettings : exudyn.SimulationSettings
         Changed in place.
-    relativeTolerance : float
+    relativeTolerance : float, default 1e-6
         Newton's relative tolerance.
-    absoluteTolerance : float, optional
+    absoluteTolerance : float or None, default None
         Newton's absolute tolerance, N. None: 1e-8, and a larger one that is set already stays. Films that carry less
         than 1e-5 N want 1e-6 of their load.
-    useModifiedNewton : bool
+    useModifiedNewton : bool, default False
         Keep the Jacobian over several steps.
-    spectralRadius : float, optional
+    spectralRadius : float or None, default None
         Of generalized alpha, 0 to 1. None: 0.6 in place of Exudyn's default 0.9; one that is set already stays.
 
     Returns

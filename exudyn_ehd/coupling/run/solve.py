@@ -97,7 +97,7 @@ def SolveDynamic(
     threads: int | None = 1,
     **options: object,
 ) -> bool | LastCycle:
-    """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
+    """Integrate in time as ``mbs.SolveDynamic``, with fewer Newton iterations, clearer errors and restarts.
 
     Exudyn starts Newton's method of a step at zero accelerations, away from the solution by some 0.3 h^2 a: more than a
     film is thick in a crank drive at steps of a degree. Here it starts at the accelerations that last (`StartGuess`):
@@ -112,16 +112,16 @@ def SolveDynamic(
     ----------
     mbs : exudyn.MainSystem
     simulationSettings : exudyn.SimulationSettings
-    restart : SystemState or path, optional
+    restart : SystemState, path or None, default None
         From `SystemState.of` or `SaveState`: the run goes on from there. ``startTime`` of the settings is set;
         ``endTime`` and ``numberOfSteps`` are those of the rest. With the same step size and full Newton it repeats what
         the run would have done without the stop, to rounding: films with their memory, Exudyn's algorithmic
         accelerations and the histories.
-    stepControl : StepControl, optional
+    stepControl : StepControl or None, default None
         ``StepControl(error=0.02)``: steps chosen by the error that they make in the films.
-    until_periodic : UntilPeriodic, optional
+    until_periodic : UntilPeriodic or None, default None
         Ends the run as soon as the orbits of all joints have closed.
-    threads : int or None
+    threads : int or None, default 1
         Threads on which the films of all joints are evaluated side by side, with the same bits; None: one for each core
         of the process. Worth it from two joints on fine grids on, see coupling/README.md.
     **options
@@ -190,7 +190,7 @@ def SolveDynamic(
 
 
 def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings, **options: object) -> bool:
-    """``mbs.SolveStatic`` with this package's errors; see `SolveDynamic`.
+    """Find a static equilibrium as ``mbs.SolveStatic``, with clearer errors; see `SolveDynamic`.
 
     Parameters
     ----------

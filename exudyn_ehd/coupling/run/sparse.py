@@ -59,15 +59,15 @@ FILMS_FIRST = 4
 
 @dataclass(frozen=True, kw_only=True)
 class FactorReuse:
-    """Criteria for refactoring in `SolveDynamicSparse`.
+    """Rules by which `SolveDynamicSparse` factorises its Jacobian anew.
 
     Parameters
     ----------
-    contractivity : float
+    contractivity : float, default 0.5
         Refactor if the contraction rate of the residual in an iteration exceeds this.
-    maximum_iterations : int
+    maximum_iterations : int, default 10
         Refactor after so many iterations of one step.
-    worth : int
+    worth : int, default 40
         Number of iterations that cost as much as a factor. Refactor at the start of a step when the iterations beyond
         those of the factor's first step add up to this. It is a count, not a time, so that runs repeat exactly.
 
@@ -148,11 +148,11 @@ def SolveDynamicSparse(
     ----------
     mbs : exudyn.MainSystem
         Assembled if it is not.
-    simulationSettings : exudyn.SimulationSettings, optional
+    simulationSettings : exudyn.SimulationSettings or None, default None
         Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``.
-    reuse : FactorReuse, optional
-    stepControl : StepControl, optional
-    threads : int or None
+    reuse : FactorReuse or None, default None
+    stepControl : StepControl or None, default None
+    threads : int or None, default 1
         As in `SolveDynamic`.
 
     Returns

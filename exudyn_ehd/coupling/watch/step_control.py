@@ -25,7 +25,7 @@ LARGEST_GAP_CHANGE = 0.25
 
 @dataclass(frozen=True, kw_only=True)
 class StepControl:
-    """Limits what an implicit step may do to the film, or chooses the steps by the error that they make.
+    """Step control of a run: limit the change of the gap in a step, or choose steps by the error that they make.
 
     **Of a joint** (``CreateLubricatedJoint(stepControl=StepControl(largest_gap_change=0.1))``): Newton may well
     converge for a step in which the journal falls from the centre onto its contact, or crosses the contact's range at
@@ -45,10 +45,10 @@ class StepControl:
 
     Parameters
     ----------
-    largest_gap_change : float
+    largest_gap_change : float, default 0.25
         Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the
         step (or of the contact's range, if that is larger), and the same of the end faces; 0.01 to 1. Of a joint.
-    error : float, optional
+    error : float or None, default None
         Error of the gap to aim at, as a share of the minimum film thickness; 1e-4 to 0.5. Of a run. The gaps of end
         faces do not count: their films have no estimate.
 

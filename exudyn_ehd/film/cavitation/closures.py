@@ -77,7 +77,7 @@ class FullSommerfeld:
 
 @dataclass(frozen=True, kw_only=True)
 class Gumbel:
-    """Half-Sommerfeld (Gümbel) condition: solve the linear film, then cut off what lies below the cavity pressure.
+    """Half-Sommerfeld (Gümbel) cavitation: solve the linear film, then cut off pressures below the cavity pressure.
 
     Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It
     is the paper's condition. Flows through ends and supply areas with more than the cavity's pressure are those of the
@@ -86,11 +86,11 @@ class Gumbel:
 
     Parameters
     ----------
-    cavity_pressure : float
+    cavity_pressure : float, default 0.0
         Gauge pressure of the cavity, Pa.
-    cavity_shear : float
+    cavity_shear : float, default 1.0
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
-    line_in_cells : bool
+    line_in_cells : bool, default False
         True: pressures act up to where the linear one is the cavity's, inside the cells of the grid (order two in
         stiffness and damping); not with elastic liners. False: up to the vertex in front of it.
 
@@ -116,7 +116,7 @@ class Gumbel:
 
 @dataclass(frozen=True, kw_only=True)
 class SwiftStieber:
-    """Swift-Stieber (Reynolds) condition: pressure and its gradient vanish at the rupture line.
+    """Default cavitation (Swift-Stieber or Reynolds): pressure and its gradient vanish at the rupture line.
 
     The standard closure for steadily loaded bearings, and cheaper than `Gumbel` here because only the unbroken film is
     factored.
@@ -133,11 +133,11 @@ class SwiftStieber:
 
     Parameters
     ----------
-    cavity_pressure : float
+    cavity_pressure : float, default 0.0
         Gauge pressure of the cavity, Pa.
-    cavity_shear : float
+    cavity_shear : float, default 1.0
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
-    line_in_cells : bool or None
+    line_in_cells : bool or None, default None
         True: the rupture line lies inside the cells of the grid (`exudyn_ehd.film.cavitation.rupture_line`). False: on
         its vertices. None: inside the cells, with the exception above; `JournalBearing.closure` tells which.
 

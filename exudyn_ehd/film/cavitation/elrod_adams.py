@@ -26,7 +26,7 @@ from exudyn_ehd.status import require_bool
 
 @dataclass(frozen=True, kw_only=True)
 class ElrodAdams:
-    """Mass-conserving cavitation: rupture and reformation, with the oil content of the cavity as history.
+    """Cavitation that conserves the oil: rupture and reformation, with the oil in the cavity remembered in time.
 
     For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a
     joint it needs an implicit solver. A steady film needs oil from somewhere: end or supply pressures above the cavity
@@ -41,9 +41,9 @@ class ElrodAdams:
 
     Parameters
     ----------
-    cavity_pressure : float
+    cavity_pressure : float, default 0.0
         Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
-    line_in_cells : bool
+    line_in_cells : bool, default False
         True: the film ruptures where it does, inside the cells of the grid; not in a `ShortBearing`; see
         `exudyn_ehd.film.cavitation.oil_line`. False: on their vertices.
 

@@ -46,15 +46,15 @@ class LumpedThermal(Checked):
     ----------
     supply_temperature : float
         Of the oil that enters, K.
-    housing_conductance : float
+    housing_conductance : float, default 0.0
         G, W/K.
-    housing_temperature : float or None
+    housing_temperature : float or None, default None
         K; None: the supply temperature.
-    capacity : float
+    capacity : float, default 0.0
         Heat capacity that warms up with the film (surfaces near it), J/K.
-    initial_temperature : float or None
+    initial_temperature : float or None, default None
         Of the film at the start of a motion, K; None: the supply temperature.
-    carry_over : float
+    carry_over : float, default 1.0
         As of `FilmEnergy`.
 
     Examples
@@ -101,15 +101,15 @@ class Conduction(Checked):
         radius.
     conductance : float
         To the ambient, W/K; of a bush its outer surface times the heat transfer coefficient there. 0: none.
-    ambient_temperature, initial_temperature : float or None
+    ambient_temperature, initial_temperature : float or None, default None
         K; None: the supply temperature of the oil.
-    conductivity, density, specific_heat : float
+    conductivity, density, specific_heat : float, default 45.0, 7800.0, 460.0
         W/(m K), kg/m3, J/(kg K), the defaults those of steel.
-    expansion : float
+    expansion : float, default 0.0
         Coefficient of linear thermal expansion, 1/K; of steel 1.15e-5. 0: the wall does not grow.
-    clearance_temperature : float or None
+    clearance_temperature : float or None, default None
         At which the bearing has its radial clearance, K; None: the supply temperature.
-    rings : int
+    rings : int, default 8
         Intervals along the radius.
 
     Examples
@@ -196,25 +196,25 @@ class FilmEnergy(Checked):
     ----------
     supply_temperature : float
         Of the oil that enters, K.
-    bush_coefficient, journal_coefficient : float
+    bush_coefficient, journal_coefficient : float, default 0.0
         U_b, U_j, heat transfer from the film's mean temperature to the surfaces, W/(m2 K).
-    bush_temperature, journal_temperature : float or None
+    bush_temperature, journal_temperature : float or None, default None
         T_b, T_j, K; None: the supply temperature.
-    initial_temperature : float or None
+    initial_temperature : float or None, default None
         Of the film at the start of a motion, K; None: the supply temperature.
-    conductivity : float or None
+    conductivity : float or None, default None
         Of the oil, W/(m K), 0.13 for mineral oils: U_b and U_j then act on the film's surfaces, with the oil between
         them and the mean temperature, 3 to 6 k/h; None: U_b and U_j from the mean temperature.
-    bush, journal : Conduction or None
+    bush, journal : Conduction or None, default None
         Walls that take the film's heat at its surfaces, in place of coefficient and temperature on that side; they need
         the oil's ``conductivity``. The walls' temperatures are unknowns of a step as the film's are, and the gap of a
         step sees their growth at its start.
-    carry_over : float
+    carry_over : float, default 1.0
         Share of hot oil's rise over the supply temperature that passes a supply area which feeds nothing, above 0 up to
         1. Smaller values flush the area with ``(1 / carry_over - 1) Q`` of supply oil, Q the flow that arrives from the
         film: ``1 - carry_over`` of the mixture is fresh then. Of closures that do not conserve mass also the share of
         the cavity's rise that the film begins with, the rest being fresh oil. 1: hot oil mixes with the net feed alone.
-    across : int
+    across : int, default 1
         Temperatures across the film: 1, its mean; 2, its mean and its tilt from bush to journal, which needs the oil's
         ``conductivity`` and does not go with a ``shear_law``.
 

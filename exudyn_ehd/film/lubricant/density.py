@@ -84,7 +84,7 @@ class DensityTable(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class DowsonHigginson(Checked):
-    """Density ``rho_0 (1 + a p / (1 + b p))`` of mineral oils: at most a third denser, 10 % at some 230 MPa.
+    """Density of mineral oils under pressure, ``rho_0 (1 + a p / (1 + b p))``: 10 % more at 230 MPa, at most a third.
 
     When: pressures above some 100 MPa, or the compliance of the oil itself in fast transients (with `ElrodAdams`, whose
     history is the oil's mass).
@@ -93,9 +93,9 @@ class DowsonHigginson(Checked):
 
     Parameters
     ----------
-    coefficient : float
+    coefficient : float, default 6e-10
         a, 1/Pa: the compressibility at ambient pressure.
-    saturation : float
+    saturation : float, default 1.7e-9
         b, 1/Pa; the density grows to 1 + a / b at most.
 
     Source

@@ -74,7 +74,7 @@ SAE_DENSITY = 880.0
 
 @dataclass(frozen=True, kw_only=True)
 class Lubricant(Checked):
-    """Lubricant: Newtonian and of constant viscosity unless laws are named.
+    """Oil or another liquid: Newtonian and of constant viscosity unless laws are named.
 
     When: a pressure law above some 50 MPa, a temperature law where the film warms up by more than a few kelvin, a shear
     law for multigrade oils above 1e5 to 1e6 per second. A law adds a tenth to a fifth to the time of a film evaluation;
@@ -86,20 +86,20 @@ class Lubricant(Checked):
 
     Parameters
     ----------
-    viscosity : float
+    viscosity : float or None, default None
         Dynamic viscosity at ``temperature``, ambient pressure and low shear, Pa s. Left out, it comes from
         ``temperature_law``.
-    density : float
+    density : float, default 870.0
         kg/m3; used where a mass, a Reynolds number, a heat capacity or a kinematic viscosity enters.
-    temperature : float
+    temperature : float, default 313.15
         K, at which ``viscosity`` holds; without a thermal effect the whole film has it. To change it, use `at`, which
         changes the viscosity along.
-    specific_heat : float
+    specific_heat : float, default 2000.0
         J/(kg K); only used by thermal effects.
-    pressure_law : BarusPressure, RoelandsPressure or None
-    temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature or None
-    shear_law : CarreauShear or None
-    density_law : DowsonHigginson or None
+    pressure_law : BarusPressure, RoelandsPressure or None, default None
+    temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature or None, default None
+    shear_law : CarreauShear or None, default None
+    density_law : DowsonHigginson or None, default None
         Density under pressure, at any temperature; None: incompressible. Flows are then mass flows over ``density``.
 
     Raises
@@ -182,14 +182,14 @@ LAWS = {name: get_args(kinds) for name, kinds in get_type_hints(Lubricant).items
 
 
 def oil(name: str, *, temperature: float = CELSIUS_40) -> Lubricant:
-    """A lubricant by the name of its grade.
+    """Return the `Lubricant` of a grade, e.g. ISO VG 46, whose viscosity changes with temperature.
 
     Parameters
     ----------
     name : str
         ``"ISO VG 22"`` to ``"ISO VG 460"``, ``"SAE 10"`` to ``"SAE 60"``, or ``"SAE 0W-20"``, ``"SAE 5W-30"``,
         ``"SAE 10W-40"``, ``"SAE 15W-40"``, ``"SAE 20W-50"``; spaces and case do not matter.
-    temperature : float
+    temperature : float, default 313.15
         At which its viscosity is taken, K.
 
     Returns

@@ -59,7 +59,7 @@ COEFFICIENT = partial(POSITIVE, at_most=LARGEST_COEFFICIENT, hint="mineral oils 
 
 @dataclass(frozen=True, kw_only=True)
 class BarusPressure(Checked):
-    """Barus' law ``mu = mu_0 exp(alpha p)``; good to some 100 MPa, too steep beyond.
+    """Viscosity under pressure by Barus' law ``mu = mu_0 exp(alpha p)``; good to some 100 MPa, too steep beyond.
 
     When: oil thickens by 10 % at 5 MPa, so that a law matters above some 5 MPa peak pressure for details, above 50 MPa
     always.
@@ -105,7 +105,7 @@ class BarusPressure(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class RoelandsPressure(Checked):
-    """Roelands' law: like Barus' at low pressure, less steep at high pressure.
+    """Viscosity under pressure by Roelands' law: like Barus' at low pressure, less steep at high pressure.
 
     When: as `BarusPressure`, and always above 100 MPa.
 
@@ -113,7 +113,7 @@ class RoelandsPressure(Checked):
     ----------
     coefficient : float
         alpha, the slope of ln(mu) at ambient pressure, 1/Pa; 1e-8 to 2.5e-8 for mineral oils.
-    reference_pressure : float
+    reference_pressure : float, default 1.96e8
         p_0, Pa.
 
     Source

@@ -59,7 +59,7 @@ class CarreauShear(Checked):
         lambda, s: thinning sets in at a shear rate of 1 / lambda.
     exponent : float
         n, above 0 and up to 1 (Newtonian): at high rates the viscosity falls with the power n - 1 of the rate.
-    residual : float
+    residual : float, default 0.0
         r_inf = mu at infinite rate / mu_0, 0 to 1.
 
     Source

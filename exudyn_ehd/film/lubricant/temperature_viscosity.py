@@ -22,7 +22,7 @@ CELSIUS_15 = 288.15
 
 @dataclass(frozen=True, kw_only=True)
 class ReynoldsTemperature(Checked):
-    """Exponential law ``mu = mu_1 exp(-beta (T - T_1))`` (O. Reynolds 1886), for narrow ranges of temperature.
+    """Viscosity over temperature, ``mu = mu_1 exp(-beta (T - T_1))`` (O. Reynolds 1886), for narrow ranges.
 
     Parameters
     ----------
@@ -54,15 +54,16 @@ class ReynoldsTemperature(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class VogelTemperature(Checked):
-    """Vogel's law ``mu = A exp(B / (T - T_0))`` (H. Vogel, Physikalische Zeitschrift 22 (1921) 645) through two points.
+    """Viscosity over temperature by Vogel's law ``mu = A exp(B / (T - T_0))`` through two points.
 
+    H. Vogel, Physikalische Zeitschrift 22 (1921) 645:
     ``B = ln(mu_1 / mu_2) / (1 / (T_1 - T_0) - 1 / (T_2 - T_0))``, ``A = mu_1 exp(-B / (T_1 - T_0))``.
 
     Parameters
     ----------
     first, second : (float, float)
         Temperature, K, and dynamic viscosity, Pa s; the second one hotter and thinner.
-    pole : float
+    pole : float, default 178.15
         T_0, K; -95 degrees Celsius suits mineral oils (A. Cameron, Principles of Lubrication).
 
     Examples
@@ -102,7 +103,9 @@ class VogelTemperature(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class WaltherTemperature(Checked):
-    """Walther's law ``log10 log10(nu + 0.7) = a - b log10 T``, nu in mm2/s (ASTM D341), through two points.
+    """Viscosity over temperature by Walther's law ``log10 log10(nu + 0.7) = a - b log10 T`` through two points.
+
+    The kinematic viscosity nu is in mm2/s (ASTM D341).
 
     The dynamic viscosity is ``nu rho(T)``, with ``rho = rho_15 exp(-x (1 + 0.8 x))``, ``x = expansion (T - 288.15)`` of
     the density at 15 degrees Celsius (ISO 91, ASTM D1250).
@@ -111,7 +114,7 @@ class WaltherTemperature(Checked):
     ----------
     first, second : (float, float)
         Temperature, K, and kinematic viscosity, m2/s, above 2 mm2/s; the second one hotter and thinner.
-    expansion : float
+    expansion : float, default 0.0
         1/K; 0.6278 kg/m3 over the density at 15 degrees for lubricating oils, 7e-4; 0: the density is the same at all
         temperatures, which makes mineral oils 2 % thicker at 40 and 7 % thicker at 100 degrees.
 

@@ -96,7 +96,7 @@ class _Transition(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class NgPan(_Transition):
-    """Turbulent film after Ng and Pan; see the module for the equations.
+    """Turbulent film after Ng and Pan, for fast or thin liquids; see the module for the equations.
 
     When: thin liquids (water, refrigerants, hot turbine oil) at Re = rho U c / mu above some 1000; the audit names it.
     Not with laws of pressure, density or shear, flow factors of roughness, or a film's own heat conduction, which
@@ -105,9 +105,9 @@ class NgPan(_Transition):
 
     Parameters
     ----------
-    onset : float or None
+    onset : float or None, default None
         Reynolds number up to which the film is laminar; None: where Taylor's vortices begin, 41.2 sqrt(R / c).
-    full : float or None
+    full : float or None, default None
         Reynolds number from which on it is fully turbulent; None: twice the onset.
 
     Source
@@ -135,15 +135,15 @@ class NgPan(_Transition):
 
 @dataclass(frozen=True, kw_only=True)
 class Hirs(_Transition):
-    """Turbulent film by Hirs' bulk flow; see the module for the equations.
+    """Turbulent film by Hirs' bulk flow, for fast or thin liquids; see the module for the equations.
 
     When: as `NgPan`, with two constants that can be measured on the surfaces at hand.
 
     Parameters
     ----------
-    onset, full : float or None
+    onset, full : float or None, default None
         As of `NgPan`.
-    coefficient, exponent : float
+    coefficient, exponent : float, default 0.066, -0.25
         n and m of the wall's stress ``n rho u^2 / 2 (rho u h / mu)^m``; exponents from -1 (laminar) to 0 (rough).
 
     Source

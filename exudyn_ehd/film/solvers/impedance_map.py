@@ -56,12 +56,14 @@ class ImpedanceMap(Checked):
 
     Parameters
     ----------
-    n_theta, n_z, stretch
+    n_theta, n_z : int, default 320, 10
         Grid of the film behind the map, as for `FiniteLength`. With the rupture line on its vertices the force's ripple
         is the map's largest error (0.44 % instead of 0.11 % at L/D 1), so that n_theta is large.
-    largest_eccentricity_ratio : float
+    stretch : float, default 0.75
+        Stretching of that grid along the bearing, as for `FiniteLength`.
+    largest_eccentricity_ratio : float, default 0.99
         End of the table, 0.5 to 0.995.
-    n_eccentricity, n_direction : int
+    n_eccentricity, n_direction : int, default 41, 81
         Nodes in eccentricity and in direction.
 
     Source

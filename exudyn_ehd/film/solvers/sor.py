@@ -46,7 +46,7 @@ LARGEST_SUM = 1e100
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicSOR(Checked):
-    """The paper's scheme as a selectable film: central differences, SOR, rule (11), Gümbel.
+    """Finite differences with successive over-relaxation (SOR) and Gümbel's condition, to compare with other codes.
 
     See the module's docstring.
 
@@ -57,13 +57,13 @@ class ClassicSOR(Checked):
 
     Parameters
     ----------
-    n_theta : int
+    n_theta : int, default 96
         Points around the circumference, at least 16.
-    n_z : int
+    n_z : int, default 24
         Intervals along the bearing, at least 4.
-    tolerance : float
+    tolerance : float, default 1e-5
         Of rule (11); the paper's is 1e-5.
-    relaxation : float or None
+    relaxation : float or None, default None
         lambda in (0, 2); None: 2 / (1 + sqrt(1 - rho^2)) with the spectral radius rho of Jacobi's iteration for a
         constant gap.
 

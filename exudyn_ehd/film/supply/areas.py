@@ -50,7 +50,7 @@ class _Area(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class AxialGroove(_Area):
-    """Groove along the axis, centred at mid-plane.
+    """Groove that supplies oil along the axis, centred at mid-plane.
 
     Edges of supply areas act where they are, on and between the grid's lines: on the default grid the load is within 1
     to 1.5 %.
@@ -61,13 +61,13 @@ class AxialGroove(_Area):
         theta of its centre, rad; of a ``rotating`` one in the reference configuration.
     width_angle : float
         Angle that it spans, rad, below 2 pi.
-    length : float or None
+    length : float or None, default None
         Axial length, m; None: seven eighths of the bearing's, in a `LongBearing` the whole.
-    pressure : float
+    pressure : float, default 0.0
         Gauge pressure, Pa.
-    rotating : bool
+    rotating : bool, default False
         True: in the journal, turning with its spin.
-    depth : float or None
+    depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
         `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 
@@ -90,17 +90,17 @@ class AxialGroove(_Area):
 
 @dataclass(frozen=True, kw_only=True)
 class CircumferentialGroove(_Area):
-    """Groove around the bearing; it parts the film into lands, whose load is within 1 % on the default grid.
+    """Groove that supplies oil around the bearing, between two lands; their load is within 1 % on the default grid.
 
     Parameters
     ----------
-    z : float
+    z : float, default 0.0
         Axial position of its centre, m.
     width : float
         Axial width, m.
-    pressure : float
+    pressure : float, default 0.0
         Gauge pressure, Pa.
-    depth : float or None
+    depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
         `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 
@@ -122,7 +122,7 @@ class CircumferentialGroove(_Area):
 
 @dataclass(frozen=True, kw_only=True)
 class Hole(_Area):
-    """Round hole of any diameter; in the journal of at least a column of the film's grid.
+    """Round hole that supplies oil, of any diameter; in the journal of at least a column of the film's grid.
 
     It feeds within 1 % of what it does on a fine grid, its pressure well above the film's.
 
@@ -130,15 +130,15 @@ class Hole(_Area):
     ----------
     angle : float
         theta of its centre, rad; of a ``rotating`` one in the reference configuration.
-    z : float
+    z : float, default 0.0
         Axial position of its centre, m.
     diameter : float
         m.
-    pressure : float
+    pressure : float, default 0.0
         Gauge pressure, Pa.
-    rotating : bool
+    rotating : bool, default False
         True: in the journal, turning with its spin.
-    depth : float or None
+    depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
         `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 
@@ -160,23 +160,23 @@ class Hole(_Area):
 
 @dataclass(frozen=True, kw_only=True)
 class Pocket(_Area):
-    """Rectangular pocket.
+    """Rectangular pocket that supplies oil.
 
     Parameters
     ----------
     angle : float
         theta of its centre, rad; of a ``rotating`` one in the reference configuration.
-    z : float
+    z : float, default 0.0
         Axial position of its centre, m.
     width_angle : float
         Angle that it spans, rad, below 2 pi.
     length : float
         Axial length, m.
-    pressure : float
+    pressure : float, default 0.0
         Gauge pressure, Pa.
-    rotating : bool
+    rotating : bool, default False
         True: in the journal, turning with its spin.
-    depth : float or None
+    depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
         `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
 

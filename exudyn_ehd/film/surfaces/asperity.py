@@ -35,7 +35,7 @@ STEPS_PER_SIGMA = 64
 
 @dataclass(frozen=True, kw_only=True)
 class GreenwoodTripp(Checked):
-    """Asperity contact of rough surfaces, with boundary friction; what carries a bearing in mixed lubrication.
+    """Contact of rough surfaces at their asperities, with boundary friction: carries load in mixed lubrication.
 
     The film between the asperities then has the average gap, which is positive for any position of the journal.
 
@@ -48,16 +48,16 @@ class GreenwoodTripp(Checked):
         sigma = sqrt(sigma_journal^2 + sigma_bore^2), m.
     composite_modulus : float
         E' in Pa, 1/E' = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; see `composite_modulus`.
-    density_radius_roughness : float
+    density_radius_roughness : float, default 0.05
         eta beta sigma (asperities per area, tip radius, roughness); 0.03 to 0.05 for most finished surfaces.
-    roughness_radius_ratio : float
+    roughness_radius_ratio : float, default 0.01
         sigma / beta; 1e-4 to 1e-2.
-    friction_coefficient : float
+    friction_coefficient : float, default 0.1
         Boundary friction of the asperities; 0: none.
-    transition_speed : float
+    transition_speed : float, default 0.01
         Sliding speed v0 in ``v / sqrt(v^2 + v0^2)``, by which Coulomb friction is regularised, m/s: slower sliding rubs
         less than the coefficient says, in a joint, `steady` and `equilibrium`, but not in `stribeck`.
-    residual_film : float
+    residual_film : float, default 0.02
         Film that touching spots keep, share of sigma, 0.001 to 0.2.
 
     Source

@@ -20,7 +20,7 @@ from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticLiner(Checked):
-    """Bush with an elastic liner on a rigid housing, by Winkler elements.
+    """Thin elastic layer on a rigid housing, which deflects where the pressure acts (Winkler elements).
 
     Each element deflects under its own pressure, solved with the film. When: soft or thick layers whose deflection
     reaches a tenth of the minimum film thickness; for structures take a bush with a mesh.
@@ -36,7 +36,7 @@ class ElasticLiner(Checked):
         t, m.
     youngs_modulus : float
         E, Pa.
-    poisson_ratio : float
+    poisson_ratio : float, default 0.3
         nu, 0 to 0.49; Winkler elements say nothing about incompressible liners.
 
     Examples

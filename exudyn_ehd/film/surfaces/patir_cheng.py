@@ -83,10 +83,10 @@ class PatirCheng(Checked):
     ----------
     composite_roughness : float
         sigma = sqrt(sigma_journal^2 + sigma_bore^2), m.
-    pattern : float
+    pattern : float, default 1.0
         gamma, correlation length in theta over that in z: 1/9, 1/6, 1/3 (lay across the motion), 1 (isotropic), 3, 6 or
         9 (lay along the motion), the patterns that Patir and Cheng computed.
-    journal_share : float
+    journal_share : float, default 0.5
         sigma_journal^2 / sigma^2, 0 to 1; 0.5: equally rough surfaces, whose shear flow factors cancel. The rougher
         surface drags more oil along and is pulled more by a pressure gradient.
 

@@ -47,7 +47,7 @@ class OutOfRound(Checked):
         Lobes around the circumference, at least 2 (1 is an eccentricity); 2: oval, 3: three-lobe.
     amplitude : float
         m; half of the difference between largest and smallest radius.
-    phase : float
+    phase : float, default 0.0
         Angle of the first lobe's largest radius, rad.
 
     Examples
@@ -87,7 +87,7 @@ class Crown(Checked):
     ----------
     drop : float
         Additional gap at the bearing's ends, m; negative: waisted.
-    exponent : float
+    exponent : float, default 2.0
         At least 1; 2 is a parabola, larger ones leave a longer cylinder.
 
     Examples

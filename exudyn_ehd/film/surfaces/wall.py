@@ -27,7 +27,7 @@ from exudyn_ehd.status import POSITIVE, Checked, require_number
 
 @dataclass(frozen=True, kw_only=True)
 class RegularisedWall(Checked):
-    """Stiff smooth wall for gaps below an onset.
+    """Contact as a stiff smooth wall for gaps below an onset: a stop, no model of rough surfaces.
 
     A stop for journals that touch now and then: a regularisation, not a model of the surfaces. It does nothing while
     all gaps exceed its onset.
@@ -36,9 +36,9 @@ class RegularisedWall(Checked):
     ----------
     onset : float
         Gap at which the wall starts to act, m; a few roughness heights. Must be below the radial clearance.
-    pressure : float
+    pressure : float, default 1e9
         Contact pressure at zero gap, Pa.
-    residual : float
+    residual : float, default 0.2
         Share of the onset that the film gap never falls below, 0.01 to 0.9.
 
     Examples

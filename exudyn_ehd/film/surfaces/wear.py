@@ -30,7 +30,7 @@ class ArchardWear(Checked):
     ----------
     wear_rate : float
         Specific wear rate k, m2/N; 1e-18 to 1e-14 from well lubricated to dry.
-    acceleration : float
+    acceleration : float, default 1.0
         Factor on the wear per time: 1e6 lets a second stand for twelve days of the same motion. The depth stays an
         estimate as long as it changes by much less than the roughness per period of the load.
 

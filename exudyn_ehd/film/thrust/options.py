@@ -69,9 +69,9 @@ class TaperLand(_Pads):
         Number around the face.
     depth : float
         Of a pad's beginning below its land, m; 1 to 3 minimum film thicknesses carry most.
-    share : float
+    share : float, default 0.75
         Of a pad's length that tapers, 0 to 1.
-    reverse : bool
+    reverse : bool, default False
         For journals that turn in the negative sense about z.
 
     Examples
@@ -93,8 +93,14 @@ class StepLand(_Pads):
 
     Parameters
     ----------
-    pads, depth, share, reverse
-        As of `TaperLand`; of most load are 0.9 to 1.2 minimum film thicknesses over 0.7 of the length.
+    pads : int
+        As of `TaperLand`.
+    depth : float
+        Of the recess, m; 0.9 to 1.2 minimum film thicknesses carry most.
+    share : float, default 0.75
+        Of a pad's length that is recessed, 0 to 1; 0.7 carries most.
+    reverse : bool, default False
+        As of `TaperLand`.
 
     Examples
     --------
@@ -140,17 +146,17 @@ class ThrustFaces(Checked):
         Of the faces, m; the inner one at least the journal's radius.
     clearance : float
         Gap of either face with the journal in the middle, m: half of the axial play.
-    profile : TaperLand, StepLand or None
+    profile : TaperLand, StepLand or None, default None
         Pads on both faces; None: plane faces.
-    contact : RegularisedWall or None
+    contact : RegularisedWall or None, default None
         What takes over before a gap vanishes; None: a gap that vanishes ends the run with an error.
-    inner_pressures : (float, float) or None
+    inner_pressures : (float, float) or None, default None
         Gauge pressures at the inner radius of lower and upper face, Pa; None: the bearing's ``end_pressures``.
-    outer_pressures : (float, float)
+    outer_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at the outer radius, Pa.
-    lower, upper : bool
+    lower, upper : bool, default True
         Which faces have a film.
-    n_theta, n_r : int or None
+    n_theta, n_r : int or None, default None
         Grid: vertices around, at least 16 and 8 a pad, rounded up to the same number in every pad, and intervals
         across, at least 6. None: those of the table above, for up to 16 pads; 96 and 10 of plane faces.
 

@@ -57,7 +57,7 @@ ROWS: Mapping[str, AuditRow] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Audit:
-    """Findings about one bearing; print it for a table.
+    """Table of effects: which mattered, which omitted ones would have, which are not needed; print it.
 
     Attributes
     ----------

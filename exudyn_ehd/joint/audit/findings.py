@@ -93,7 +93,7 @@ LIMITS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """Finding of an audit about one effect.
+    """A row of an `Audit`: one effect, its number against a limit, and advice.
 
     Attributes
     ----------

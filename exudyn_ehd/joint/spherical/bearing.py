@@ -40,15 +40,15 @@ class SphericalBearing(Checked):
     lubricant : Lubricant
         A pressure law takes part, a temperature law gives the viscosity at the lubricant's temperature, other laws are
         refused.
-    socket_angles : (float, float)
+    socket_angles : (float, float), default (0.0, pi / 2)
         Colatitudes from the socket's axis at which the patch begins and ends, rad; 0 for a patch that is closed there.
-    n_phi : int
+    n_phi : int, default 48
         Vertices around the axis, at least 16.
-    n_chi : int
+    n_chi : int, default 24
         Intervals from edge to edge (of a closed patch from the pole to the edge), at least 4.
-    cavitation : FullSommerfeld, Gumbel or SwiftStieber
+    cavitation : FullSommerfeld, Gumbel or SwiftStieber, default SwiftStieber()
         Without a line inside the cells. Its ``cavity_pressure`` must not be above the ambient pressure.
-    contact : RegularisedWall or None
+    contact : RegularisedWall or None, default None
         Takes over before the gap vanishes.
 
     Raises

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SphericalResult:
-    """One position of the ball; socket's frame, SI units, fields ``[phi, chi]``.
+    """Result of `steady_spherical`: one position of the ball; socket's frame, SI units, fields ``[phi, chi]``.
 
     Attributes
     ----------
@@ -110,16 +110,16 @@ def steady_spherical(
     velocity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
     angular_velocity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
 ) -> SphericalResult:
-    """Film of a ball at a prescribed place and motion.
+    """Film of a ball at a prescribed place and motion in its socket: pressure, force, torque.
 
     Parameters
     ----------
     bearing : SphericalBearing
     place : (3,) [m]
         The ball's centre in the socket's frame, whose z is the axis of the socket.
-    velocity : (3,) [m/s]
+    velocity : (3,) [m/s], default (0.0, 0.0, 0.0)
         Velocity of the ball's centre as seen from the socket.
-    angular_velocity : (3,) [rad/s]
+    angular_velocity : (3,) [rad/s], default (0.0, 0.0, 0.0)
         Angular velocity of the ball as seen from the socket.
 
     Returns

@@ -47,7 +47,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class EquilibriumResult:
-    """Equilibrium of an aligned or tilted journal under a steady load.
+    """Result of `equilibrium`: position of the journal under a steady load, stiffness, damping, whirl threshold.
 
     Attributes
     ----------
@@ -209,11 +209,11 @@ def equilibrium(
         Force on the journal in x and y, N. Without one, (0, 0), the journal lies at the exact centre of a bearing that
         is the same in all directions. A film that ruptures has one-sided derivatives there; stiffness and damping are
         those a little off the centre, `exudyn_ehd.joint.model.centre`.
-    tilt : (float, float)
+    tilt : (float, float), default (0.0, 0.0)
         Slopes (bx, by), held fixed, rad.
-    axial_position : float
+    axial_position : float, default 0.0
         Position of the journal between the faces of ``bearing.thrust``, m; 0 without them, and with ``axial_load``.
-    axial_load : float, optional
+    axial_load : float or None, default None
         Force on the journal along z, N, which the faces carry; None: the journal is held at ``axial_position``.
 
     Returns

@@ -29,7 +29,7 @@ from exudyn_ehd.status import (
 
 @dataclass(frozen=True, eq=False)
 class FilmResult:
-    """Film of any gap, from `solve_film`.
+    """Result of `solve_film`: the film of any gap.
 
     Attributes
     ----------
@@ -100,21 +100,21 @@ def solve_film(
         Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
     lubricant : Lubricant
         Its pressure and density laws take part; a shear law needs a bearing.
-    surface_speed : (float, float)
+    surface_speed : (float, float), default (0.0, 0.0)
         Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
-    gap_rate : (n, m) array, optional
+    gap_rate : (n, m) array or None, default None
         dh/dt at fixed position, m/s; None: steady.
-    cavitation : closure, optional
+    cavitation : closure or None, default None
         Default `SwiftStieber`.
-    boundary : float or (n, m) array
+    boundary : float or (n, m) array, default 0.0
         Gauge pressure at the prescribed vertices ``grid.fixed``, Pa.
-    stepped_gap : bool
+    stepped_gap : bool, default False
         True: the gap is constant around each vertex and steps on the faces between (pockets, textures); see
         `exudyn_ehd.film.reynolds.stepped_gap`.
-    history : (n, m) array, optional
+    history : (n, m) array or None, default None
         For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its
         squeeze, so that ``gap_rate`` is not needed. None: the film is steady.
-    step : float
+    step : float, default 0.0
         Time since ``history``, s, > 0 with it.
 
     Returns

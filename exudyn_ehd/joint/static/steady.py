@@ -48,7 +48,7 @@ SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 @dataclass(frozen=True, eq=False)
 class SteadyResult(FilmRecord, FilmPictures):
-    """One position of the journal.
+    """Result of `steady`: the film at one position of the journal.
 
     ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.solved_film`; SI units.
 
@@ -138,9 +138,9 @@ class SteadyResult(FilmRecord, FilmPictures):
 
         Parameters
         ----------
-        liner : ElasticLiner, optional
+        liner : ElasticLiner or None, default None
             Liner whose elasticity is assessed, for bearings without one.
-        measure_time : bool
+        measure_time : bool, default False
             Measure the share of computing time of each active effect.
 
         Returns
@@ -168,7 +168,7 @@ def steady(
     axial_speed: float = 0.0,
     axial_position: float = 0.0,
 ) -> SteadyResult:
-    """Film at a prescribed position.
+    """Film at a prescribed position and speed of the journal: pressure, force, friction, leakage.
 
     An `ANCFBush` is in static equilibrium with the film, at any strain, as in a joint. A `ModalBush` is linear; where
     it strains by more than 1 %, a `StrainWarning` says so. Films with more than 3 GPa, or a mean
@@ -185,18 +185,18 @@ def steady(
         Relative spin omega, rad/s.
     eccentricity_ratio : float
         e/c at the mid-plane.
-    direction : float
+    direction : float, default 0.0
         Angle of the eccentricity from x, rad.
-    tilt : (float, float)
+    tilt : (float, float), default (0.0, 0.0)
         Slopes (bx, by) of the journal axis, rad.
-    velocity : (float, float)
+    velocity : (float, float), default (0.0, 0.0)
         dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets
         this velocity, so that full parts are squeezed at once and cavities keep their oil content; an `ElasticLiner`
         has not yielded yet, so that the velocity makes no pressure on it. `EquilibriumResult.dynamic_stiffness` tells
         more.
-    axial_speed : float
+    axial_speed : float, default 0.0
         w, m/s.
-    axial_position : float
+    axial_position : float, default 0.0
         Position of the journal between the faces of ``bearing.thrust``, m; 0 without them.
 
     Returns

@@ -27,7 +27,7 @@ NO_TRANSITION = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class StribeckResult:
-    """Stribeck curve, one entry per speed in the order given; SI units.
+    """Result of `stribeck`: friction and film, one entry per speed in the order given; SI units.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ from exudyn_ehd.status import InputError, require_bool, require_number, require_
 
 @dataclass(frozen=True, kw_only=True)
 class HeldEnds:
-    """The body holds the journal at both end faces, as the webs of a crank hold its pin.
+    """``held`` of an `ElasticJournal`: its body holds both end faces, as the webs of a crank hold its pin.
 
     Examples
     --------
@@ -33,7 +33,7 @@ class HeldEnds:
 
 @dataclass(frozen=True, kw_only=True)
 class HeldBands:
-    """The body holds the journal on bands of its cylinder, as the bosses of a piston hold its pin.
+    """``held`` of an `ElasticJournal`: its body holds bands of the cylinder, as a piston's bosses hold its pin.
 
     The surface does not move there against the body, in no direction: bosses as stiff as the body, without play. One
     band beside the film: an overhung pin.
@@ -80,12 +80,12 @@ class ElasticJournal:
         Axial places of its end faces in the joint frame, about the bearing's mid-plane [m]; the film lies between them.
     held : HeldEnds, HeldBands or None
         Bands or ends where its body holds it; None: the journal is the body, and its mean motion is the body's.
-    inner_radius : float
+    inner_radius : float, default 0.0
         Inner radius of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
-    tolerance : float
+    tolerance : float, default 0.05
         Error of the surface's displacement under sampled films, as in `ModalBush`; 2e-3 to 0.2. Of a pin that bends by
         more than it flattens, over what it deforms locally.
-    tilted : bool
+    tilted : bool, default True
         False leaves out the modes that are odd in z: for journals that stay parallel.
 
     Examples

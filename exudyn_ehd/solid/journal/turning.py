@@ -36,7 +36,7 @@ LARGEST_WAVE, NEGLIGIBLE, ROUNDING = 36, 2e-4, 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FEJournal(FESurface):
-    """The film acts on the journal, an ObjectFFRFreducedOrder; its modes deform under the oil pressure as it turns.
+    """Journal as a finite-element body (ObjectFFRFreducedOrder), whose modes deform under the oil as it turns.
 
     Of any body, also one that is not the same in all directions: its surface turns under the film, which knows the
     radial displacement. The body's mass and its stresses by spin are Exudyn's. Give it the modes that a pressure needs
@@ -46,13 +46,13 @@ class FEJournal(FESurface):
     ----------
     fem : FEMinterface
         The mesh that the body was made of, with its elements.
-    nodes : sequence of int, optional
+    nodes : sequence of int or None, default None
         Mesh nodes on the journal; by default those on the cylinder around the joint's axis.
-    radius_tolerance : float
+    radius_tolerance : float, default 0.02
         Largest relative difference of a node's radius from the bearing's journal radius.
-    settled : bool
+    settled : bool, default True
         As in `FEBore`, with a shape that stands under the turning journal. Stiff modes that start undeformed ring.
-    exact_jacobian : bool
+    exact_jacobian : bool, default True
         As in `FEBore`.
 
     Examples
