@@ -52,8 +52,8 @@ GROUPS = (
     ),
     Group(
         "Film and cavitation",
-        "Arguments `film`, `cavitation`, `inlet`, `arc` and `turbulence` of `JournalBearing`. Errors and times of the films: "
-        "[accuracy and speed](../README.md#accuracy-and-speed).",
+        "Arguments `film`, `cavitation`, `inlet`, `arc` and `turbulence` of `JournalBearing`. Errors and times of the "
+        "films: [accuracy and speed](../README.md#accuracy-and-speed).",
         "FiniteLength ShortBearing LongBearing ImpedanceMap ClassicSOR SwiftStieber ElrodAdams Gumbel FullSommerfeld "
         "Periodic MaximumGap Arc NgPan Hirs",
     ),

@@ -110,7 +110,7 @@ def test_docstrings_say_the_defaults_of_signatures():
 
 
 def test_every_default_is_documented():
-    """What takes arguments from a user has a section for them; a result has attributes, or is an enumeration."""
+    """Functions and classes that take arguments from a user have a section for them; a result has attributes, or is an enumeration."""
     for name in ehd.__all__:
         item = getattr(ehd, name)
         own = inspect.isfunction(item) or (dataclasses.is_dataclass(item) and dataclasses.fields(item))
@@ -158,7 +158,7 @@ def occurring(*histories):
 
 
 def test_every_column_of_a_history_is_in_the_table_and_occurs(joints):
-    """With heat in film and walls, supply, liner, asperities, wear and thrust faces: no column is missing or unused."""
+    """No column is missing or unused with heat in film and walls, supply, liner, asperities, wear and thrust faces."""
     histories = [joint.history for joint in joints]
     numbers = {"radial_clearance", "journal_radius", "length"}
     fields = {field.name for field in dataclasses.fields(ehd.JointHistory)} - numbers
