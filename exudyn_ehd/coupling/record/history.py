@@ -155,7 +155,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         Torque of the friction of touching surfaces on the journal about its own axis. Sign as
         ``friction_torque``, of which it is a part; nan with an `ImpedanceMap`.
     supply_flow : (n,) [m3/s]
-        Oil that comes from all supply areas together. Positive into the film; nan without ``supply``.
+        Oil that comes from all supply areas together, or enters an arc at its edges. Positive into the film; nan
+        without ``supply`` and ``arc``.
     film_temperature : (n,) [K]
         Mean temperature of the film over its area. Absolute; nan without ``thermal``.
     peak_temperature : (n,) [K]
