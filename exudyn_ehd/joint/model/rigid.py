@@ -152,7 +152,7 @@ class BearingModel:
         pressure = 12.0 * mu * R**2 / c**2
         known = self._known / pressure
         self.viscosity_ratio = ratio
-        edges = None if b.arc is None else known[3:] * (-1.0, 1.0)
+        edges = known[3:] * (-1.0, 1.0) if known[3:].any() else None
         self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]), edges)
         # what the solver is told: the transformed pressures of a pressure law
         self._prescribed = known if law is None else law.transform(self._known) / pressure
