@@ -317,10 +317,8 @@ class BearingModel:
         Returns the smallest, scaled, with the record's fields of these names.
         """
         s, p, at = self.solver, self.parts, self.grid.directions
-        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, s.H, s.HF, s.H_t)
-        if self.bearing.arc is not None:
-            # beside the arc there is no bore
-            smallest = float(min(s.H.min(), s.HF[:-1].min()))
+        closed = self.bearing.arc is None
+        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, closed, s.H, s.HF, s.H_t)
         extra = None
         if self.effects.gap_terms or self.flexible:
             smallest, extra = self._add_gap_terms(history)
