@@ -23,7 +23,7 @@ from exudyn_ehd.tables import data_frame, write_csv
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-FORMAT = "exudyn_ehd JointHistory 5"
+FORMAT = "exudyn_ehd JointHistory 6"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
@@ -76,6 +76,8 @@ class Quantity(enum.Enum):
     THRUST_TORQUE = "thrust_torque"
     THRUST_POWER_LOSS = "thrust_power_loss"
     THRUST_CONTACT_LOAD = "thrust_contact_load"
+    WEAR_DEPTH = "wear_depth"
+    WORN_VOLUME = "worn_volume"
 
 
 # Scalar quantities of the film: those behind motion, eccentricities and loads.
@@ -147,6 +149,8 @@ class JointHistory(RecordedSteps, History, HistoryPictures):
         force of their films [N] and torque about the bearing's axis [N m] on the journal.
     thrust_minimum_gap, thrust_peak_pressure, thrust_power_loss, thrust_contact_load : ndarray (n,)
         Smallest film thickness [m], highest pressure [Pa], loss [W] and load carried by contact [N] of all faces.
+    wear_depth, worn_volume : ndarray (n,)
+        Largest depth worn off the bore since the start [m], and the volume [m3]; of a bearing with ``wear``, else nan.
     step_error : ndarray (n,)
         Estimated error of the gap that the time steps have made, over the minimum film thickness of the step; of
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -190,6 +194,8 @@ class JointHistory(RecordedSteps, History, HistoryPictures):
     thrust_peak_pressure: np.ndarray
     thrust_torque: np.ndarray
     thrust_contact_load: np.ndarray
+    wear_depth: np.ndarray
+    worn_volume: np.ndarray
     step_count: np.ndarray
     journal_radius: float
 
