@@ -49,6 +49,8 @@ UNITS = {
     "thrust_torque": "N m",
     "thrust_power_loss": "W",
     "thrust_contact_load": "N",
+    "wear_depth": "m",
+    "worn_volume": "m3",
     "film_temperature": "K",
     "peak_temperature": "K",
     "bush_temperature": "K",

@@ -251,6 +251,23 @@ def test_start_stop(example, tmp_path):
 
 
 @pytest.mark.slow
+def test_floating_rings(example, tmp_path):
+    slow, inner, both = example("floating_rings").main(quick=True, output=tmp_path).values()
+    assert (tmp_path / "floating_rings.png").stat().st_size > 10_000
+    # torque balance of concentric films; whirl makes the films thin, on one side of the ring or the other
+    assert slow["ring"] == pytest.approx(slow["ring_concentric"], rel=0.01)
+    for row in (inner, both):
+        assert row["ring"] == pytest.approx(row["ring_concentric"], rel=0.05)
+    # the inner films whirl first, at a little less than the mean speed of shaft and ring
+    assert slow["inner_amplitude_um"] < 0.3 and inner["inner_amplitude_um"] > 10 * slow["inner_amplitude_um"]
+    for row in (inner, both):
+        assert 0.93 < row["inner_whirl"] / row["mean_inside"] < 1.0
+    # then the rings in the housing: half of the clearance, at about half their speed
+    assert inner["outer_amplitude_um"] < 0.3 and both["outer_amplitude_um"] > 20
+    assert both["outer_whirl"] == pytest.approx(both["mean_outside"], rel=0.06)
+
+
+@pytest.mark.slow
 def test_rotor_oil_whirl(example, tmp_path):
     n = example("rotor_oil_whirl").main(quick=True, output=tmp_path)
     assert (tmp_path / "rotor_oil_whirl.png").stat().st_size > 10_000

@@ -7,7 +7,7 @@ mixins     ``plot_...`` methods of what is or has a film or a history; draws not
 style      sizes, colours, fonts; opening and writing a figure
 maps       unrolled maps of pressure, gap, fill and temperature; a ball's socket
 bearing3d  pressure around the bore with the journal in it
-histories  orbit in the clearance circle, polar diagram of the load, quantities over time or angle
+histories  orbit in the clearance circle, polar diagram of the load, quantities over time or angle, waterfall
 bush       deformed bushes with contours of a nodal field
 animation  orbit and pressure as gif or mp4
 vtk        film and bush as files for ParaView

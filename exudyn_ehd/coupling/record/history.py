@@ -23,7 +23,7 @@ from exudyn_ehd.tables import data_frame, write_csv
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-FORMAT = "exudyn_ehd JointHistory 5"
+FORMAT = "exudyn_ehd JointHistory 6"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
@@ -76,6 +76,8 @@ class Quantity(enum.Enum):
     THRUST_TORQUE = "thrust_torque"
     THRUST_POWER_LOSS = "thrust_power_loss"
     THRUST_CONTACT_LOAD = "thrust_contact_load"
+    WEAR_DEPTH = "wear_depth"
+    WORN_VOLUME = "worn_volume"
 
 
 # Scalar quantities of the film: those behind motion, eccentricities and loads.
@@ -198,6 +200,10 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         ``power_loss``.
     thrust_contact_load : (n,) [N]
         Sum of the loads that the end faces carry by contact. From 0, a part of ``thrust_force``.
+    wear_depth : (n,) [m]
+        Largest depth worn off the bore since the start. From 0; nan without ``wear``.
+    worn_volume : (n,) [m3]
+        Volume worn off the bore since the start. As ``wear_depth``.
     step_error : (n,) [-]
         Estimated error of the gap that the time steps have made, over the minimum film thickness of the step. From 0;
         of implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -241,6 +247,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     thrust_peak_pressure: np.ndarray
     thrust_torque: np.ndarray
     thrust_contact_load: np.ndarray
+    wear_depth: np.ndarray
+    worn_volume: np.ndarray
     step_count: np.ndarray
     journal_radius: float
 

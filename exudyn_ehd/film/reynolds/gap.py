@@ -40,8 +40,8 @@ def largest_eccentricity(pose, half_length):
 def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
     """Gaps of a rigid journal at vertices and links, with ``squeeze`` also their rate; returns the smallest gap.
 
-    ``at``: `exudyn_ehd.film.grid.Directions`, as a tuple; ``closed``: whether the grid is a ring. On an arc the smallest
-    gap is one of vertices and links.
+    ``at``: `exudyn_ehd.film.grid.Directions`, as a tuple; ``closed``: whether the grid is a ring. On an arc the
+    smallest gap is one of vertices and links.
     """
     cos_x, sin_x, cos_f, sin_f, z = at
     rigid_gap(pose, cos_x, sin_x, z, 1.0, H)

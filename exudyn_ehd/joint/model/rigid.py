@@ -87,11 +87,19 @@ class Evaluation:
         return self.tangent(slow_motion=exact)
 
     def quantities(self) -> dict[str, float]:
-        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
-        film, p = self._current(), self.model.parts
+        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`.
+
+        With wear also ``wear_depth`` (m, the largest) and ``worn_volume`` (m3) of the bore at the end of the step.
+        """
+        film, p, wear = self._current(), self.model.parts, self.model.effects.wear
         if film is None:
             return {"minimum_gap": self.minimum_gap} | eccentricities(p, self.motion[:4] * p.pose_scale)
-        return quantities(film)
+        found = quantities(film)
+        if wear is not None:
+            depth = p.bearing.radial_clearance * wear.grown(film)
+            volume = p.grid.reference_length**2 * float(np.sum(depth * p.grid.area))
+            found |= {"wear_depth": float(depth.max()), "worn_volume": volume}
+        return found
 
     def history(self) -> History | None:
         """Return the bearing's memory after this state, if it is accepted; None without effects that remember.
