@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
-from exudyn_ehd.film.cavitation.closures import Closure, Gumbel
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.grid import STRETCH, FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
@@ -227,7 +227,7 @@ def check_film(
 
     ``open_ring``: inlet at the maximum gap.
     """
-    if isinstance(film, ClassicSOR) and not isinstance(closure, Gumbel):
+    if isinstance(film, ClassicSOR) and not closure.clips:
         raise InputError(
             f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Gümbel condition, got "
             f"cavitation={closure!r}; use cavitation=Gumbel(), or film=FiniteLength(...) for every other closure."

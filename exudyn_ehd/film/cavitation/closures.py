@@ -14,7 +14,7 @@ here are scaled (see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -34,6 +34,7 @@ VACUUM = -1.1e5
 Placed = TypeVar("Placed", bound="Closure")
 
 
+@runtime_checkable
 class Closure(Protocol):
     """Properties of a cavitation model that a film solver needs; its films are found by `solve_sets`."""
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numba import njit
@@ -36,6 +36,7 @@ AT_THE_END = 1.0 - 1e-9
 SMALLEST_EXPONENT = 1e-30
 
 
+@runtime_checkable
 class DensityLaw(Protocol):
     """Density ratio ``rho / rho_0`` at gauge pressures p, Pa; below ambient pressure it is ``exp(coefficient p)``."""
 

@@ -28,7 +28,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, get_args, get_type_hints
 
-from exudyn_ehd.film.lubricant.density import CompressibleLaw, DowsonHigginson
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityLaw, DowsonHigginson
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, PressureTransform, RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
@@ -121,7 +121,7 @@ class Lubricant(Checked):
     pressure_law: BarusPressure | RoelandsPressure | None = None
     temperature_law: ReynoldsTemperature | VogelTemperature | WaltherTemperature | None = None
     shear_law: CarreauShear | None = None
-    density_law: DowsonHigginson | None = None
+    density_law: DowsonHigginson | DensityLaw | None = None
 
     checks: ClassVar = {"viscosity": POSITIVE, "density": POSITIVE, "temperature": KELVIN, "specific_heat": POSITIVE}
 
