@@ -370,7 +370,10 @@ def require_type(
     ``type(None)`` stands for None. An object is of a protocol if it has all of its attributes.
     """
     if isinstance(value, type) or not isinstance(value, types):
-        names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
+        called = {True: "a {} of your own", False: "{}(...)"}
+        names = " or ".join(
+            "None" if t is type(None) else called[getattr(t, "_is_protocol", False)].format(t.__name__) for t in types
+        )
         raise InputError(f"{where} must be {names}, got {value!r}; {hint}")
 
 

@@ -172,7 +172,7 @@ class DensityField:
 
     def at(self, pressure: float) -> float:
         """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""
-        return float(density_of(pressure * self.scale, self.law.kernel_table))
+        return float(law_at(pressure * self.scale, self.law.kernel_table)[1])
 
 
 class CompressibleLaw(PressureTransform):
@@ -240,12 +240,6 @@ def law_at(q, law):
     r3 = (a + 2.0 * k) / 3.0 * s * r2
     r4 = (a + 3.0 * k) / 4.0 * s * r3
     return p, rho, s, k * s * s, r1, r2, r3, r4
-
-
-@njit(cache=True)
-def density_of(q, law):
-    """Density ratio at a transformed pressure q, Pa, within the law's range."""
-    return law_at(q, law)[1]
 
 
 @njit(cache=True)

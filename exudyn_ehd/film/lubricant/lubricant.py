@@ -30,7 +30,7 @@ from typing import ClassVar, get_args, get_type_hints
 
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityLaw, DowsonHigginson
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, PressureTransform, RoelandsPressure
-from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
+from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear, ShearLaw
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
 from exudyn_ehd.status import KELVIN, POSITIVE, Checked, InputError, require_type
 
@@ -120,7 +120,7 @@ class Lubricant(Checked):
     specific_heat: float = 2000.0
     pressure_law: BarusPressure | RoelandsPressure | None = None
     temperature_law: ReynoldsTemperature | VogelTemperature | WaltherTemperature | None = None
-    shear_law: CarreauShear | None = None
+    shear_law: CarreauShear | ShearLaw | None = None
     density_law: DowsonHigginson | DensityLaw | None = None
 
     checks: ClassVar = {"viscosity": POSITIVE, "density": POSITIVE, "temperature": KELVIN, "specific_heat": POSITIVE}
@@ -128,8 +128,9 @@ class Lubricant(Checked):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name, laws in LAWS.items():
-            hint = "laws are objects, not strings or classes."
-            require_type(f"Lubricant.{name}", getattr(self, name), *laws, hint=hint)
+            require_type(
+                f"Lubricant.{name}", getattr(self, name), *laws, hint="laws are objects, not strings or classes."
+            )
         if self.viscosity is None:
             object.__setattr__(self, "viscosity", self._viscosity_from_law())
             POSITIVE("Lubricant.viscosity", self.viscosity)
