@@ -20,6 +20,7 @@ Symbols: x along the sliding, z across; _s derivative to S (which has no part ac
 from __future__ import annotations
 
 import functools
+from collections.abc import Hashable
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -32,8 +33,7 @@ _unsigned: Any = np.uint64
 _1, _2, _3, _4 = (_unsigned(k) for k in range(1, 5))
 # Bits of a number: its power of two, and the interval within.
 _MANTISSA, _SHIFT, _PARTS_SHIFT = (_unsigned(k) for k in (52, 47, 5))
-_FIRST, _TURNED = _unsigned(1023 << 5), _unsigned(2046)
-_PLACE, _ONE = _unsigned((1 << 52) - 1), _unsigned(1023 << 52)
+_FIRST, _TURNED, _PLACE, _ONE = (_unsigned(k) for k in (1023 << 5, 2046, (1 << 52) - 1, 1023 << 52))
 # Gauss points across the film, of the pressure flow and of the mean stress. Largest error of a flow for exponents from
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
@@ -48,14 +48,13 @@ SAME = 1e-12
 LAST = 20
 # Share of the stress up to which the derivatives lead to the next profile.
 FAR = 0.3
-# Newton steps for the stress of sliding alone at most, and the one behind which its law is asked.
+# Newton steps for the stress of sliding alone at most, and the one behind which its table is asked.
 MOST_TRIALS, ASKS = 8, 2
 # Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
 SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
 STILL = 1e-3
-_BISECTIONS = 90
-_FUSE = {"contract", "arcp", "nsz"}
+_BISECTIONS, _FUSE = 90, {"contract", "arcp", "nsz"}
 
 
 class Profile(NamedTuple):
@@ -82,14 +81,12 @@ class Oil(NamedTuple):
     rates: np.ndarray
 
 
-class RateLaw(Protocol):
+class RateLaw(Hashable, Protocol):
     """Viscosity ratio ``mu / mu_0`` at shear rates from 0 to 1e36 over the relaxation time.
 
     It is 1 at rest and smooth there: an even function of the rate. The stress, ratio times rate, grows with the rate.
     Equal laws have equal hashes.
     """
-
-    def __hash__(self) -> int: ...
 
     @property
     def relaxation_time(self) -> float:
