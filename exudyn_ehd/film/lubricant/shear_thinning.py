@@ -39,7 +39,7 @@ from exudyn_ehd.film.lubricant.shear_profile import (
     thin_shear,
 )
 from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
 THINS = "the law is that of an oil that thins."
 
@@ -148,6 +148,11 @@ class ShearThinning(LinkLaw):
     depends_on_speed = True
 
     def __init__(self, law: RateLaw, radius: float, clearance: float) -> None:
+        if not abs(rest := float(law.ratio(np.zeros(1))[0]) - 1.0) < 1e-9:
+            raise InputError(
+                f"{type(law).__name__}: the ratio must be 1 at rest, got {1.0 + rest:g}; it multiplies "
+                "Lubricant.viscosity, which is that of low shear rates."
+            )
         self.law = law
         self.oil = fluidity_table(law)
         self.flow_points, self.stress_points = gauss_points(FLOW_POINTS), gauss_points(STRESS_POINTS)
