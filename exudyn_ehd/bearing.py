@@ -106,8 +106,8 @@ class JournalBearing(Checked):
     lubricant : Lubricant
     film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR
         Film model and grid.
-    cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams
-        Closure at the cavity pressure.
+    cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure
+        Closure at the cavity pressure; `Closure` is one of your own, see "Extension points" in the package's README.
     inlet : Periodic or MaximumGap
         Circumferential condition.
     end_pressures : (float, float)

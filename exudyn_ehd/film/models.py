@@ -261,11 +261,9 @@ def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> 
     """Names of a bearing's options that do not support the closure's rupture line inside the cells of the grid."""
     clips, oil_counts = closure.clips, closure.conserves_mass
     short = isinstance(film, ShortBearing) and not clips
-    kinds: tuple[type, ...] = (FiniteLength, LongBearing)
-    if not oil_counts:
-        kinds += (ShortBearing,) if clips else (ShortBearing, ImpedanceMap)
+    reduced = () if oil_counts else (ShortBearing,) if clips else (ShortBearing, ImpedanceMap)
     others = {
-        f"film={type(film).__name__}(...)": not isinstance(film, kinds),
+        f"film={type(film).__name__}(...)": not isinstance(film, (FiniteLength, LongBearing, *reduced)),
         # deflections end with the clipped pressure of a vertex: with the line between them tangents get worse
         "bush=ElasticLiner(...)": clips and isinstance(bush, ElasticLiner),
         "Lubricant.density_law": short and oil.density_law is not None,

@@ -157,7 +157,6 @@ class ShearThinning(LinkLaw):
         self.oil = fluidity_table(law)
         self.flow_points, self.stress_points = gauss_points(FLOW_POINTS), gauss_points(STRESS_POINTS)
         self.per_speed = 2.0 * radius * law.relaxation_time / clearance
-        self.field = None
 
     def place(self, grid: FilmGrid, flow_x: float) -> None:
         """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""

@@ -155,10 +155,9 @@ class ViscosityField(FluxEffect):
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Divide the conductances by the ratio on the link."""
-        for conductance in (flux.gx, flux.gx_h, flux.gx_v)[: 2 + flux.speeds]:
-            conductance *= self.inverse_x
-        for conductance in (flux.gz, flux.gz_h, flux.gz_v)[: 2 + flux.speeds]:
-            conductance *= self.inverse_z
+        for x, z in ((flux.gx, flux.gz), (flux.gx_h, flux.gz_h), (flux.gx_v, flux.gz_v))[: 2 + flux.speeds]:
+            x *= self.inverse_x
+            z *= self.inverse_z
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray

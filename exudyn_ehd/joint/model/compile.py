@@ -49,8 +49,9 @@ def compile_together(bearing: JournalBearing, *more: str) -> None:
 def _groups(bearing: JournalBearing) -> tuple[str, ...]:
     """Groups of kernels that a bearing needs for sure."""
     oil = bearing.lubricant
-    plain = oil.pressure_law is None and oil.shear_law is None and oil.density_law is None
-    plain = plain and all(getattr(bearing, f.name) == f.default for f in fields(bearing) if f.name not in _BESIDE)
+    plain = oil.pressure_law is oil.shear_law is oil.density_law is None and all(
+        getattr(bearing, f.name) == f.default for f in fields(bearing) if f.name not in _BESIDE
+    )
     closure, known = bearing.closure, {(True, False, False): "swift", (False, True, False): "elrod"}
     own = known.get((bool(closure.line_in_cells), closure.conserves_mass, closure.clips))
     return ("film", own) if plain and own and isinstance(bearing.film, FiniteLength) else ()
