@@ -365,9 +365,15 @@ def hint_arguments(item: Hinted) -> Hinted:
 def require_type(
     where: str, value: object, *types: type, hint: str = "options are objects, not strings or classes."
 ) -> None:
-    """Raise `InputError` for what is none of these types; ``type(None)`` stands for None."""
-    if not isinstance(value, types):
-        names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
+    """Raise `InputError` for an object of none of these types, and for a class.
+
+    ``type(None)`` stands for None. An object is of a protocol if it has all of its attributes.
+    """
+    if isinstance(value, type) or not isinstance(value, types):
+        called = {True: "a {} of your own", False: "{}(...)"}
+        names = " or ".join(
+            "None" if t is type(None) else called[getattr(t, "_is_protocol", False)].format(t.__name__) for t in types
+        )
         raise InputError(f"{where} must be {names}, got {value!r}; {hint}")
 
 

@@ -306,7 +306,7 @@ def _with_line(bearing: JournalBearing, in_cells: bool) -> Options | None:
     """The closure with its rupture line inside the cells or on the vertices; None where it has none or may not."""
     if math.isinf(bearing.cavitation.cavity_pressure):
         return None
-    lined: Any = dataclasses.replace(bearing.cavitation, line_in_cells=in_cells)  # type: ignore[arg-type]
+    lined: Any = dataclasses.replace(bearing.cavitation, line_in_cells=in_cells)  # type: ignore[type-var]
     try:
         dataclasses.replace(bearing, film=FiniteLength(), cavitation=lined)
     except InputError:

@@ -13,8 +13,7 @@ from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
-from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.turbulence import TurbulentFlow
+from exudyn_ehd.film.reynolds.links import LinkLaw
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -120,7 +119,7 @@ def _rheology(
     """Thermal effect, growth of its walls, flux effects and shear factors of shear thinning or turbulence, and of a
     temperature field."""
     oil, spec, R, c = bearing.lubricant, bearing.thermal, bearing.journal_radius, bearing.radial_clearance
-    laws: list[ShearThinning | TurbulentFlow] = []
+    laws: list[LinkLaw] = []
     if oil.shear_law is not None:
         laws.append(oil.shear_law.bound(R, c))
     if bearing.turbulence is not None:
