@@ -15,12 +15,13 @@ from exudyn_ehd.tables import Table
 Columns: TypeAlias = Mapping[str, np.ndarray]
 """The columns of a `JointHistory` by name."""
 TURN = 2.0 * np.pi
-_UNITS = {"start": "s", "end": "s"}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class Revolutions(Table):
-    """One row per revolution; SI units, nan where the film does not provide a quantity. ``print`` shows a table.
+    """One row per revolution; nan where the film does not provide a quantity.
+
+    ``print`` shows a table in um, MPa, W and l/min. Arrays, `to_csv` and `to_dataframe` have SI units.
 
     Attributes
     ----------
@@ -69,9 +70,6 @@ class Revolutions(Table):
 
     def __repr__(self) -> str:
         return f"<Revolutions: {len(self)}, print them for a table>"
-
-    def _units(self) -> Mapping[str, str]:
-        return _UNITS
 
 
 def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
