@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
@@ -115,7 +114,6 @@ class GapWatch:
             least = SMALLEST_GAP_SHARE * faces.clearance
             self.range_of_faces = least if faces.contact is None else faces.contact.onset
         self.gap = self.film = self.face = np.nan
-        self.rejections = 0
 
     def start(self, trial: Trial, film: float | None) -> None:
         """Remember the gaps at the start of a step; ``film`` is that of a film in a worn or soft bore."""
@@ -131,9 +129,4 @@ class GapWatch:
         if trial.faces is not None:
             change = abs(trial.faces.minimum_gap - self.face)
             too_far = too_far or change > self.share * max(self.face, self.range_of_faces)
-        if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
-            return False
-        if not solver_state.can_reject_step(solver):
-            return False
-        self.rejections += 1
-        return True
+        return bool(too_far and solver_state.is_implicit(solver) and solver_state.can_reject_step(solver))
