@@ -95,7 +95,7 @@ def test_options_are_frozen_and_keyword_only():
 LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 300, 60, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
-MOST_SKIPS, MOST_ANY, MOST_CODE = 13, 60, 25183
+MOST_SKIPS, MOST_ANY, MOST_CODE = 13, 60, 25181
 # Docstrings of the whole package that begin with a clause without its noun ("What ...", "Of ..."); it can only fall.
 MOST_BARE_CLAUSES = 0
 BARE_CLAUSE = re.compile(r"(What|Whether|As|Of|The same|Where|Which|How|From|With|That|Who|For|At|When)\b")

@@ -127,10 +127,10 @@ class Failures:
         largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
         return self._at(
             time,
-            f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: its last "
-            f"velocities miss its last displacement by {miss:.3g} m; {self.place(trial.motion)}with the journal's "
-            f"mass m and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C with "
-            "forward Euler and 2.8 m / C with RK44, tilting motions alike: use smaller steps, DOPRI5 with its "
+            f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: in the last "
+            f"step its displacement and its velocities disagree by {miss:.3g} m; {self.place(trial.motion)}with the "
+            f"journal's mass m and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C "
+            "with forward Euler and 2.8 m / C with RK44, tilting motions alike: use smaller steps, DOPRI5 with its "
             "automatic steps, or an implicit solver.",
         )
 
@@ -189,12 +189,11 @@ class Failures:
         """A run that rings with forces many times as large as their ``mean``, N, over three steps."""
         return self._at(
             time,
-            f"the film's force is out of all proportion to the inertia and loads at hand: up to {force:.4g} N, thrown "
-            f"from side to side from step to step, and {mean:.4g} N there in the mean of three steps, which is what "
-            f"moves the bodies and carries their loads; {self.place(trial.motion)}forces and "
-            "pressures of the last steps are the time integration's: use ehd.ConfigureSolver(simulationSettings), or a "
-            "spectral radius of 0.6 or less, ehd.SolveDynamic in place of mbs.SolveDynamic, and more steps until none "
-            "is halved.",
+            f"the film's force is out of all proportion to the inertia and loads at hand: it alternates from step to "
+            f"step with up to {force:.4g} N, while its mean over three steps, which moves the bodies and carries their "
+            f"loads, is {mean:.4g} N; {self.place(trial.motion)}the time integration causes forces and pressures of "
+            "the last steps: use ehd.ConfigureSolver(simulationSettings), or a spectral radius of 0.6 or less, "
+            "ehd.SolveDynamic in place of mbs.SolveDynamic, and more steps until none is halved.",
         )
 
     def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial, peak: float) -> FilmError | None:
