@@ -13,7 +13,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.bearing3d import look_at, quads_of
-from exudyn_ehd.pictures.style import new_figure, style_ticks, styled
+from exudyn_ehd.pictures.style import new_figure, style_ticks, styled, write
 from exudyn_ehd.solid.elements.faces import Face, face_of
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError
@@ -77,6 +77,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Fi
             plots.append(axes)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
         style_ticks(figure.colorbar(bar, ax=plots, label=label, shrink=0.8, pad=0.02).ax)
+        write(figure, None)
     return figure
 
 

@@ -67,7 +67,7 @@ def true_error(history, reference, start=0.0):
 def told_steps(joint):
     """The number of steps in all that the line of a run names, None if it names none."""
     history = joint.history
-    line = summary.line(joint.name, joint.bearing, history, since=0.0)
+    line = summary.line(joint.name, joint.bearing, history)
     found = re.search(r"take (\d+) steps (per turn|in all)", line)
     if found is None:
         return None

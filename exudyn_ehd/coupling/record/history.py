@@ -379,9 +379,9 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         """
         if self.is_thinned:
             raise InputError(
-                f"JointHistory.revolutions: the record keeps {self.time.size} of {np.ptp(self.step_count) + 1} states, "
-                "the worst of spans that are no revolutions, of which neither extremes nor means of a revolution "
-                "follow; record all steps, with File(...) where memory is short."
+                f"JointHistory.revolutions: the record is thinned and keeps {self.time.size} of "
+                f"{np.ptp(self.step_count) + 1} states, which do not give extremes and means of a revolution; "
+                "record all steps, with File(...) where memory is short."
             )
         return revolutions({name: getattr(self, name) for name in COLUMNS}, period)
 

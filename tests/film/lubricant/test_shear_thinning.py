@@ -244,7 +244,7 @@ def test_couette_shear_of_a_bearing_is_the_law():
 def test_input_errors():
     with pytest.raises(ehd.InputError, match=r"CarreauShear\.relaxation_time"):
         ehd.CarreauShear(relaxation_time=0.0, exponent=0.5)
-    with pytest.raises(ehd.InputError, match="must be within 0 and 1"):
+    with pytest.raises(ehd.InputError, match="must be between 0 and 1"):
         ehd.CarreauShear(relaxation_time=1e-6, exponent=1.5)
     grid = ehd.slider_grid(0.1, 0.1, 10, 4)
     with pytest.raises(ehd.InputError, match="shear_law must be None"):
