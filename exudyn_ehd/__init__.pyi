@@ -28,10 +28,10 @@ from exudyn_ehd.coupling.rotor.api import SolveThreshold as SolveThreshold
 from exudyn_ehd.coupling.rotor.api import stability_map as stability_map
 from exudyn_ehd.coupling.rotor.result import RotorResult as RotorResult
 from exudyn_ehd.coupling.run.joint_state import JointState as JointState
+from exudyn_ehd.coupling.run.newton_limits import ConfigureSolver as ConfigureSolver
 from exudyn_ehd.coupling.run.periodic import LastCycle as LastCycle
 from exudyn_ehd.coupling.run.periodic import UntilPeriodic as UntilPeriodic
 from exudyn_ehd.coupling.run.restart import SystemState as SystemState
-from exudyn_ehd.coupling.run.settings import ConfigureSolver as ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SaveState as SaveState
 from exudyn_ehd.coupling.run.solve import SolveDynamic as SolveDynamic
 from exudyn_ehd.coupling.run.solve import SolveStatic as SolveStatic
@@ -41,10 +41,10 @@ from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint as Crea
 from exudyn_ehd.coupling.spherical import LubricatedSphericalJoint as LubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import SphericalHistory as SphericalHistory
 from exudyn_ehd.coupling.watch.step_control import StepControl as StepControl
+from exudyn_ehd.film.cavitation.closures import ElrodAdams as ElrodAdams
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld as FullSommerfeld
 from exudyn_ehd.film.cavitation.closures import Gumbel as Gumbel
 from exudyn_ehd.film.cavitation.closures import SwiftStieber as SwiftStieber
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams as ElrodAdams
 from exudyn_ehd.film.grid import Arc as Arc
 from exudyn_ehd.film.grid import bearing_grid as bearing_grid
 from exudyn_ehd.film.grid import slider_grid as slider_grid
@@ -73,6 +73,8 @@ from exudyn_ehd.film.supply.areas import Hole as Hole
 from exudyn_ehd.film.supply.areas import Pocket as Pocket
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp as GreenwoodTripp
 from exudyn_ehd.film.surfaces.asperity import composite_modulus as composite_modulus
+from exudyn_ehd.film.surfaces.contact import ArchardWear as ArchardWear
+from exudyn_ehd.film.surfaces.contact import RegularisedWall as RegularisedWall
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner as ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng as PatirCheng
 from exudyn_ehd.film.surfaces.profile import AxialProfile as AxialProfile
@@ -80,11 +82,9 @@ from exudyn_ehd.film.surfaces.profile import Crown as Crown
 from exudyn_ehd.film.surfaces.profile import EdgeRelief as EdgeRelief
 from exudyn_ehd.film.surfaces.profile import OutOfRound as OutOfRound
 from exudyn_ehd.film.surfaces.profile import ProfileTable as ProfileTable
-from exudyn_ehd.film.surfaces.wall import RegularisedWall as RegularisedWall
-from exudyn_ehd.film.surfaces.wear import ArchardWear as ArchardWear
-from exudyn_ehd.film.thrust.options import StepLand as StepLand
-from exudyn_ehd.film.thrust.options import TaperLand as TaperLand
-from exudyn_ehd.film.thrust.options import ThrustFaces as ThrustFaces
+from exudyn_ehd.film.thrust.annulus import StepLand as StepLand
+from exudyn_ehd.film.thrust.annulus import TaperLand as TaperLand
+from exudyn_ehd.film.thrust.annulus import ThrustFaces as ThrustFaces
 from exudyn_ehd.joint.audit.audit import Audit as Audit
 from exudyn_ehd.joint.audit.audit import Finding as Finding
 from exudyn_ehd.joint.model.fields import FilmFields as FilmFields

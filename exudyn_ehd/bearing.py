@@ -6,8 +6,7 @@ from dataclasses import dataclass, fields
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar, get_args
 
-from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber, place_line
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import Closure, ElrodAdams, FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.combinations import check_combinations
 from exudyn_ehd.film.grid import Arc
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
@@ -26,14 +25,13 @@ from exudyn_ehd.film.models import (
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
-from exudyn_ehd.film.supply.checks import check_depths, check_supply
+from exudyn_ehd.film.supply.rows import check_depths, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import SurfaceProfile
-from exudyn_ehd.film.surfaces.wall import RegularisedWall
-from exudyn_ehd.film.surfaces.wear import ArchardWear
-from exudyn_ehd.film.thrust.options import ThrustFaces, check_faces
+from exudyn_ehd.film.thrust.annulus import ThrustFaces, check_faces
 from exudyn_ehd.status import (
     POSITIVE,
     Checked,

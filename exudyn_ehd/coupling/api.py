@@ -379,7 +379,7 @@ def attach(
     element.presence = Presence(mbs, name, element, number, sides)
     if getattr(model.bearing, "thrust", None) is not None:
         # imported here: a bearing without faces needs none of it
-        from exudyn_ehd.coupling.element.thrust import add_faces
+        from exudyn_ehd.coupling.element.attach import add_faces
 
         add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
     constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None

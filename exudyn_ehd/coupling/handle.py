@@ -12,9 +12,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.element.display import FilmDisplay
+from exudyn_ehd.coupling.element.display import FilmDisplay, reader
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.revolutions import Revolutions
@@ -124,7 +123,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         FilmError
             If no equilibrium was found.
         """
-        from exudyn_ehd.coupling.run.equilibrium_start import place
+        from exudyn_ehd.coupling.run.restart import place
 
         self.element.require_items(self.mbs)
         return place(self.mbs, self.element, self.name, load, speed)

@@ -7,8 +7,7 @@ differences  differences over the links of a grid, sums over links by vertices
 combinations options of a bearing that exclude or need each other
 models       film models that a scene names; their grids and solvers
 supply       grooves, holes, pockets
-loads        integrals of pressure, shear and drag; flows through the edges
-peak         largest pressure, between the vertices too
+loads        integrals of pressure, shear and drag; flows through the edges; largest pressure, between the vertices too
 reynolds     gap and flow through the links between vertices
 lubricant    oil: viscosity and density laws
 surfaces     what lies on the walls: profile, roughness, contact, wear, liner

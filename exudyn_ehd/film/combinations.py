@@ -9,7 +9,7 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.thrust.options import BearingOptions
+from exudyn_ehd.film.thrust.annulus import BearingOptions
 from exudyn_ehd.status import InputError
 
 # Pa s; of a gas far from cold, and of pitch.

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from exudyn_ehd.film.heat.conduction import Walls
+from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.links import FluxEffect, ShearFactor
@@ -122,7 +122,7 @@ class Effects:
         Grows with the pressure of the contacts; one of ``gap_terms``.
     liner : ElasticLiner or None
     uneven_drag : bool
-        True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
+        True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.patir_cheng`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()

@@ -25,15 +25,13 @@ from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import Directions, FilmGrid
-from exudyn_ehd.film.heat.conduction import Walls
+from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.solvers.edge_flows import shear_share
+from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.film.supply.cuts import SupplyMap
-from exudyn_ehd.film.supply.recess import RecessShear
-from exudyn_ehd.film.surfaces.contact import Contact
-from exudyn_ehd.film.surfaces.contact_wrench import slip
+from exudyn_ehd.film.supply.cuts import RecessShear, SupplyMap
+from exudyn_ehd.film.surfaces.contact import Contact, slip
 
 # Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
 MOTION_SIZE = 10
@@ -51,7 +49,7 @@ class History:
         Scaled oil that the flows have brought there. Flows and mass balance to rounding; mass and content differ by
         what `exudyn_ehd.film.solvers.solver.FilmSolver.keep` says. No film depends on it.
     outflow : (3, n, m) array or None
-        Fields of `exudyn_ehd.film.reynolds.lagging_void.outflow_of` for the step (mass-conserving closures).
+        Fields of `exudyn_ehd.film.reynolds.links.outflow_of` for the step (mass-conserving closures).
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
@@ -158,7 +156,7 @@ class FilmParts:
     flow_scale : float
         m3/s per scaled flow.
     uneven_drag : bool
-        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.drag`.
+        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.patir_cheng`.
     evaluations : Evaluations
     """
 

@@ -34,7 +34,7 @@ FEWEST = 10
 PROBES = {
     "film": "film.loads:end_forces",
     "swift": "film.loads:couette_integral",
-    "elrod": "film.reynolds.lagging_void:lag_void",
+    "elrod": "film.reynolds.links:lag_void",
     "bodies": "coupling.kinematics.relative:_jac_column",
 }
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from exudyn_ehd.kernels.helper import main; main()"

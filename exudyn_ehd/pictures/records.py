@@ -12,7 +12,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from exudyn_ehd.bearing import JournalBearing
-    from exudyn_ehd.film.heat.conduction import Walls
+    from exudyn_ehd.film.heat.options import Walls
 
 Target = str | pathlib.Path | None
 """File that a picture is written to; None: it is not written."""

@@ -40,15 +40,15 @@ def oil(**laws):
 
 # Modules that belong to an effect alone, and options that must call each of them.
 EFFECTS = {
-    "contact": (("film.surfaces.wall",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
+    "contact": (("film.surfaces.contact",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
     "contact loads": (
-        ("film.surfaces.contact_wrench", "film.surfaces.drag"),
+        ("film.surfaces.contact", "film.surfaces.patir_cheng"),
         {"contact": ehd.RegularisedWall(onset=0.9 * C)},
     ),
-    "asperity": (("film.surfaces.asperity", "film.surfaces.average_gap"), {"asperity": ASPERITY}),
-    "roughness": (("film.surfaces.flow_factors",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
+    "asperity": (("film.surfaces.asperity",), {"asperity": ASPERITY}),
+    "roughness": (("film.surfaces.patir_cheng",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
     "turbulence": (("film.reynolds.turbulence",), {"turbulence": ehd.Hirs(onset=2.0, full=4.0, coefficient=5.0)}),
-    "wear": (("film.surfaces.wear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
+    "wear": (("film.surfaces.contact",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
     "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
     "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
     "shear law": (
@@ -62,7 +62,7 @@ EFFECTS = {
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
     "energy": (("film.heat.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
     "walls": (
-        ("film.heat.conduction",),
+        ("film.heat.options",),
         {
             "lubricant": HOT,
             "thermal": ehd.FilmEnergy(
@@ -80,12 +80,11 @@ EFFECTS = {
             "film.solvers.liner.winkler",
             "film.solvers.liner.elements",
             "film.solvers.liner.gap_response",
-            "film.solvers.liner.continuation",
             "film.solvers.liner.steps",
         ),
         {"bush": LINER},
     ),
-    "liner in contact": (("film.solvers.liner.kernels",), {"bush": LINER, "asperity": ASPERITY}),
+    "liner in contact": (("film.solvers.liner.winkler",), {"bush": LINER, "asperity": ASPERITY}),
     "bush": (
         (
             "joint.bore.shapes",
@@ -110,7 +109,7 @@ EFFECTS = {
         {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
     "line on a liner": (
-        ("film.solvers.liner.line_kernels", "film.solvers.liner.line"),
+        ("film.solvers.liner.line",),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
     ),
     "line of a film that conserves mass on a liner": (
@@ -118,7 +117,7 @@ EFFECTS = {
         {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True), "bush": LINER},
     ),
     "holes": (
-        ("film.supply.cuts", "film.supply.holes", "film.supply.coverage", "film.supply.recess"),
+        ("film.supply.cuts", "film.supply.holes"),
         {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5, depth=1e-3),)},
     ),
     "thrust": (
@@ -136,21 +135,17 @@ EFFECTS = {
 # kernels only other kernels of their effect call.
 SHARED = {
     "combinations",
-    "banded.lu",
-    "banded.lanes",
     "cavitation.closures",
-    "cavitation.elrod_adams",
     "cavitation.linear_film",
     "cavitation.rupture_line",
     "cavitation.swift_stieber",
     "cavitation.system",
-    "cavitation.steady_oil",
     "cavitation.states",
     "models",
     "banded.numbering",
     "banded.substitution",
     "banded.workspace",
-    "banded.ldl",
+    "banded.factors",
     "reynolds.gap",
     "grid",
     "differences",
@@ -159,28 +154,15 @@ SHARED = {
     "reynolds.links",
     "solvers.answers",
     "solvers.film",
-    "solvers.edge_flows",
     "solvers.solver",
-    "reynolds.stepped_gap",
-    "sensitivity.bore_stencil",
-    "sensitivity.rigid",
+    "sensitivity",
     "supply.areas",
-    "supply.checks",
     "supply.rows",
     "reynolds.link_derivatives",
     "lubricant.temperature_viscosity",
-    "heat.options",
-    "banded.many_sides",
-    "cavitation.pseudo_time",
-    "reynolds.lagging_void",
-    "cavitation.line_steps",
-    "surfaces.patir_cheng",
-    "surfaces.contact",
     "surfaces.elastic_liner",
     "reynolds.balance",
-    "thrust.options",
     "banded.assemble",
-    "peak",
     "lubricant.density_field",
 }
 

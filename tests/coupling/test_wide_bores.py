@@ -7,7 +7,7 @@ import scenes
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
+from exudyn_ehd.coupling.kinematics.relative import BoreGap
 
 CLEARANCE = 40e-6
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)

@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.ldl import factor_band
-from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.factors import factor_band, factor_lu
 from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds import links as reynolds

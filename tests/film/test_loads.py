@@ -8,7 +8,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd import FullSommerfeld, bearing_grid
 from exudyn_ehd.film import loads
-from exudyn_ehd.film.peak import refined_peak
+from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.solvers.solver import FilmSolver
 
 

@@ -15,11 +15,10 @@ import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
 
-from exudyn_ehd.coupling.bush.equations import BushEquations
-from exudyn_ehd.coupling.bush.rigid_part import RigidPart
+from exudyn_ehd.coupling.bush.equations import BushEquations, RigidPart
 from exudyn_ehd.coupling.contract import CURRENT, Index, NodeIndex, Side, require_system
-from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.coupling.items.markers import resolve
+from exudyn_ehd.coupling.items.reduced_bodies import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.loads import BushLoad

@@ -2,16 +2,13 @@
 
 Module map
 ----------
-attach          from a joint's description to its element; bores in balance with the films at the start
+attach          from a joint's description to its element and films on end faces; bores in balance at the start
 rigid           `FilmElement`: user functions for the film of a rigid bore, and those on end faces
 accepted_steps  what was accepted: record, memory, watches, runs that go on
 presence        items of the joint, still in the system
 failures        messages of films that can't go on
-modal           bore by modes
-nodal           bore by nodes
-thrust          films on the end faces for an element
+nodal           bore by nodes or by modes
 outer_load      load on a film from everything else, also of functions of time
 side_by_side    films of one system on several threads
-sensors         Exudyn sensors
-display         drawing in Exudyn's renderer
+display         drawing in Exudyn's renderer; Exudyn sensors
 """

@@ -1,6 +1,8 @@
-"""Puts the items of a flexible bush into an Exudyn system and makes the film element on them.
+"""Put the items of a flexible bush into an Exudyn system, and make the film element of any joint.
 
 Flexible bores start in equilibrium with the films of the initial configuration; several on one body together.
+
+Films on the end faces for the element of a joint, with a check of its start.
 """
 
 from __future__ import annotations
@@ -14,21 +16,24 @@ from scipy.linalg import block_diag
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import Index, JointModel, NodeIndex, Side
-from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement, TurningFilmElement
-from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.element.nodal import BoreFilmElement, ModalFilmElement, NodalFilmElement, TurningFilmElement
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.object_mass import own_equations, require_heavy_housing
-from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
+from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide, initial_frame
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.relative import centre_of, motion_of
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
 from exudyn_ehd.joint.model.build_flexible import TurningModel
+from exudyn_ehd.joint.model.compile import MESSAGE
 from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
+from exudyn_ehd.joint.thrust import ThrustModel
+from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.loads import Gravity
@@ -303,3 +308,36 @@ def _standing_rates(films: list[StartingFilm], q: np.ndarray) -> np.ndarray:
     q = q - np.linalg.solve(elasticity.stiffness, elasticity.load)
     carried = [film.motion[8] * journal.turned(T @ q) for (journal, film), T in zip(turning, maps, strict=True)]
     return np.asarray(np.linalg.lstsq(np.concatenate(maps), -np.concatenate(carried), rcond=1e-6)[0])
+
+
+def add_faces(mbs: exu.MainSystem, element: FilmElement, items: tuple[Item, Item], offset: float) -> None:
+    """Give an element the films on the end faces of its bearing.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    element : FilmElement
+    items : pair of Item
+        Housing and journal.
+    offset : float
+        Of `FilmElement`.
+
+    Raises
+    ------
+    InputError
+        If the journal starts outside its faces.
+    """
+    model, sides = ThrustModel(element.model.bearing), element.sides
+    element.faces, element.offset = model, offset
+    housing, journal = (initial_frame(mbs, item, side) for item, side in zip(items, sides, strict=True))
+    with announced(MESSAGE):
+        start = model.evaluate(np.append(motion_of(housing, journal), centre_of(housing, journal, offset)[2]))
+        start.tangent()
+    if start.status is not Status.CONVERGED:
+        _, _, bx, by, *_, place = start.motion
+        raise InputError(
+            f"CreateLubricatedJoint: the journal is outside the thrust faces of '{element.failures.name}' in the "
+            f"initial configuration: axial position {place:.6g} m, tilt ({bx:.3g}, {by:.3g}), smallest gap "
+            f"{start.minimum_gap:.6g} m; check the initial positions, and whether ThrustFaces.clearance is that of one "
+            "face."
+        )

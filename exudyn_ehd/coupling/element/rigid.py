@@ -26,7 +26,7 @@ from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.axial import axial_variation, centre_of
+from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state

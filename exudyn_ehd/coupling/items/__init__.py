@@ -3,10 +3,9 @@
 Module map
 ----------
 bodies          what becomes of an item number; nodes and bodies
-markers         rigid markers, those on finite elements in absolute coordinates too; item numbers of any kind
+markers         rigid markers; the best rigid fit of nodes of finite elements; item numbers of any kind
 joint_frame     where the joint is, and what is held of its axial freedom
 beams           beams and cables
-reduced_bodies  reduced finite-element bodies
-carrier         what carries a bush
+reduced_bodies  reduced finite-element bodies; what carries a bush
 object_mass     mass of an object; equations of reduced bodies with an exact Jacobian
 """

@@ -19,7 +19,7 @@ from exudyn_ehd.coupling.contract import INITIAL, Index, Side
 from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
+from exudyn_ehd.coupling.kinematics.relative import BoreGap
 from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.status import InputError, require_vector

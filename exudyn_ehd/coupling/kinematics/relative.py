@@ -1,7 +1,22 @@
-"""Relative motion of the two frames of a joint, and the loads of its film on their coordinates, as array kernels.
+"""Relative motion of the two frames of a joint, its smallest gap, and loads on their coordinates, as array kernels.
 
 Frames, Jacobians and legend as in `kinematics`; index h: housing, j: journal. The journal's axis is z of its frame, the
 joint frame that of the housing.
+
+Place of a journal along its bearing's axis, the eleventh entry of its motion, which films on end faces need.
+
+It is that of the journal's centre, the point of its axis at the housing's joint point in the reference configuration,
+
+    z = e_z . (p_J - z_0 a - p_H),
+
+with the bearing's axis e_z, the journal's axis a, and the distance z_0 of both joint points in the reference
+configuration. It does not depend on where along the axis the journal's joint point lies; its rate is w, to second order
+in the tilt.
+
+Smallest gap between a journal and its rigid bore, circular or not.
+
+With the journal's axis at (x, y) + z (b_x, b_y) the gap is c - (x + z b_x) cos theta - (y + z b_y) sin theta and what
+the bore's profiles add. Its smallest value in a circular bore is c less the larger eccentricity of the two ends.
 """
 
 from __future__ import annotations
@@ -11,6 +26,7 @@ import math
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCITY, column, cross, dot, in_frame, times
 
 # Rows of the Jacobians; numpy's integers, since numba compiles kernels anew for each plain one.
@@ -270,3 +286,66 @@ def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, m
                 total += by_wrench[i, m] * by_place[m]
                 d_out[i, c] += by_wrench[i, m] * by_rate[m]
             k_out[i, c] += total
+
+
+def centre_of(frame_h: np.ndarray, frame_j: np.ndarray, offset: float) -> np.ndarray:
+    """Centre (3,) of the journal in the joint frame for the distance ``offset`` of the joint points, m."""
+    arm = frame_j[:, PLACE] - offset * frame_j[:, AXIS] - frame_h[:, PLACE]
+    return np.asarray(arm @ frame_h[:, :3])
+
+
+def axial_variation(wrench_map: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """Derivative (n,) of the place to the coordinates: the work of a unit force along the axis at the centre.
+
+    ``wrench_map`` (n, 6) as in `relative`.
+    """
+    return np.asarray(wrench_map @ [0.0, 0.0, 1.0, centre[1], -centre[0], 0.0])
+
+
+# Points around and along a bore that is no circular cylinder.
+AROUND, ALONG = 180, 9
+
+
+class BoreGap:
+    """Gap of one bearing's rigid surfaces.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+
+    Attributes
+    ----------
+    widest : float
+        Largest gap of a journal in the bore's axis, m.
+    """
+
+    def __init__(self, bearing: JournalBearing) -> None:
+        self.clearance, self.half = bearing.radial_clearance, 0.5 * bearing.length
+        self.widest, self.depth = self.clearance, np.empty(0)
+        profiles = getattr(bearing, "profiles", ())
+        if profiles:
+            theta = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
+            z = np.linspace(-self.half, self.half, ALONG)
+            self.depth = sum((profile.depth(theta, z, bearing.length) for profile in profiles), np.zeros(1))
+            self.widest += float(self.depth.max())
+            ones = np.ones(ALONG)
+            c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
+            self.normals = np.stack((c * ones, s * ones, c * z, s * z), axis=-1)
+        # what is no cylinder knows its own
+        own = getattr(bearing, "gap_normals", None)
+        if own is not None:
+            self.normals = own()
+            self.depth = np.zeros(len(self.normals))
+
+    def smallest(self, motion: np.ndarray) -> float:
+        """Smallest gap [m] at a motion (10,) of the journal's axis; negative where the surfaces overlap."""
+        if self.depth.size:
+            return float(self.values(motion).min())
+        x, y, bx, by = motion[:4].tolist()
+        half = self.half
+        ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
+        return self.clearance - math.sqrt(ends)
+
+    def values(self, motion: np.ndarray) -> np.ndarray:
+        """Gaps [m] all over a bore with profiles."""
+        return self.clearance + self.depth - self.normals @ motion[:4]

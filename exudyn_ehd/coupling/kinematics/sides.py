@@ -1,8 +1,13 @@
 """The two sides of a joint: who carries the marker frame, and how its state is read.
 
 A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels,
-`beam_sides` for geometrically exact beams and cables, `fitted_sides` for finite elements in absolute coordinates,
-`MarkerSide` for any other rigid marker through Exudyn's own marker Jacobians.
+`beam_sides` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
+marker Jacobians. The side of finite elements in absolute coordinates is in `exudyn_ehd.coupling.items.markers`.
+
+Two sides on the nodes of rigid bodies, or ground: their kernels and those of `relative` in one call.
+
+On small films the calls from Python take longer than what they call. A side is (kind, reference, rho, rotation, frame,
+jac) of `rigid_nodes`, the housing's first; q and q_t (n,) hold both sides' coordinates.
 """
 
 from __future__ import annotations
@@ -11,9 +16,12 @@ from types import ModuleType
 
 import exudyn as exu
 import numpy as np
+from numba import njit
 
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
-from exudyn_ehd.coupling.kinematics import node_pair, relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics.relative import global_loads, motion_variation, relative_motion, tangent_matrices
+from exudyn_ehd.coupling.kinematics.rigid_nodes import node_change, node_frame, vary
 
 NODE_KINDS = {
     "RigidBodyEP": rigid_nodes.EULER_PARAMETERS,
@@ -57,7 +65,7 @@ class NodeSide:
 
     @property
     def arrays(self) -> tuple[int | np.ndarray, ...]:
-        """The side as the kernels of `node_pair` take it."""
+        """The side as the kernels of two nodes take it."""
         return self.kind, self.reference, self.rho, self.rotation, self.frame, self.jac
 
     def update(
@@ -238,7 +246,7 @@ def motion_between(
     housing, journal = sides
     if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
         motion = np.empty(10)
-        node_pair.move_nodes(housing.arrays, journal.arrays, q, q_t, motion)
+        move_nodes(housing.arrays, journal.arrays, q, q_t, motion)
         return motion
     n = housing.size
     housing.update(mbs, q[:n], q_t[:n], configuration)
@@ -275,7 +283,7 @@ def derivatives_between(
     (housing, journal), (q, q_t), n_h, loads = sides, state, sides[0].size, np.empty((4, 3))
     if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
         found: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-        found = node_pair.derive_nodes(housing.arrays, journal.arrays, q, q_t, wrench, tangent)
+        found = derive_nodes(housing.arrays, journal.arrays, q, q_t, wrench, tangent)
         return found
     frames, jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
     relative.global_loads(*frames, wrench, loads)
@@ -284,4 +292,33 @@ def derivatives_between(
         rigid_nodes.vary(side.change(mbs, q[own]), q_t[own], load.reshape(6), side.jac, stiffness[own, own])
     motion_q, motion_qt = kinematics.variation_of(*frames, *jacobians)
     relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_q, motion_qt, stiffness, damping)
+    return stiffness, damping, motion_q, motion_qt
+
+
+@njit(cache=True)
+def move_nodes(housing, journal, q, q_t, motion_out):
+    """Fill the frames and Jp, Jr of both sides, and the motion (10,)."""
+    n = housing[1].size
+    if n > 0:
+        node_frame(housing[0], q[:n], q_t[:n], housing[1], housing[2], housing[3], housing[4], housing[5])
+    if q.size > n:
+        node_frame(journal[0], q[n:], q_t[n:], journal[1], journal[2], journal[3], journal[4], journal[5])
+    relative_motion(housing[4], journal[4], motion_out)
+
+
+@njit(cache=True)
+def derive_nodes(housing, journal, q, q_t, wrench, tangent):
+    """Return the derivatives of `sides.derivatives_between`; the sides' frames and Jp, Jr belong to q and q_t."""
+    n, size = housing[1].size, q.size
+    frame_h, frame_j, jac_h, jac_j = housing[4], journal[4], housing[5], journal[5]
+    loads, stiffness, damping = np.empty((4, 3)), np.zeros((size, size)), np.empty((size, size))
+    motion_q, motion_qt = np.empty((10, size)), np.empty((10, size))
+    global_loads(frame_h, frame_j, wrench, loads)
+    for first, end, side, load in ((0, n, housing, loads[:2]), (n, size, journal, loads[2:])):
+        if end > first:
+            change = np.empty((6, end - first, end - first))
+            node_change(side[0], q[first:end], side[1], side[2], change)
+            vary(change, q_t[first:end], load.reshape(6), side[5], stiffness[first:end, first:end])
+    motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q, motion_qt)
+    tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, stiffness, damping)
     return stiffness, damping, motion_q, motion_qt

@@ -11,7 +11,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import NodeIndex
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.axial import axial_variation, centre_of
+from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode

@@ -14,10 +14,9 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import free_bushes
+from exudyn_ehd.coupling.run.newton_limits import free_bushes, require_settings, require_time
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
 from exudyn_ehd.coupling.run.restart import SystemState, load_state
-from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.start_guess import StartGuess, refuse
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.solver_state import hooked

@@ -11,7 +11,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
-from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
+from exudyn_ehd.coupling.kinematics.relative import BoreGap
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import InputError, require_number, require_type
 

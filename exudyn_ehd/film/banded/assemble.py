@@ -1,6 +1,6 @@
 """Newton's matrix from the derivatives of the flows between vertices, for every film whose balance is a sum over links.
 
-Storage and numbering as in `exudyn_ehd.film.banded.lu`, in dense bands as returned by `dense_band`.
+Storage and numbering as in `exudyn_ehd.film.banded.factors`, in dense bands as returned by `dense_band`.
 """
 
 from __future__ import annotations

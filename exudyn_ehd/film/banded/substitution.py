@@ -1,8 +1,6 @@
-"""Forward and back substitution with a stored band factor, for a handful of right-hand sides as rows.
+"""Forward and back substitution with a stored band factor: a few right-hand sides as rows, or dozens as columns.
 
-For dozens see `many_sides`.
-
-``A = F^T G`` with F's rows in ``forward`` and G's in ``backward``, stored as in `ldl` and `lu`. One of the two
+``A = F^T G`` with F's rows in ``forward`` and G's in ``backward``, stored as in `factors`. One of the two
 triangles, or both, come with the diagonal ``1 / inverse``, else with ones:
 
 * `solve_lu`: F^T = L with ones, G = U;
@@ -11,10 +9,20 @@ triangles, or both, come with the diagonal ``1 / inverse``, else with ones:
 
 Four right-hand sides are carried along at once. All indices are flat and unsigned, which spares the slices and sign
 checks that would outweigh the arithmetic of short rows.
+
+Dozens of right-hand sides at once with a stored band factor, as columns of a matrix.
+
+A tile holds TILE of them; its rows are taken by fours, so that a step of a solve subtracts a 4 x 4 block of the factor
+times four known rows from four others, 16 products for 8 rows read and 4 written, in loops of constant length.
+Coefficients are packed by such blocks first. Faster than rows (`substitution`) from some ten right-hand sides on: the
+loads of an elastic bore need dozens, and full tiles are faster still.
 """
+
+from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from scipy.sparse import csr_matrix
 
 _FUSE = {"contract", "nsz", "arcp"}
 _unsigned = np.uint64
@@ -25,7 +33,7 @@ _YES, _NO = np.True_, np.False_
 
 @njit(cache=True, nogil=True)
 def solve_ldl(band, inverse, count, width, x):
-    """Solve ``A x = b`` with the symmetric factor of `ldl.factor_band` for every row of x (k, count), in place."""
+    """Solve ``A x = b`` with the symmetric factor of `factors.factor_band` for every row of x (k, count), in place."""
     _solve_rows(band, band, _YES, _YES, inverse, count, width, x)
 
 
@@ -37,7 +45,7 @@ def solve_ldl_one(band, inverse, count, width, x):
 
 @njit(cache=True)
 def solve_lu(lower, upper, inverse, count, width, x):
-    """Solve ``A x = b`` with the factor of `lu.factor_lu` for every row of x (k, count), in place."""
+    """Solve ``A x = b`` with the factor of `factors.factor_lu` for every row of x (k, count), in place."""
     _solve_rows(lower, upper, _NO, _YES, inverse, count, width, x)
 
 
@@ -49,7 +57,7 @@ def solve_lu_one(lower, upper, inverse, count, width, x):
 
 @njit(cache=True)
 def solve_lu_transposed(lower, upper, inverse, count, width, x):
-    """Solve ``A^T x = b`` with the factor of `lu.factor_lu` for every row of x (k, count), in place."""
+    """Solve ``A^T x = b`` with the factor of `factors.factor_lu` for every row of x (k, count), in place."""
     _solve_rows(upper, lower, _YES, _NO, inverse, count, width, x)
 
 
@@ -135,3 +143,148 @@ def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width
             k -= _1
         f = inverse[i] if scale_back else 1.0
         x0[i], x1[i], x2[i], x3[i] = f * s0, f * s1, f * s2, f * s3
+
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+TILE = 48
+# numpy's integers, since numba compiles kernels anew for each plain one
+_ONE, _FOUR = np.int64(1), np.int64(4)
+
+
+@njit(cache=True)
+def pack_blocks(band, scale, scaled, count, width):
+    """Off-diagonal entries of a band, row r times ``scale[r]`` if ``scaled``, by 4 x 4 blocks.
+
+    Returns
+    -------
+    (blocks, reach + 1, 16) array
+        At [K, b, 4 s + t]: entry in row s of block K and column t of block K + b.
+    """
+    out = np.zeros(((count + 3) // 4, (width + 3) // 4 + 1, 16))
+    for r in range(count):
+        s, own = r & 3, out[r >> 2]
+        factor = scale[r] if scaled else 1.0
+        for d in range(1, min(width, count - 1 - r) + 1):
+            own[(s + d) >> 2, 4 * s + ((s + d) & 3)] = factor * band[r, d]
+    return out
+
+
+@njit(cache=True, fastmath=_FAST)
+def _subtract(c, row, column, known, x):
+    """x -= C y for four rows of a tile each; entry (i, j) of C is ``c[i * row + j * column]``."""
+    c00, c01, c02, c03 = c[0], c[column], c[2 * column], c[3 * column]
+    c10, c11, c12, c13 = c[row], c[row + column], c[row + 2 * column], c[row + 3 * column]
+    c20, c21, c22, c23 = c[2 * row], c[2 * row + column], c[2 * row + 2 * column], c[2 * row + 3 * column]
+    c30, c31, c32, c33 = c[3 * row], c[3 * row + column], c[3 * row + 2 * column], c[3 * row + 3 * column]
+    for q in range(TILE):
+        y0, y1, y2, y3 = known[q], known[TILE + q], known[2 * TILE + q], known[3 * TILE + q]
+        x[q] -= c00 * y0 + c01 * y1 + c02 * y2 + c03 * y3
+        x[TILE + q] -= c10 * y0 + c11 * y1 + c12 * y2 + c13 * y3
+        x[2 * TILE + q] -= c20 * y0 + c21 * y1 + c22 * y2 + c23 * y3
+        x[3 * TILE + q] -= c30 * y0 + c31 * y1 + c32 * y2 + c33 * y3
+
+
+@njit(cache=True, fastmath=_FAST)
+def _solve_tile(forward, backward, diagonal, rows):
+    """Solve ``forward^T diagonal backward`` times unknowns = rows, one tile (blocks, 4 TILE), in place.
+
+    ``diagonal`` (4 blocks,) is inverted already; the factors of unit diagonal are packed by `pack_blocks`.
+    """
+    blocks, reach = len(rows), forward.shape[1] - 1
+    for k in range(blocks):
+        own, c = rows[k], forward[k, 0]
+        for b in range(min(k, reach), 0, -1):
+            _subtract(forward[k - b, b], _ONE, _FOUR, rows[k - b], own)
+        c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
+        for q in range(TILE):
+            y0 = own[q]
+            y1 = own[TILE + q] - c01 * y0
+            y2 = own[2 * TILE + q] - c02 * y0 - c12 * y1
+            own[3 * TILE + q] -= c03 * y0 + c13 * y1 + c23 * y2
+            own[TILE + q] = y1
+            own[2 * TILE + q] = y2
+    for k in range(blocks - 1, -1, -1):
+        own, c, r = rows[k], backward[k, 0], 4 * k
+        i0, i1, i2, i3 = diagonal[r], diagonal[r + 1], diagonal[r + 2], diagonal[r + 3]
+        for q in range(TILE):
+            own[q] *= i0
+            own[TILE + q] *= i1
+            own[2 * TILE + q] *= i2
+            own[3 * TILE + q] *= i3
+        for b in range(min(blocks - 1 - k, reach), 0, -1):
+            _subtract(backward[k, b], _FOUR, _ONE, rows[k + b], own)
+        c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
+        for q in range(TILE):
+            y3 = own[3 * TILE + q]
+            y2 = own[2 * TILE + q] - c23 * y3
+            y1 = own[TILE + q] - c12 * y2 - c13 * y3
+            own[q] -= c01 * y1 + c02 * y2 + c03 * y3
+            own[TILE + q] = y1
+            own[2 * TILE + q] = y2
+
+
+@njit(cache=True, nogil=True)
+def solve_columns(lower, upper, inverse, symmetric, count, width, x):
+    """Solve ``A x = b`` for every column of x (count, k), in place.
+
+    Parameters
+    ----------
+    lower, upper : (size, > width) arrays
+        Bands of A's factors, see `factors`.
+    inverse : (size,) array
+        1 / diagonal of ``upper``.
+    symmetric : bool
+        ``A = U^T D^-1 U`` with ``upper`` alone; else ``A = L U`` with a unit diagonal of L.
+    """
+    back = pack_blocks(upper, inverse, True, count, width)
+    ahead = back if symmetric else pack_blocks(lower, inverse, False, count, width)
+    blocks = len(ahead)
+    diagonal, tile = np.zeros(4 * blocks), np.zeros((blocks, 4 * TILE))
+    rows = tile.reshape(4 * blocks, TILE)
+    for r in range(count):
+        diagonal[r] = inverse[r]
+    for start in range(0, x.shape[1], TILE):
+        wide = min(TILE, x.shape[1] - start)
+        for r in range(count):
+            own, given = rows[r], x[r, start : start + wide]
+            for q in range(wide):
+                own[q] = given[q]
+            for q in range(wide, TILE):
+                own[q] = 0.0
+        _solve_tile(ahead, back, diagonal, tile)
+        for r in range(count):
+            own, given = rows[r], x[r, start : start + wide]
+            for q in range(wide):
+                given[q] = own[q]
+
+
+def product(matrix: np.ndarray | csr_matrix, columns: np.ndarray) -> np.ndarray:
+    """Return ``matrix columns`` (r, k) for a matrix (r, count), dense or sparse, and columns (count, k)."""
+    if isinstance(matrix, np.ndarray):
+        return matrix @ columns
+    by_row, out = matrix.tocsr(), np.empty((matrix.shape[0], columns.shape[1]))
+    _sparse_product(by_row.indptr, by_row.indices, by_row.data, columns, out)
+    return out
+
+
+@njit(cache=True, fastmath=_FAST)
+def _sparse_product(indptr, indices, data, columns, out):
+    """`product` with the rows of a sparse matrix, by tiles that the processor's cache holds."""
+    sides = columns.shape[1]
+    for start in range(0, sides, TILE):
+        end = min(start + TILE, sides)
+        for a in range(len(out)):
+            first, last, total = indptr[a], indptr[a + 1], out[a, start:end]
+            fours = last - (last - first) % 4
+            for q in range(total.size):
+                total[q] = 0.0
+            for p in range(first, fours, 4):
+                w0, w1, w2, w3 = data[p], data[p + 1], data[p + 2], data[p + 3]
+                x0, x1 = columns[indices[p], start:end], columns[indices[p + 1], start:end]
+                x2, x3 = columns[indices[p + 2], start:end], columns[indices[p + 3], start:end]
+                for q in range(total.size):
+                    total[q] += w0 * x0[q] + w1 * x1[q] + w2 * x2[q] + w3 * x3[q]
+            for p in range(fours, last):
+                w, x = data[p], columns[indices[p], start:end]
+                for q in range(total.size):
+                    total[q] += w * x[q]

@@ -27,7 +27,7 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
+from exudyn_ehd.film.banded.factors import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace

@@ -227,7 +227,7 @@ def contract_line(
 def add_line_columns(line, at, out):
     """Add the line's part of the balances' derivatives (10, count) to a rigid journal's motion.
 
-    ``line``: `LineGradients`; otherwise as for `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
+    ``line``: `LineGradients`; otherwise as for `exudyn_ehd.film.sensitivity.motion_columns`.
     """
     rows, places, by = line
     at = Directions(*at)

@@ -5,7 +5,7 @@ The mass balance of a vertex is the sum of the flows over its links and of its s
 `exudyn_ehd.film.cavitation.rupture_line` is subtracted. In a film that conserves its mass or does not rupture, all
 vertices have unknowns. In a film of Swift and Stieber only those of the unbroken film do: a vertex leaves it at u = 0
 and joins it where oil piles up. Unless the density follows the pressure, every matrix is a column diagonally dominant
-M-matrix, whatever the sets. So the film exists and is unique (see `exudyn_ehd.film.cavitation.steady_oil` for the
+M-matrix, whatever the sets. So the film exists and is unique (see `exudyn_ehd.film.cavitation.system` for the
 exceptions).
 
 The first step is a chord step with the factor of the previous film. If the film has hardly changed, all steps are chord
@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.assemble import assemble, dense_band
-from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.factors import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_one
 from exudyn_ehd.film.banded.workspace import Workspace
@@ -38,11 +38,10 @@ from exudyn_ehd.film.cavitation.states import (
     start_states,
     take_sink,
 )
-from exudyn_ehd.film.cavitation.steady_oil import imbalance
-from exudyn_ehd.film.cavitation.system import FilmSystem
+from exudyn_ehd.film.cavitation.system import FilmSystem, imbalance
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, know_at
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, oil_links, terms_of
-from exudyn_ehd.film.reynolds.lagging_void import hold_back
+from exudyn_ehd.film.reynolds.links import hold_back
 
 MOST_STEPS = 60
 # Largest estimated error after a chord step, over the peak pressure; and largest change of u on a curve, and weighted

@@ -51,7 +51,7 @@ def start_states(film, pc, curve, full, u):
 def set_states(film, late, curve, full, u, P, fill):
     """Set pressures, fills and slopes of the curves from u.
 
-    ``late`` is that of `exudyn_ehd.film.reynolds.lagging_void`. On curves ``film.late`` is smaller by ``prompt`` times
+    ``late`` is that of `exudyn_ehd.film.reynolds.links`. On curves ``film.late`` is smaller by ``prompt`` times
     the difference between the fill that a vertex has and the one that its flows carry.
     """
     known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)

@@ -219,7 +219,7 @@ def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, conte
 
 @njit(cache=True)
 def band_of_pairs(ends, own, number, lower, upper):
-    """Bands, as of `exudyn_ehd.film.banded.lu`, of the pairs (s, a) at the numbered vertices (n, m).
+    """Bands, as of `exudyn_ehd.film.banded.factors`, of the pairs (s, a) at the numbered vertices (n, m).
 
     ``own`` (2, n, m, 4), and what the links carry away in theta and z by their own and by the next vertex, ``ends``
     (2, 2, 2, n, m, 4).

@@ -2,11 +2,9 @@
 
 Module map
 ----------
-gap               rigid journal in its bore
-links             conductance, carrier, right-hand side; effects on them
+gap               rigid journal in its bore; gaps with steps
+links             conductance, carrier, right-hand side; effects on them; flows out of a cavity, averaged over the step
 balance           mass balance with fill and density, and its derivatives
-lagging_void      flows out of a cavity, averaged over the step
 link_derivatives  derivatives of the flow through a link, and their sums with adjoint solutions
-stepped_gap       gaps with steps
 turbulence        NgPan, Hirs
 """

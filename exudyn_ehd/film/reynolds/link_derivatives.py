@@ -2,7 +2,7 @@
 
 For an adjoint solution lam the gradient of ``-lam . r``, r the balance of the vertices, is taken either as fields
 (`contract_links`) or, with the chain rule to the journal's pose, from the gradients of the balances
-(`exudyn_ehd.film.sensitivity.rigid.motion_columns`).
+(`exudyn_ehd.film.sensitivity.motion_columns`).
 
 Symbols: DX, DZ derivative of the flow of a link in theta, z with respect to the gap that the link sees (with the
 limiter's slope for the true gap), SX, SZ with respect to its own mean speed, SZX of the flow in z with respect to vx;

@@ -6,8 +6,7 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags_array
 
 from exudyn_ehd.film.banded.assemble import dense_band
-from exudyn_ehd.film.banded.many_sides import solve_columns
-from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
+from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.cavitation.oil_line import contract_fills
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line
 from exudyn_ehd.film.cavitation.solve import factor_solution
@@ -16,8 +15,7 @@ from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links
 from exudyn_ehd.film.reynolds.links import lacks
-from exudyn_ehd.film.solvers.edge_flows import end_films_of_areas
-from exudyn_ehd.film.solvers.film import FilmArrays
+from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
 

@@ -9,14 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure, solve_sets
-from exudyn_ehd.film.cavitation.steady_oil import status_of
+from exudyn_ehd.film.cavitation.system import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.answers import FilmAnswers
-from exudyn_ehd.film.solvers.liner.continuation import cold_start, failure, pseudo_transient
-from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.liner.film import LinerFilm, cold_start, failure, pseudo_transient
 from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.status import Status

@@ -3,10 +3,7 @@
 Module map
 ----------
 areas    what a scene names: AxialGroove, CircumferentialGroove, Hole, Pocket
-rows     rows of the grid on the areas' axial edges
+rows     rows of the grid on the areas' axial edges; what is refused
 holes    round holes, down to a source within a cell
-cuts     prescribed vertices, and links that end at an edge between two columns
-coverage shares of the control volumes that areas cover
-recess   shear of the oil in areas
-checks   what is refused
+cuts     prescribed vertices, shares of the control volumes, links that end at an edge; shear of the oil
 """

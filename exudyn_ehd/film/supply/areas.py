@@ -4,7 +4,7 @@ Their edges act where they are (see `exudyn_ehd.film.supply.rows` and `exudyn_eh
 housing and, with ``rotating=True``, in the journal; those need the spin angle of the journal.
 
 With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its
-pressure acts on the journal. The surfaces neither shear a film nor touch there; see `exudyn_ehd.film.supply.recess` for
+pressure acts on the journal. The surfaces neither shear a film nor touch there; see `exudyn_ehd.film.supply.cuts` for
 areas with a depth. What flows out of it is reported; with `ElrodAdams` supply, leakage and the film's change of content
 balance to rounding, the other closures lose oil at the film's rupture.
 With `SwiftStieber` on the default grid an area in the housing feeds mostly within 2 %, next to a cavity within 2.5 % of
@@ -69,7 +69,7 @@ class AxialGroove(_Area):
         True: in the journal, turning with its spin.
     depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
+        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
 
     Examples
     --------
@@ -102,7 +102,7 @@ class CircumferentialGroove(_Area):
         Gauge pressure, Pa.
     depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
+        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
 
     Examples
     --------
@@ -140,7 +140,7 @@ class Hole(_Area):
         True: in the journal, turning with its spin.
     depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
+        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
 
     Examples
     --------
@@ -178,7 +178,7 @@ class Pocket(_Area):
         True: in the journal, turning with its spin.
     depth : float or None, default None
         Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.recess` says. None: so deep that its shear does not count.
+        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
 
     Examples
     --------

@@ -1,17 +1,52 @@
-"""Contacts, which press where surfaces touch, and limiters of the gap that the film sees.
+"""Contacts, which press where surfaces touch, limiters of the gap that the film sees, and wear.
 
 A contact presses with ``level F(h / unit)``. F is a cubic Hermite spline through equidistant knots, falls and is
 convex, ends at its last knot with zero slope, and goes on as its first cubic below its first knot.
 
 Fields are (n, m) arrays on the film grid; gaps are divided by the clearance, contact pressures in Pa.
+
+The wall, stiff and smooth, takes over before the gap vanishes.
+
+For a gap h below the onset h0, with s = h / h0:
+
+* contact pressure ``p_w = pressure (1 - s)^2`` (continuous first derivative, still rising for h < 0), and
+* the film sees ``h0 g(s)``, ``g = 1 - a tanh((1 - s) / a)``, a = 1 - residual gap
+  share: equal to s up to second derivatives at s = 1 and never below ``residual h0``,
+  so that the Reynolds equation keeps a solution while surfaces press on each other.
+
+The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction of its own. Where it
+acts, the film sees another gap than the one on whose slope its pressure rests. The rest of the slope is the solids',
+which the journal meets along its normal, without a torque on it: see closed gaps in
+`exudyn_ehd.film.surfaces.patir_cheng`.
+
+Wear of the bore after Archard: what asperities rub off deepens the gap.
+
+``dh/dt = k p v`` with the asperity contact's pressure p, the sliding speed v and the specific wear rate k in m2/N (k =
+K / H with Archard's dimensionless K and the softer surface's hardness H). Source: J. F. Archard, J. Applied Physics 24
+(1953) 981.
+
+The depth belongs to the accepted history: a step sees the depth at its start, and its own wear is added at its end with
+the pressure and speed found there (explicit in the gap, first order in the step; wear per step is a tiny share of the
+roughness).
+
+Wrench of contact pressures and of their friction, and its gradient.
+
+The wrench is linear in the integrals of the pressure times `FilmGrid.moments`: cos, sin, z cos, z sin and 1. The
+pressures do no work on the journal's spin, so that their torque about O is e x F. Friction acts at the bore's points
+against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
 """
 
 from __future__ import annotations
 
-from typing import Protocol
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numba import njit
+
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, require_number
 
 # Share of land below which a vertex lies inside an area: far above round-off, far below what an edge leaves.
 INSIDE = 1e-9
@@ -187,3 +222,211 @@ def solve_contact_gap(X, compliance, scale, reach, first, step, knots, G, P_out,
                     break
             p += p_h * change
         gap[k], P[k], slope[k] = g, p, p_h / scale
+
+
+@dataclass(frozen=True, kw_only=True)
+class RegularisedWall(Checked):
+    """Contact as a stiff smooth wall for gaps below an onset: a stop, no model of rough surfaces.
+
+    A stop for journals that touch now and then: a regularisation, not a model of the surfaces. It does nothing while
+    all gaps exceed its onset.
+
+    Parameters
+    ----------
+    onset : float
+        Gap at which the wall starts to act, m; a few roughness heights. Must be below the radial clearance.
+    pressure : float, default 1e9
+        Contact pressure at zero gap, Pa.
+    residual : float, default 0.2
+        Share of the onset that the film gap never falls below, 0.01 to 0.9.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, contact=ehd.RegularisedWall(onset=2e-6))
+    >>> bearing.contact.pressure  # Pa at zero gap
+    1000000000.0
+    """
+
+    onset: float
+    pressure: float = 1e9
+    residual: float = 0.2
+
+    checks: ClassVar = {
+        "onset": POSITIVE,
+        "pressure": POSITIVE,
+        "residual": partial(require_number, at_least=0.01, at_most=0.9),
+    }
+
+
+class WallContact(Contact, GapLimiter):
+    """A `RegularisedWall` in scaled form: contact pressure and gap limiter of one bearing model.
+
+    Parameters
+    ----------
+    wall : RegularisedWall
+    clearance : float
+        Radial clearance, m.
+    """
+
+    def __init__(self, wall: RegularisedWall, clearance: float) -> None:
+        self.onset = self.limits_below = wall.onset / clearance
+        self.residual = wall.residual
+        # (1 - s)^2 from s = 0 to 1
+        super().__init__(self.onset, wall.pressure, (0.0, 1.0), np.array([[1.0, -2.0], [0.0, 0.0]]))
+
+    def film_gap(self, gaps: np.ndarray, slopes: np.ndarray, bends: np.ndarray) -> None:
+        """Gap ``onset g(s)`` with its derivatives; as `GapLimiter`."""
+        wall_gap(gaps, self.onset, 1.0 - self.residual, slopes, bends)
+
+
+@njit(cache=True)
+def wall_gap(gaps, onset, a, slopes, bends):
+    """``onset g(gap / onset)`` where the wall acts, with its first two derivatives, in place."""
+    g, slope, bend = gaps.reshape(-1), slopes.reshape(-1), bends.reshape(-1)
+    for k in range(g.size):
+        if g[k] < onset:
+            t = np.tanh((1.0 - g[k] / onset) / a)
+            g[k] = onset * (1.0 - a * t)
+            slope[k] = 1.0 - t * t
+            bend[k] = 2.0 * t * slope[k] / (a * onset)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArchardWear(Checked):
+    """Wear of the bore by its asperity contact; needs ``asperity=GreenwoodTripp(...)``.
+
+    The depth is worn off over the accepted steps.
+
+    Parameters
+    ----------
+    wear_rate : float
+        Specific wear rate k, m2/N; 1e-18 to 1e-14 from well lubricated to dry.
+    acceleration : float, default 1.0
+        Factor on the wear per time: 1e6 lets a second stand for twelve days of the same motion. The depth stays an
+        estimate as long as it changes by much less than the roughness per period of the load.
+
+    The worn volume is k times the integral of contact pressure and sliding distance over the surface. ``contact_load``
+    is the vector sum of that pressure: k times contact_load times distance is 3 % below the worn volume of a contact
+    over 0.8 rad. A joint shows the largest depth as ``history.wear_depth``, the volume as ``history.worn_volume``, and
+    the depth on its bore by ``plot_wear_depth()``.
+
+    Source
+    ------
+    J. F. Archard, J. Applied Physics 24 (1953) 981.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> rough = ehd.GreenwoodTripp(composite_roughness=0.5e-6, composite_modulus=8e10)
+    >>> bearing = ehd.JournalBearing(**b, asperity=rough, wear=ehd.ArchardWear(wear_rate=1e-16, acceleration=1000))
+    >>> bearing.wear.wear_rate  # m^2/N
+    1e-16
+    """
+
+    wear_rate: float
+    acceleration: float = 1.0
+
+    checks: ClassVar = {
+        "wear_rate": partial(NOT_NEGATIVE, hint="1e-16 is a start for a lubricated bush."),
+        "acceleration": POSITIVE,
+    }
+
+    def growth(self, pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
+        """Depth, m, that contact pressures, Pa, wear off in a step, s, at a sliding speed, m/s."""
+        depth: np.ndarray = pressure * (self.wear_rate * self.acceleration * step * speed)
+        return depth
+
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@njit(cache=True)
+def slip(motion, R, transition):
+    """Regularised slip direction (theta, z) of a motion (10,), and its derivatives (2, 2) to (omega, w).
+
+    ``transition``: v0, m/s.
+    """
+    v, w = R * motion[8], motion[9]
+    size = math.sqrt(v * v + w * w + transition * transition)
+    a, b, by = v / size, w / size, np.empty((2, 2))
+    by[0, 0], by[0, 1] = (1.0 - a * a) * R / size, -a * b / size
+    by[1, 0], by[1, 1] = -a * b * R / size, (1.0 - b * b) / size
+    return a, b, by
+
+
+@njit(cache=True)
+def _add_traction(a, b, R, weights):
+    """Add the weights (6, 5) of the integrals in the wrench of tractions of -a along theta and -b along z per
+    pressure."""
+    force, moment = R * R, R * R * R
+    weights[0, 1] += force * a
+    weights[1, 0] -= force * a
+    weights[2, 4] -= force * b
+    weights[3, 1] -= moment * b
+    weights[3, 2] += moment * a
+    weights[4, 0] += moment * b
+    weights[4, 3] += moment * a
+    weights[5, 4] -= moment * a
+
+
+@njit(cache=True)
+def contact_weights(motion, friction, transition, R):
+    """Weights (6, 5) of the integrals in the wrench about O of pressures and their Coulomb friction, N and Nm."""
+    out, force, moment = np.zeros((6, 5)), R * R, R * R * R
+    out[0, 0] = out[1, 1] = -force
+    out[3, 3], out[4, 2] = moment, -moment
+    out[5, 0], out[5, 1] = force * motion[1], -force * motion[0]
+    out[5, 2], out[5, 3] = moment * motion[3], -moment * motion[2]
+    a, b, _ = slip(motion, R, transition)
+    _add_traction(friction * a, friction * b, R, out)
+    return out
+
+
+@njit(cache=True, fastmath=_FAST)
+def _integral(density, weight, moment):
+    total = 0.0
+    for c in range(density.size):
+        total += density[c] * weight[c] * moment[c]
+    return total
+
+
+@njit(cache=True)
+def add_contact(P, weight, moments, motion, friction, transition, R, integrals_out, friction_out, wrench):
+    """Set the integrals (5,) of a contact's pressures P (n, m), and add its wrench and that of its friction alone, both
+    (6,)."""
+    for k in range(5):
+        integrals_out[k] = _integral(P.reshape(-1), weight.reshape(-1), moments[k].reshape(-1))
+    whole, drag = contact_weights(motion, friction, transition, R), np.zeros((6, 5))
+    a, b, _ = slip(motion, R, transition)
+    _add_traction(friction * a, friction * b, R, drag)
+    for r in range(6):
+        for k in range(5):
+            wrench[r] += whole[r, k] * integrals_out[k]
+            friction_out[r] += drag[r, k] * integrals_out[k]
+
+
+@njit(cache=True)
+def add_contact_tangent(slope, weight, moments, motion, pose_scale, friction, transition, R, integrals, tangent):
+    """Add the gradient of a contact's wrench to the motion to ``tangent`` (6, 10).
+
+    ``slope`` (n, m): derivative of the pressure to the scaled gap; ``integrals`` (5,): of `add_contact`.
+    """
+    weights, density = contact_weights(motion, friction, transition, R), slope * weight
+    for q in range(4):
+        for k in range(5):
+            change = -pose_scale[q] * _integral(density.reshape(-1), moments[q].reshape(-1), moments[k].reshape(-1))
+            for r in range(6):
+                tangent[r, q] += weights[r, k] * change
+    force, moment = R * R, R * R * R
+    tangent[5, 0] -= force * integrals[1]
+    tangent[5, 1] += force * integrals[0]
+    tangent[5, 2] -= moment * integrals[3]
+    tangent[5, 3] += moment * integrals[2]
+    by = slip(motion, R, transition)[2]
+    for q in range(2):
+        weights[:] = 0.0
+        _add_traction(friction * by[0, q], friction * by[1, q], R, weights)
+        for r in range(6):
+            for k in range(5):
+                tangent[r, 8 + q] += weights[r, k] * integrals[k]

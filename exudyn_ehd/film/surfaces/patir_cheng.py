@@ -1,4 +1,4 @@
-"""Flow factors of rough surfaces after Patir and Cheng.
+"""Rough surfaces after Patir and Cheng: flow and friction factors, and the drag of a pressure gradient.
 
 Mean flow between rough surfaces with nominal gap h, average gap h_T, combined roughness sigma, pattern gamma (ratio of
 the correlation lengths in theta and z; > 1: lay along theta), surface 1 = journal, surface 2 = bore, in the bore's
@@ -29,13 +29,38 @@ and as both factors are linear in the variances (heights of the two surfaces are
 of the two. For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small
 roughness). Beyond H = 7 Phi_fs falls on by the power that it has there. Under a pressure gradient the tangential
 forces, shear and ripples together, are ``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with
-``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.surfaces.drag`. Where peaks touch (h below
-2 sigma) the pressure is taken to act on the whole area, the flow to have the open part of it.
+``phi_fp h = h_T - sigma Phi_s`` of the second paper (drag, below). Where peaks touch (h below 2 sigma) the
+pressure is taken to act on the whole area, the flow to have the open part of it.
 
 The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as
 phi = phi_x h^3 / h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as
 ``h_T E[1 / local gap] + Phi_fs h_T / h``. Below the smallest H that the fits are meant for (0.5 to 1) their logarithms
 run on smoothly, in ``L tanh(s / L)`` of s = ln(h_T), to a constant: an extrapolation.
+
+Drag of a pressure gradient on the two surfaces, where they share it unevenly.
+
+Between rough surfaces the relative speed V of the journal (1) carries ``V/2 (h_T + sigma phi_s)`` in the bore's
+(2) frame. Stokes flow is reciprocal (H. A. Lorentz): with the wall force as flux of V and the volume flow as flux of
+the pressure gradient, the cross terms are each other's opposite, since together they neither dissipate nor produce
+anything. So a pressure gradient pulls the surfaces, shear and pressure on their slopes together, by
+
+    f_1 = -(h_T + sigma phi_s) / 2 dp/dx,        f_2 = -(h_T - sigma phi_s) / 2 dp/dx        per area,
+
+the rougher one more; the sum is what the pressure does on the film's cross section, whatever phi_s. With one surface
+smooth the force on it is its shear alone: ``phi_fp h = h_T - sigma Phi_s`` of Patir and Cheng. What departs from equal
+shares, ``-+ sigma phi_s / 2 dp/ds`` in both directions, is summed over the links as the carriers' part of the flow is,
+so that work and heat match link by link: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``; its torque on the journal
+is 6 mu R^4 / c E_x, its axial force 6 mu R^3 / c E_z.
+
+Closed gaps. Where surfaces touch, the film has a gap h (a limiter's, an average one) that changes less than the gap g
+between them, ``dh = h' dg``. The pressure presses on the whole area, on the journal along its normal; the film pulls
+either surface by ``-h/2 dp/dx``, and what the slopes leave, ``p (1 - h') dg/dx``, goes from solid to solid as contact
+pressure does, without a torque on the journal about its own axis. That is the same sum with g for the gap,
+``E_x = sum (carrier - g) (P_i - P_i+1) width``, the carrier being that of h. Then what sliding puts in is heat,
+however closely the surfaces touch.
+
+Symbols of `exudyn_ehd.film.loads`. Values on links are (n, m); the last column of those in z, behind which there is
+no link, counts for nothing.
 """
 
 from __future__ import annotations
@@ -47,9 +72,11 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
+from numba import njit
 from scipy.interpolate import CubicSpline
 
-from exudyn_ehd.film.surfaces.average_gap import ROUGHNESS, average_gap_ratio
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+from exudyn_ehd.film.surfaces.asperity import ROUGHNESS, average_gap_ratio
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
 # gamma: C, r, smallest H, A1, a1, a2, a3, A2, A3, a4, a5, a6
@@ -209,3 +236,154 @@ def nominal_gap(t: np.ndarray, residual: float) -> np.ndarray:
         below = average_gap_ratio(middle, residual) < t
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return 0.5 * (low + high)
+
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+_unsigned = np.uint64
+
+
+class RoughFlow(FluxEffect):
+    """`PatirCheng` as flux effect and shear factor of one bearing model.
+
+    Parameters
+    ----------
+    roughness : PatirCheng
+    clearance : float
+        Radial clearance, m.
+    residual : float
+        Residual film of the average gap, share of sigma.
+    """
+
+    depends_on_speed = False
+
+    def __init__(self, roughness: PatirCheng, clearance: float, residual: float) -> None:
+        self.sigma = roughness.composite_roughness / clearance
+        self.phi_x, self.psi_x, self.friction = flow_tables(roughness.pattern, residual)
+        self.phi_z, self.psi_z, _ = flow_tables(1.0 / roughness.pattern, residual)
+        self.shear = 2.0 * roughness.journal_share - 1.0
+        self.changes_carriers = self.shear != 0.0
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Multiply conductances and carriers by their factors at the links' average gaps (n, m), with derivatives."""
+        multiply_by_table(gap_x, 1.0 / self.sigma, self.phi_x, 0.0, 1.0, flux.gx, flux.gx_h)
+        multiply_by_table(gap_z, 1.0 / self.sigma, self.phi_z, 0.0, 1.0, flux.gz, flux.gz_h)
+        if self.shear != 0.0:
+            multiply_by_table(gap_x, 1.0 / self.sigma, self.psi_x, 1.0, self.shear, flux.cx, flux.cx_h)
+            multiply_by_table(gap_z, 1.0 / self.sigma, self.psi_z, 1.0, self.shear, flux.cz, flux.cz_h)
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """Friction factor phi_f + Phi_fs at average gaps H (n, m) and its derivatives with respect to H and vx."""
+        look_up(H, 1.0 / self.sigma, self.friction, ratio_out, ratio_h_out)
+        ratio_v_out[:] = 0.0
+
+
+# Checks for a division by zero would keep the compiler from vectorising the loops below; the tables' gathers stand
+# apart for the same reason.
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
+    """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)).
+
+    In place.
+    """
+    factor, factor_h = np.empty(gap.shape), np.empty(gap.shape)
+    look_up(gap, inverse_sigma, table, factor, factor_h)
+    v, v_h, f, f_h = value.reshape(-1), value_h.reshape(-1), factor.reshape(-1), factor_h.reshape(-1)
+    for k in range(v.size):
+        by = base + share * f[k]
+        v_h[k] = v_h[k] * by + v[k] * (share * f_h[k])
+        v[k] *= by
+
+
+@njit(cache=True)
+def _aligned(gap):
+    """Return whether there is one gap per column, as with an aligned journal."""
+    n, m = gap.shape
+    for i in range(n):
+        differing = 0
+        for j in range(1, m):
+            differing += gap[i, j] != gap[i, 0]
+        if differing > 0:
+            return False
+    return True
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def look_up(gap, inverse_sigma, table, f_out, f_h_out):
+    """Value of a table at gaps (n, m), and its derivative by them."""
+    n, m = gap.shape
+    scale, flat = inverse_sigma / TABLE_MIDDLE, table.reshape(-1)
+    if _aligned(gap):
+        for i in range(n):
+            value, slope = _table_at(1.0 / (1.0 + gap[i, 0] * scale), scale, flat)
+            for j in range(m):
+                f_out[i, j] = value
+            for j in range(m):
+                f_h_out[i, j] = slope
+        return
+    h, f, f_h = gap.reshape(-1), f_out.reshape(-1), f_h_out.reshape(-1)
+    for k in range(h.size):
+        f[k] = 1.0 / (1.0 + h[k] * scale)
+    for k in range(h.size):
+        f[k], f_h[k] = _table_at(f[k], scale, flat)
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy", inline="always")
+def _table_at(y, scale, table):
+    """Value of a flat table at y, and its derivative by the gap."""
+    steps = table.size // 4
+    u = y * steps
+    k = min(_unsigned(u), _unsigned(steps - 1))
+    u -= float(k)
+    k *= _unsigned(4)
+    b = table[k + _unsigned(1)]
+    c2 = table[k + _unsigned(2)]
+    c3 = table[k + _unsigned(3)]
+    f = table[k] + u * (b + u * (c2 + u * c3))
+    return f, (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
+
+
+@njit(cache=True, fastmath=_FAST)
+def drag_weights(carriers, gap, link, widths):
+    """Weights (2, n, m) of the pressures in E_x and E_z.
+
+    ``carriers``: of the links in theta and in z; ``gap``, ``link``: true gaps at the vertices and on the links i ->
+    i+1; ``widths`` (2, n, m): `FilmGrid.link_widths`.
+    """
+    n, m = gap.shape
+    out = np.empty((2, n, m))
+    along, across = carriers
+    for i in range(n):
+        last = 0.0
+        for j in range(m):
+            far = gap[i, j + 1] if j + 1 < m else gap[i, j]
+            excess = (across[i, j] - 0.5 * (gap[i, j] + far)) * widths[1, i, j]
+            before = (along[i - 1, j] - link[i - 1, j]) * widths[0, i - 1, j]
+            out[0, i, j] = (along[i, j] - link[i, j]) * widths[0, i, j] - before
+            out[1, i, j] = excess - last
+            last = excess
+    return out
+
+
+@njit(cache=True, fastmath=_FAST)
+def drag_by_gap(P, carrier_slopes, slope, face_slope, widths):
+    """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices.
+
+    ``carrier_slopes``: of the carriers in theta and z to the film's gap there; ``slope``, ``face_slope``: h' at
+    vertices and links; ``widths`` as in `drag_weights`.
+    """
+    n, m = P.shape
+    face, cell = np.empty((n, m)), np.empty((n, m))
+    along, across = carrier_slopes
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        carried = last = 0.0
+        for j in range(m):
+            face[i, j] = (along[i, j] * face_slope[i, j] - 1.0) * widths[0, i, j] * (P[i, j] - P[nxt, j])
+            far = P[i, j + 1] if j + 1 < m else P[i, j]
+            half = 0.5 * widths[1, i, j] * (P[i, j] - far)
+            carrier = half * across[i, j]
+            cell[i, j] = (carried + carrier) * slope[i, j] - (last + half)
+            carried, last = carrier, half
+    return face, cell

@@ -32,11 +32,10 @@ from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.loads import end_flows
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
-from exudyn_ehd.film.solvers.edge_flows import shear_share
+from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, face_grid, products
-from exudyn_ehd.film.thrust.options import ThrustFaces
+from exudyn_ehd.film.surfaces.contact import WallContact
+from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, ThrustFaces, face_grid, products
 from exudyn_ehd.status import Status
 
 FACE_SIZE = 9

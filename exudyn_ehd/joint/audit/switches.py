@@ -10,8 +10,7 @@ from functools import partial
 from scipy.special import lambertw
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.cavitation.closures import SwiftStieber
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import ElrodAdams, SwiftStieber
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear

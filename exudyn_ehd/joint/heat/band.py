@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.factors import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.banded.workspace import PAD

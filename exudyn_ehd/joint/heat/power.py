@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, film_heat, outside_flows
-from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
+from exudyn_ehd.film.solvers.film import ends_of_cavities
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 

@@ -10,9 +10,8 @@ import math
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.heat.energy import ViscosityField
-from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Walls
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.solved_film import SolvedFilm

@@ -4,7 +4,7 @@ A state (n, m + k) has the film's temperatures in its first m columns, behind th
 bore outward, and the journal's, from its surface inward and the same in every row; K.
 
 Film, bush and journal of a step are one linear system. The walls are condensed onto their surfaces, heat that they
-take by temperature there, `exudyn_ehd.film.heat.conduction`; what the film gives there follows from its own system,
+take by temperature there, `exudyn_ehd.film.heat.options`; what the film gives there follows from its own system,
 which is factored once, and from `exudyn_ehd.film.heat.energy`.
 """
 
@@ -16,9 +16,8 @@ import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.conduction import Rings, Walls
 from exudyn_ehd.film.heat.energy import ViscosityField
-from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
+from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, Rings, Walls
 from exudyn_ehd.joint.heat.band import BandSolver
 from exudyn_ehd.joint.heat.heat_balance import HeatBalance, PassageData
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of

@@ -14,13 +14,11 @@ from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.reynolds.links import LinkLaw
-from exudyn_ehd.film.surfaces.asperity import AsperityContact
-from exudyn_ehd.film.surfaces.average_gap import AverageGap
+from exudyn_ehd.film.surfaces.asperity import AsperityContact, AverageGap
+from exudyn_ehd.film.surfaces.contact import ArchardWear, WallContact
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
+from exudyn_ehd.film.surfaces.patir_cheng import RoughFlow
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
-from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature
 from exudyn_ehd.joint.model.parts import grid_of
 from exudyn_ehd.joint.seams import (

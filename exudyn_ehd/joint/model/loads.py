@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
-from exudyn_ehd.film.solvers.edge_flows import shear_share
-from exudyn_ehd.film.supply.recess import RecessShear, recess_shear
-from exudyn_ehd.film.surfaces.contact_wrench import add_contact
+from exudyn_ehd.film.solvers.film import shear_share
+from exudyn_ehd.film.supply.cuts import RecessShear, recess_shear
+from exudyn_ehd.film.surfaces.contact import add_contact
 from exudyn_ehd.joint.seams import Effects, ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film import loads, peak
+from exudyn_ehd.film import loads
 from exudyn_ehd.joint.heat.power import powers
 from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
@@ -32,7 +32,7 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
 
     with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It
     follows from Reynolds' equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge
-    0. The shear's term is that of the lands; supply areas with a depth have the one of `exudyn_ehd.film.supply.recess`.
+    0. The shear's term is that of the lands; supply areas with a depth have the one of `exudyn_ehd.film.supply.areas`.
     The last term is the pressure on the ends' cross section, which the journal's wrench carries. Compressible oil takes
     its elastic energy along: p - pc becomes the integral of dp / (rho / rho_0), the outflow the mass flow over rho_0,
     and the rate of the energy that the film holds is added. What bends an elastic bore is not in it: that is the
@@ -178,5 +178,5 @@ def minimum_place(film: SolvedFilm) -> tuple[float, float]:
 def refined_peak(film: SolvedFilm) -> tuple[float, float, float]:
     """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
     g, periodic = film.grid, film.parts.bearing.arc is None
-    value, theta, z = peak.refined_peak(film.oil.P, g.fixed, g.x, g.z, periodic)
+    value, theta, z = loads.refined_peak(film.oil.P, g.fixed, g.x, g.z, periodic)
     return value * film.scales.pressure, theta, z * g.reference_length

@@ -16,8 +16,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from exudyn_ehd.film.peak import refined_peak
-from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.film.loads import refined_peak
+from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.joint.audit import surfaces
 from exudyn_ehd.joint.audit.audit import ROWS, Audit, AuditRow, audit_of
 from exudyn_ehd.joint.audit.case import Case

@@ -11,7 +11,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.joint.spherical.patch import sphere_patch
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_count, require_number, require_type, require_vector
 

@@ -29,8 +29,8 @@ R^2), H = h / c:
 The wrench is F = F_p + F_c and the moment about O, T_c + T_p + e x F; the socket gets minus that about O. With the same
 N in loads and sources, work and heat match link by link: -(F v + T w) = sum H^3 (dP)^2 + Couette's heat >= 0.
 
-Where a wall limits the film's gap to H(g), g the true one, sources and T_p carry dH/dg, as in Closed gaps of
-`exudyn_ehd.film.surfaces.drag`; what the slopes leave of the pressure goes from solid to solid, without a torque.
+Where a wall limits the film's gap to H(g), g the true one, sources and T_p carry dH/dg (closed gaps in
+`exudyn_ehd.film.surfaces.patir_cheng`); what the slopes leave of the pressure goes from solid to solid, without torque.
 
 With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`),
 loads take p(q) and the viscosity of every vertex; heat is sum H^3 dq dP.
@@ -49,9 +49,9 @@ import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.lubricant import transform_of
-from exudyn_ehd.film.solvers.edge_flows import shear_share
+from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.film.surfaces.wall import WallContact
+from exudyn_ehd.film.surfaces.contact import WallContact
 from exudyn_ehd.joint.solved_film import History, LimiterFields
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.patch import COMPONENTS, sphere_patch

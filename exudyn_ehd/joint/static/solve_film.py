@@ -12,7 +12,7 @@ from exudyn_ehd.film.cavitation.closures import Closure, SwiftStieber, place_lin
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant, transform_of
-from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
+from exudyn_ehd.film.reynolds.gap import SteppedGap
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import (
@@ -110,7 +110,7 @@ def solve_film(
         Gauge pressure at the prescribed vertices ``grid.fixed``, Pa.
     stepped_gap : bool, default False
         True: the gap is constant around each vertex and steps on the faces between (pockets, textures); see
-        `exudyn_ehd.film.reynolds.stepped_gap`.
+        `exudyn_ehd.film.reynolds.gap`.
     history : (n, m) array or None, default None
         For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its
         squeeze, so that ``gap_rate`` is not needed. None: the film is steady.

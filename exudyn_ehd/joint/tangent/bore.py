@@ -18,12 +18,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
-from exudyn_ehd.film.banded.many_sides import product
+from exudyn_ehd.film.banded.substitution import product
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_matrices
-from exudyn_ehd.film.sensitivity.bore_stencil import gap_stencil, shear_fields, sum_rows
-from exudyn_ehd.film.sensitivity.rigid import motion_columns
-from exudyn_ehd.film.surfaces.contact_wrench import contact_weights
+from exudyn_ehd.film.sensitivity import gap_stencil, motion_columns, shear_fields, sum_rows
+from exudyn_ehd.film.surfaces.contact import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap

@@ -1,7 +1,7 @@
 """Drag of a pressure gradient on surfaces that share it unevenly, and its derivatives.
 
 Of unequal roughness, and where a limiter leaves the film another gap than the surfaces have; see
-`exudyn_ehd.film.surfaces.drag`.
+`exudyn_ehd.film.surfaces.patir_cheng`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from exudyn_ehd.film.differences import on_links, to_ends
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
-from exudyn_ehd.film.surfaces import drag
+from exudyn_ehd.film.surfaces import patir_cheng
 from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
 
 
@@ -31,7 +31,7 @@ def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
     carriers = (s.HF, on_links(s.H)[1])
     if parts.uneven_drag and s.flux is not None:
         carriers = s.flux.cx, s.flux.cz
-    return drag.drag_weights(carriers, gap, link, parts.grid.link_widths)
+    return patir_cheng.drag_weights(carriers, gap, link, parts.grid.link_widths)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -68,4 +68,4 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     if liner is not None:
         slope, face_slope = liner.gap_slopes.rate_t, liner.gap_slopes.link
     carriers = (ones, ones) if flux is None else (flux.cx_h, flux.cz_h)
-    return drag.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
+    return patir_cheng.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, add_line_columns, to_true_gap
-from exudyn_ehd.film.solvers.edge_flows import at_beside_ends
+from exudyn_ehd.film.solvers.film import at_beside_ends
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
 

@@ -20,10 +20,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix, diags, eye_array
 
-from exudyn_ehd.film.banded.many_sides import TILE, product
+from exudyn_ehd.film.banded.substitution import TILE, product
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.solvers.edge_flows import ends_of_cavities
+from exudyn_ehd.film.solvers.film import ends_of_cavities
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import (
@@ -65,7 +65,7 @@ class BoreForces:
 def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
     """Slopes in theta and scaled z of fields (n m,).
 
-    The differences of `exudyn_ehd.film.sensitivity.bore_stencil.gap_slopes`.
+    The differences of `exudyn_ehd.film.sensitivity.gap_slopes`.
     """
     n, m = grid.shape
     at = np.arange(n * m).reshape(n, m)

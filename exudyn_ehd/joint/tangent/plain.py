@@ -16,7 +16,7 @@ from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
-from exudyn_ehd.film.sensitivity.rigid import functional_gradients, motion_columns, wrench_gradient
+from exudyn_ehd.film.sensitivity import functional_gradients, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 

@@ -14,10 +14,10 @@ from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
+from exudyn_ehd.film.sensitivity import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
-from exudyn_ehd.film.surfaces.contact_wrench import add_contact_tangent, contact_weights
+from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
 from exudyn_ehd.joint.tangent.line import (

@@ -8,11 +8,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from exudyn_ehd.film.cavitation.closures import Gumbel, SwiftStieber
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import ElrodAdams, Gumbel, SwiftStieber
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.supply.areas import AxialGroove
-from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.solid.mesh import HollowCylinder
 from tests.benchmarks.accuracy.errors import ladders
 from tests.benchmarks.accuracy.errors.study import Reference, Study

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.lanes import LANES, subtract_four_lanes, subtract_lanes
+from exudyn_ehd.film.banded.factors import LANES, subtract_four_lanes, subtract_lanes
 
 
 @njit

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.factors import factor_lu
 from exudyn_ehd.film.banded.workspace import PAD
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import random_array
 
-from exudyn_ehd.film.banded.many_sides import TILE, product, solve_columns
+from exudyn_ehd.film.banded.substitution import TILE, product, solve_columns
 
 
 def solved(factor, count, width, b):

@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.special import i0, i1
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.heat.conduction import Rings
 from exudyn_ehd.film.heat.energy import through_surfaces
+from exudyn_ehd.film.heat.options import Rings
 
 R, L, THICKNESS, G, K = 0.025, 0.04, 0.02, 3.0, 45.0
 CAPACITY = 7800.0 * 460.0

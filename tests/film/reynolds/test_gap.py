@@ -11,7 +11,7 @@ from exudyn_ehd.film.reynolds.gap import (
     rigid_gap,
     rigid_gaps,
 )
-from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
+from exudyn_ehd.film.sensitivity import add_gap
 
 
 def _gap(pose, theta, z, base):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from exudyn_ehd.film.reynolds.stepped_gap import stepped_links
+from exudyn_ehd.film.reynolds.gap import stepped_links
 
 
 def test_twin():

@@ -24,9 +24,8 @@ from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
-from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
-from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor, shear_flow_factor
-from exudyn_ehd.film.surfaces.wall import WallContact
+from exudyn_ehd.film.surfaces.contact import WallContact
+from exudyn_ehd.film.surfaces.patir_cheng import RoughFlow, pressure_flow_factor, shear_flow_factor
 from tests.sampling import sample
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)

@@ -5,7 +5,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
-from exudyn_ehd.film.solvers.liner.continuation import failure
+from exudyn_ehd.film.solvers.liner.film import failure
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
 

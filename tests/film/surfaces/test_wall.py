@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd import InputError, RegularisedWall
-from exudyn_ehd.film.surfaces.wall import WallContact
+from exudyn_ehd.film.surfaces.contact import WallContact
 
 ONSET, PRESSURE, RESIDUAL = 0.1, 3e6, 0.2
 WALL = WallContact(RegularisedWall(onset=1e-6, pressure=PRESSURE, residual=RESIDUAL), 1e-5)

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
-from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
+from exudyn_ehd.film.surfaces.asperity import average_gap_ratio
 from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor
 from exudyn_ehd.joint.model.build import build_model
 

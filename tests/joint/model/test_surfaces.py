@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.surfaces.contact_wrench import (
+from exudyn_ehd.film.surfaces.contact import (
     add_contact,
     add_contact_tangent,
     contact_weights,

@@ -31,7 +31,7 @@ would give; one that lowers it goes to its P. Either is the shorter way, and bot
 the liner: the gap opens where a rigid bore has no film any more. A film that would need solid oil ends with
 NO_PRESSURE. Couette flows and storage contain the density as in `exudyn_ehd.film.solvers.film`.
 
-`ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.elrod_adams` with the content ``rho fill H(P)``. At full
+`ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.closures` with the content ``rho fill H(P)``. At full
 vertices the storage depends on the unknown pressure through liner and density; at cavitated ones the unknown is the
 fill, and the element has the cavity pressure. `SwiftStieber` always has a film as long as the cavity pressure leaves a
 gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a solution (Ph.
@@ -41,10 +41,15 @@ found. `FullSommerfeld` has none where surfaces part so fast that tension pulls 
 
 The unknowns are those of `exudyn_ehd.film.cavitation.solve`. Newton's method
 (`exudyn_ehd.film.solvers.liner.steps`) starts from the last film, else from a dry guess. If it fails,
-pseudo-transient continuation follows (`exudyn_ehd.film.solvers.liner.continuation`). The rupture line inside the cells
+pseudo-transient continuation follows (`exudyn_ehd.film.solvers.solver`). The rupture line inside the cells
 is that of `exudyn_ehd.film.solvers.liner.line`.
 
 Between rigid surfaces (beta 0) it is the film of an oil that thins by shear, whose conductances follow the pressure.
+
+Start of a film on a liner without a usable last film; see `exudyn_ehd.film.solvers.liner.film`.
+
+Newton's method starts from a dry guess. If it fails, pseudo-transient continuation follows: an additional storage at
+every vertex slows the film down and is reduced step by step.
 """
 
 from __future__ import annotations
@@ -53,20 +58,22 @@ import copy
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.closures import pseudo_time
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
 from exudyn_ehd.film.cavitation.oil_line import CurveFields
 from exudyn_ehd.film.cavitation.solve import FOUND, GOES_ON, LEFT, base_of, is_exact
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
+from exudyn_ehd.film.cavitation.system import has_unfed_row
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns, speed_gradients
-from exudyn_ehd.film.solvers.liner.kernels import liner_residual
-from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, see_curves
-from exudyn_ehd.film.solvers.liner.line_kernels import open_gaps
+from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, open_gaps, see_curves
 from exudyn_ehd.film.solvers.liner.steps import begin, factor_film, find_slopes, proceed, solve_plain
-from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements
+from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, liner_residual
+from exudyn_ehd.status import Status
 
 
 class LinerFilm(WinklerElements):
@@ -241,7 +248,7 @@ class LinerFilm(WinklerElements):
         self, by_rate: np.ndarray, by_gap: np.ndarray, at: tuple[np.ndarray, ...], out: np.ndarray
     ) -> None:
         """Derivatives (10, count) of the balances to the motion of a rigid journal, but for the rupture line's, as for
-        `exudyn_ehd.film.sensitivity.rigid.motion_columns`; ``by_rate``, ``by_gap``: `FilmSolver.storage_weights`."""
+        `exudyn_ehd.film.sensitivity.motion_columns`; ``by_rate``, ``by_gap``: `FilmSolver.storage_weights`."""
         f, w, by_speed = self.film, self.film.work, np.empty((3, *self.P.shape))
         oil = (f.carried if self.kind == OIL else None), self.oil_fields[1]
         rest = self.term_fields, f.grid.fixed, self.gap_fields, f.flux, self.metric
@@ -274,3 +281,111 @@ class LinerFilm(WinklerElements):
         right_hand_side(s.fx, s.fz, s.b)
         if f.squeeze:
             add_squeeze(f.H_t, g.width_x, g.width_z, s.b)
+
+
+# Limits of a dry guess: gap over the clearance that it may always open, and share of an oil's largest pressure that it
+# may always have.
+OPEN, MODERATE = 0.01, 0.1
+# Gap over the clearance below which a dry guess opens the liner.
+THIN = 0.1
+# Share of an oil's largest pressure above which a film that is not found gets NO_PRESSURE.
+NEARLY_SOLID = 0.9
+
+
+def cold_start(film: LinerFilm) -> tuple[bool, int]:
+    """Solve by Newton's method from a dry guess; returns (found, steps). A mass-conserving film is first solved without
+    mass conservation."""
+    film.film.work.warm, first = False, 0
+    _dry_guess(film)
+    if film.kind == OIL:
+        film.take_kind(RUPTURE)
+        ok, first = film.solve()
+        film.take_kind(OIL)
+        if not ok:
+            return False, first
+    ok, steps = film.solve()
+    return ok, first + steps
+
+
+def _dry_guess(film: LinerFilm) -> None:
+    """Set a full film as the initial guess. Without a contact, its pressure opens gaps below `THIN` to `THIN`, within
+    the limits of `_transformed`; in a film at rest it is at most the largest prescribed pressure. Curves open the liner
+    by `THIN` at most."""
+    H0 = film.rigid[0]
+    # curves of a nearly shut gap have pressures that would open it by many clearances
+    guess, most = np.zeros(H0.shape), np.full(H0.shape, THIN / max(film.beta, 1e-300))
+    if film.contact is None and H0.min() < THIN and film.beta > 0.0:
+        guess = np.maximum((THIN - H0) / film.beta, 0.0)
+    if film.oil is not None and film.beta > 0.0:
+        guess, most = _transformed(film, film.oil, guess), _transformed(film, film.oil, most)
+    fixed = film.film.grid.fixed
+    if _at_rest(film):
+        guess = np.minimum(guess, film.P[fixed].max(initial=0.0))
+    lowest = film.film.system.cavity_pressure if film.film.ruptures else 0.0
+    film.P[~fixed] = np.maximum(guess, lowest)[~fixed]
+    film.fill_up(most)
+
+
+def _at_rest(film: LinerFilm) -> bool:
+    """Return whether nothing moves: the pressure then lies between the prescribed ones."""
+    still = film.film.vx == film.film.vz == film.rates.liner == film.rates.mass == 0.0
+    return still and not film.rigid[2].any()
+
+
+def _transformed(film: LinerFilm, oil: PressureTransform, guess: np.ndarray) -> np.ndarray:
+    """Unknowns of guessed pressures (n, m), limited to the larger of what opens the gap to `OPEN` and the share
+    `MODERATE` of the oil's largest pressure."""
+    touching = np.maximum((OPEN - film.rigid[0]) / film.beta, 0.0)
+    p = np.minimum(guess, np.maximum(touching, MODERATE * oil.largest_pressure / film.scale))
+    return oil.transform(np.minimum(p * film.scale, oil.largest_pressure)) / film.scale
+
+
+def pseudo_transient(film: LinerFilm) -> tuple[bool, int]:
+    """Solve by pseudo-transient continuation from a dry guess; returns (found, Newton steps).
+
+    The implicit steps in pseudo time grow; the last solution has no additional storage.
+    """
+    f, work, rates = film.film, film.film.work, film.rates
+    work.warm = False
+    _dry_guess(film)
+    rate = abs(f.vx) + abs(f.vz) + float(np.max(np.abs(film.rigid[2]))) + rates.liner + rates.mass + 1e-300
+    start = film.P.copy(), film.fill.copy(), work.active.copy()
+    film.balance()
+
+    def attempt(extra: float) -> tuple[bool, int]:
+        film.rates = rates._replace(pseudo=extra)
+        film.pseudo_old[:] = _stored(film)
+        ok, steps = film.solve()
+        film.rates, work.ready = rates, work.ready and extra == 0.0
+        work.warm = work.warm or ok
+        for field, other in zip((film.P, film.fill, work.active), start, strict=True):
+            (other if ok else field)[:] = field if ok else other
+        if not ok:
+            film.balance()
+        return ok, steps
+
+    return pseudo_time(attempt, rate)
+
+
+def _stored(film: LinerFilm) -> np.ndarray:
+    """Quantity (n, m) that pseudo time stores at the present state: mass, or the deflection by the film's unclipped
+    pressure."""
+    if film.kind != OIL:
+        return film.beta * (film.load.p + (film.P - film.load.drive))
+    return film.film.content
+
+
+def failure(film: LinerFilm) -> Status:
+    """Status of a film that was not found."""
+    f, s, rigid = film.film, film.film.system, film.rigid
+    # in pseudo time it ended with the last film that it found
+    unfed = s.turns > 0.0 and has_unfed_row(s.linear_pressure, f.H, s.fixed, s.turns, s.cavity_pressure)
+    if unfed and not rigid[2].any():
+        return Status.NO_OIL
+    if film.oil is not None and float(film.load.p.max()) * film.scale > NEARLY_SOLID * film.oil.largest_pressure:
+        return Status.NO_PRESSURE
+    if film.contact is not None or film.beta == 0.0:
+        return Status.NOT_CONVERGED
+    # tension may pull the liner shut: without cavitation, or by the cavity's own pressure
+    shut = not f.ruptures or float(rigid[0].min()) + film.beta * film.cavity_load <= 0.0
+    return Status.NO_FILM if shut else Status.NOT_CONVERGED

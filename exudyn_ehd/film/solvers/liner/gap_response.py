@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.reynolds.balance import part, terms_of
-from exudyn_ehd.film.sensitivity.rigid import columns_of_links
+from exudyn_ehd.film.sensitivity import columns_of_links
 from exudyn_ehd.film.solvers.liner.elements import combine, gaps_of, slopes_of
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble, dense_band
-from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.factors import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
 from exudyn_ehd.film.cavitation.solve import BENDS, EVEN, EVEN_DENSE, GOES_ON, LOST, MOST_STEPS, look, take_step
@@ -18,7 +18,7 @@ from exudyn_ehd.film.cavitation.states import OIL, RUPTURE, add_sink, place_stat
 from exudyn_ehd.film.reynolds.balance import carried_fill, film_slopes, oil_links, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, element_slopes, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes, link_gradients
-from exudyn_ehd.film.solvers.liner.kernels import plain_residual
+from exudyn_ehd.film.solvers.liner.winkler import plain_residual
 
 # Largest share of a gap by which one step may close it; larger values risk a shut gap, smaller ones cost steps.
 CLOSING = 0.8

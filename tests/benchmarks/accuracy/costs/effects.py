@@ -22,8 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import ElrodAdams, FullSommerfeld, Gumbel
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.density import DowsonHigginson
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
@@ -35,11 +34,10 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import Crown
-from exudyn_ehd.film.surfaces.wall import RegularisedWall
-from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import EHDError
 from tests.benchmarks.accuracy.costs.growth import CLEARANCE, SPEED, plain_bearing

@@ -18,9 +18,8 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
-from exudyn_ehd.film.cavitation.closures import SwiftStieber
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.coupling.run.newton_limits import ConfigureSolver
+from exudyn_ehd.film.cavitation.closures import ElrodAdams, SwiftStieber
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model

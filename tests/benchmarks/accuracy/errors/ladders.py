@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import ElrodAdams, FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from exudyn_ehd.film.sensitivity.bore_stencil import (
+from exudyn_ehd.film.sensitivity import (
     gap_slopes,
     gap_stencil,
     transposed_slopes,

@@ -8,7 +8,7 @@ import scenes
 from turning import spinning_ring
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.kinematics.fitted_sides import FittedSide
+from exudyn_ehd.coupling.items.markers import FittedSide
 
 COUNT = 7
 

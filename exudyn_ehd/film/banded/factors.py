@@ -1,0 +1,214 @@
+"""Banded factors of the film's systems: L D L^T for symmetric ones, L U for the others, with vectors of four numbers.
+
+L D L^T of symmetric systems.
+
+Storage: ``band[r, d] = A[r, r + d]`` with zeros behind the bandwidth, so that four pivots and vectors may read past it.
+Factor: ``A = U^T D^-1 U`` with ``U = D L^T`` stored in place of ``band`` and ``inv_diag = 1 / diag(U)``.
+
+Symbols: n columns (theta), m rows (z), w half-bandwidth, kx / kz conductances of the links (i, j)-(i+1, j) and
+(i, j)-(i, j+1).
+
+Four neighbouring numbers at once, written out as vectors.
+
+The rows of a film's bands are some ten numbers long: too short for the compiler's vector loops, and numba does not let
+it join single numbers into vectors. On processors without such vectors LLVM makes smaller ones of them.
+
+Banded L U without pivoting for the film's non-symmetric systems (mass-conserving cavitation, elastic liner).
+
+The matrices are column diagonally dominant with non-positive off-diagonals, or close to it, so that no pivoting is
+needed. Storage: ``lower[r, d] = A[r + d, r]`` and ``upper[r, d] = A[r, r + d]``, d = 0 .. w, zeros behind;
+``lower[:, 0]`` is not used. After the factorisation ``A = L U`` with unit L: ``lower`` holds L's columns, ``upper`` U's
+rows, ``inv_diag = 1 / diag(U)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from llvmlite import ir
+from numba import njit, types
+from numba.core.base import BaseContext
+from numba.core.errors import TypingError
+from numba.core.typing.templates import Signature
+from numba.extending import intrinsic
+
+from exudyn_ehd.film.banded.workspace import PAD
+
+LANES = 4
+_int32 = ir.IntType(32)
+_vector = ir.VectorType(ir.DoubleType(), LANES)
+
+
+def _require_contiguous(*arrays: types.Array) -> None:
+    """Refuse arrays, when a kernel is compiled, whose neighbours do not lie side by side."""
+    if any(array.layout != "C" for array in arrays):
+        raise TypingError(f"vectors are read from and written to contiguous arrays, got {arrays}")
+
+
+def _place(context: BaseContext, builder: ir.IRBuilder, kind: types.Array, array: ir.Value, at: ir.Value) -> ir.Value:
+    """Pointer to the vector that begins at a flat index."""
+    data = context.make_array(kind)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [at]), _vector.as_pointer())
+
+
+def _subtract(count: int) -> Callable:
+    """Code that subtracts ``count`` vectors, each times its factor."""
+
+    def generate(
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]
+    ) -> ir.Value:
+        target, at, source, *rest = arguments
+        goal = _place(context, builder, signature.args[0], target, at)
+        total = builder.load(goal, align=8)
+        for place, factor in zip(rest[:count], rest[count:], strict=True):
+            known = builder.load(_place(context, builder, signature.args[2], source, place), align=8)
+            lane = builder.insert_element(ir.Constant(_vector, ir.Undefined), factor, _int32(0))
+            mask = ir.Constant(ir.VectorType(_int32, LANES), None)
+            spread = builder.shuffle_vector(lane, ir.Constant(_vector, ir.Undefined), mask)
+            product = builder.fmul(spread, known, flags=("contract", "nsz"))
+            total = builder.fsub(total, product, flags=("contract", "nsz"))
+        builder.store(total, goal, align=8)
+        return context.get_dummy_value()
+
+    return generate
+
+
+def _signature(target: types.Array, source: types.Array, count: int) -> Signature:
+    _require_contiguous(target, source)
+    return types.void(target, types.uint64, source, *count * (types.uint64,), *count * (types.float64,))
+
+
+@intrinsic
+def subtract_lanes(typingctx, target, at, source, p, f):
+    """target[at : at + 4] -= f source[p : p + 4], flat arrays and unsigned places."""
+    return _signature(target, source, 1), _subtract(1)
+
+
+@intrinsic
+def subtract_four_lanes(typingctx, target, at, source, p0, p1, p2, p3, f0, f1, f2, f3):
+    """target[at : at + 4] -= f0 source[p0 : p0 + 4] + f1 source[p1 : p1 + 4] + ..., flat arrays, unsigned places."""
+    return _signature(target, source, 4), _subtract(4)
+
+
+_FAST = {"contract", "nsz", "arcp"}
+_unsigned = np.uint64
+_0, _1, _2, _3, _4 = (_unsigned(k) for k in range(5))
+
+
+@njit(cache=True)
+def assemble_band(kx, kz, number, order, count, width, first, band_out):
+    """Fill the upper band of the active cells' matrix, rows from ``first`` on, without links longer than ``width``.
+
+    Nothing flows over the last row's links in z. Flat unsigned indices need no check of their sign.
+    """
+    n, m = number.shape
+    along, across, places, flat = kx.reshape(-1), kz.reshape(-1), number.reshape(-1), band_out.reshape(-1)
+    size, rows, stride = _unsigned(n * m), _unsigned(m), _unsigned(band_out.shape[1])
+    wide = _unsigned(min(width + 1 + PAD, band_out.shape[1]))
+    for r in range(first, count):
+        c, row = _unsigned(order[r]), _unsigned(r) * stride
+        # links to rows above come from below
+        for q in range(row, row + wide):
+            flat[q] = 0.0
+        before, on = c - _1 if c > _0 else size - _1, c + _1 if c + _1 < size else _0
+        prv, nxt = c - rows if c >= rows else c + size - rows, c + rows if c + rows < size else c + rows - size
+        flat[row] += along[prv] + along[c] + across[before] + across[c]
+        b = places[on]
+        if b > r:
+            flat[row + _unsigned(b - r)] -= across[c]
+        b = places[nxt]
+        if b > r and b - r <= width:
+            flat[row + _unsigned(b - r)] -= along[c]
+        elif first <= b < r and r - b <= width:
+            flat[_unsigned(b) * stride + _unsigned(r - b)] -= along[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def factor_band(band, count, width, first, inv_diag_out):
+    """Factor in place, four pivots at a time; returns False if a pivot is not positive.
+
+    Rows below ``first`` (a multiple of 4) are factored already and stay; those from it on hold the matrix. The
+    operations on every row, and so its bits, are the same as for ``first = 0``.
+    """
+    flat, stride, w, size = band.reshape(-1), _unsigned(band.shape[1]), _unsigned(width), _unsigned(count)
+    begin, changed = _unsigned(max(0, first - width - 4) // 4 * 4), _unsigned(first)
+    for block in range((count + 3) // 4 - int(begin) // 4):
+        k = begin + _4 * _unsigned(block)
+        if k >= changed and not _factor_four(flat, stride, k, min(_4, size - k), w, inv_diag_out):
+            return False
+        row0 = k * stride
+        row1, row2, row3 = row0 + stride, row0 + _2 * stride, row0 + _3 * stride
+        for i in range(max(k + _4, changed), min(size, k + _4 + w)):
+            d = i - k - _3
+            p0, p1, p2, p3 = row0 + d + _3, row1 + d + _2, row2 + d + _1, row3 + d
+            f0, f1 = flat[p0] * inv_diag_out[k], flat[p1] * inv_diag_out[k + _1]
+            f2, f3 = flat[p2] * inv_diag_out[k + _2], flat[p3] * inv_diag_out[k + _3]
+            own, t = i * stride, _0
+            while t <= w - d:
+                subtract_four_lanes(flat, own + t, flat, p0 + t, p1 + t, p2 + t, p3 + t, f0, f1, f2, f3)
+                t += _4
+    return True
+
+
+@njit(cache=True, fastmath=_FAST)
+def _factor_four(flat, stride, k, rows, w, inv_diag_out):
+    """Up to four rows from k on among themselves."""
+    for q in range(rows):
+        row = (k + q) * stride
+        if not flat[row] > 0.0:
+            return False
+        inverse = 1.0 / flat[row]
+        inv_diag_out[k + q] = inverse
+        for s in range(q + _1, min(rows, q + w + _1)):
+            d = s - q
+            own, factor, t = (k + s) * stride, flat[row + d] * inverse, _0
+            while t <= w - d:
+                subtract_lanes(flat, own + t, flat, row + d + t, factor)
+                t += _4
+    return True
+
+
+@njit(cache=True, fastmath=_FAST)
+def factor_lu(lower, upper, count, width, inv_diag_out):
+    """Factor in place, four pivots at a time; returns False if a pivot vanishes."""
+    low, up, stride = lower.reshape(-1), upper.reshape(-1), _unsigned(upper.shape[1])
+    w, size = _unsigned(width), _unsigned(count)
+    for block in range((count + 3) // 4):
+        k = _4 * _unsigned(block)
+        if not _factor_lu_four(low, up, stride, k, min(_4, size - k), w, inv_diag_out):
+            return False
+        row0 = k * stride
+        row1, row2, row3 = row0 + stride, row0 + _2 * stride, row0 + _3 * stride
+        for i in range(k + _4, min(size, k + _4 + w)):
+            d = i - k - _3
+            p0, p1, p2, p3 = row0 + d + _3, row1 + d + _2, row2 + d + _1, row3 + d
+            a0, a1, a2, a3 = low[p0], low[p1], low[p2], low[p3]
+            b0, b1, b2, b3 = up[p0], up[p1], up[p2], up[p3]
+            own, t = i * stride, _0
+            while t <= w - d:
+                subtract_four_lanes(up, own + t, up, p0 + t, p1 + t, p2 + t, p3 + t, a0, a1, a2, a3)
+                subtract_four_lanes(low, own + t, low, p0 + t, p1 + t, p2 + t, p3 + t, b0, b1, b2, b3)
+                t += _4
+    return True
+
+
+@njit(cache=True, fastmath=_FAST)
+def _factor_lu_four(low, up, stride, k, rows, w, inv_diag_out):
+    """Up to four rows of U and columns of L from k on among themselves."""
+    for q in range(rows):
+        row = (k + q) * stride
+        if not abs(up[row]) > 1e-300:
+            return False
+        inverse = 1.0 / up[row]
+        inv_diag_out[k + q] = inverse
+        for d in range(_1, w + _1):
+            low[row + d] *= inverse
+        for s in range(q + _1, min(rows, q + w + _1)):
+            d = s - q
+            own, a, b, t = (k + s) * stride, low[row + d], up[row + d], _0
+            while t <= w - d:
+                subtract_lanes(up, own + t, up, row + d + t, a)
+                subtract_lanes(low, own + t, low, row + d + t, b)
+                t += _4
+    return True
