@@ -14,6 +14,6 @@ stress              Cauchy and von Mises stress at nodes and at any point
 linear              factors of a mesh's matrices
 modes               a bush reduced to modes: static ones of its bore, what these lack in motion
 journal             elastic journals: cylinders by harmonics, their modes
-fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`
-fe_faces            its nodes and faces, and their shape functions
+fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`;
+                    its nodes and faces, and their shape functions
 """

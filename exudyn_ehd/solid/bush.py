@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_ehd.solid.elements.element import Quadrature
-from exudyn_ehd.solid.elements.hex20 import HEX20
+from exudyn_ehd.solid.elements.kinds import HEX20
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, own_rule
 from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_number, require_type
@@ -83,8 +83,8 @@ class ANCFBush(_Solid):
     material : SaintVenantKirchhoff or NeoHooke
         `NeoHooke` for soft bushes, beyond strains of a few per cent.
     quadrature : Quadrature or None, default None
-        Of hexahedra (`exudyn_ehd.solid.elements.hex20`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
-        speed; of tetrahedra (`exudyn_ehd.solid.elements.tet10`) `HAMMER4` by default, `WALKINGTON14` for the reference.
+        Of hexahedra (`exudyn_ehd.solid.elements.kinds`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
+        speed; of tetrahedra (`exudyn_ehd.solid.elements.kinds`) `HAMMER4` by default, `WALKINGTON14` for the reference.
     damping : Rayleigh or None, default None
     parallel : bool, default False
         Loops over elements on numba's threads.

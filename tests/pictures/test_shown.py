@@ -10,9 +10,9 @@ from matplotlib import pyplot as plt
 from matplotlib.backend_bases import FigureManagerBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from exudyn_ehd.pictures.curves import plot_curves
 from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.maps import PRESSURE, plot_map
+from exudyn_ehd.pictures.rotors import plot_curves
 from exudyn_ehd.studies.parameters import StudyTable
 
 

@@ -22,7 +22,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.solid.elements.faces import face_of
+from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.status import Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization

@@ -24,7 +24,7 @@ from exudyn_ehd.coupling.contract import CURRENT, Index, JointEvaluation, Side, 
 from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
-from exudyn_ehd.joint.tangent.spread import complete, resultant, spread_matrix
+from exudyn_ehd.joint.tangent.nodes import complete, resultant, spread_matrix
 from exudyn_ehd.status import Status
 
 

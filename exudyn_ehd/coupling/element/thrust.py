@@ -10,7 +10,7 @@ from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.kinematics.axial import centre_of
 from exudyn_ehd.coupling.kinematics.relative import motion_of
-from exudyn_ehd.joint.model.compile import MESSAGE
+from exudyn_ehd.joint.model.build import MESSAGE
 from exudyn_ehd.joint.thrust import ThrustModel
 from exudyn_ehd.progress import announced
 from exudyn_ehd.status import InputError, Status

@@ -40,8 +40,7 @@ from exudyn_ehd.joint.solved_film import (
     SolvedFilm,
 )
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
-from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, traction
-from exudyn_ehd.joint.tangent.spread import complete
+from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, complete, traction
 from exudyn_ehd.status import Status, warn_user
 
 # Travel of the journal's ends by tilt, over the clearance, from which modes that are even along the axis are no model.

@@ -18,7 +18,7 @@ import numpy as np
 
 from exudyn_ehd.film.peak import refined_peak
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
-from exudyn_ehd.joint.audit import surfaces
+from exudyn_ehd.joint.audit import effects
 from exudyn_ehd.joint.audit.audit import ROWS, Audit, AuditRow, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
@@ -137,11 +137,11 @@ class BallCase(Case):
 
 def _contact(case: Case) -> Finding:
     if case.bearing.contact is not None:
-        return surfaces.contact(case)
+        return effects.contact(case)
     wall = RegularisedWall(onset=min(TOUCHING * TYPICAL_ROUGHNESS, THIN * case.bearing.radial_clearance))
     switch, advice = partial(replace, contact=wall), "surfaces touch: contact=RegularisedWall(...)."
     limit = LIMITS["asperities"]._replace(nothing=None)
-    return judged(case, "contact", *surfaces.thinnest(case), False, switch, limit=limit, mattering=advice)
+    return judged(case, "contact", *effects.thinnest(case), False, switch, limit=limit, mattering=advice)
 
 
 def _grid(case: Case, effect: str, name: str, seen: str) -> Finding:

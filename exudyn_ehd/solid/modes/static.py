@@ -27,7 +27,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.linear.solvers import held_solution
+from exudyn_ehd.solid.linear import held_solution
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.modes import films
 from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points, orthogonal_on
