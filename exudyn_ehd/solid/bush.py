@@ -136,7 +136,7 @@ class ModalBush(_Solid):
     tolerance : float, default 0.07
         Largest error of the bore's displacement on the film's own length under sampled films of all directions, in the
         root mean square over the surface, over that displacement; of a bush that moves as a whole over what it deforms
-        locally (`exudyn_ehd.solid.modes.films`); 2e-3 to 0.2. The sampled films have an eccentricity ratio of 0.9, on
+        locally (see `solid.pressure_modes`); 2e-3 to 0.2. The sampled films have an eccentricity ratio of 0.9, on
         bores that are tilted, wavy or crowned too. At 0.07, of 150 random bushes on meshes of 12 to 24 around (held
         outside, on half of it, on a foot of 1.1 rad or at an end, 1 to 3 times as long as the film, walls of 0.15 to 1
         radius, 3e9 to 2e11 Pa, aligned and tilted) peak pressure and minimum film thickness are within 0.9 % of the

@@ -10,7 +10,7 @@ that the gap of the film sees the residual only, ``delta = e_r (S Psi - P - Thet
 clearances without error. Loads are carried back by the transposes.
 
 Source of the modes: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59, here for pressures on a bore
-as in `exudyn_ehd.solid.modes.static`.
+as in `exudyn_ehd.solid.bush_modes`.
 
 Faces of the surface under the film are unrolled with their shape functions. They are those of hexahedra, or triangles
 of three or six nodes.
@@ -31,7 +31,7 @@ from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.elements.kinds import boundary_faces
 from exudyn_ehd.solid.linear import held_solution
 from exudyn_ehd.solid.mesh import frame_of
-from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points
+from exudyn_ehd.solid.pressure_modes import FilmSurface, film_modes, film_points
 from exudyn_ehd.solid.unrolled import Surface, patch
 from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
 
@@ -341,7 +341,7 @@ class BoreModesReport:
     error_before, error : float
         Error of the bore's shape under sampled films, with the basis before and now. The shape is the radial
         displacement without its rigid motion. The error is relative to the local part of the shape
-        (`exudyn_ehd.solid.modes.films`). A slender eye becomes oval by far more than the film thickness. Relative to
+        (`exudyn_ehd.solid.pressure_modes`). A slender eye becomes oval by far more than the film thickness. Relative to
         the whole shape every error would look small, while the film depends on the local deformation. Films of larger
         eccentricity ratios than the sampled 0.9 exceed the error as in `ModalBush`.
 

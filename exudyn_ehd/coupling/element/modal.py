@@ -19,8 +19,8 @@ from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build_flexible import TurningEvaluation, TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.solid.bush_modes import BoreModes
 from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.solid.modes.static import BoreModes
 
 # An explicit solver that is not stored gives itself away by so many whole steps in a row, behind the first one.
 EXPLICIT_STEPS = 2

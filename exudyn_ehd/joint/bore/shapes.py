@@ -38,9 +38,9 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
 
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.solid.bush_modes import BoreModes
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.modes import JournalModes
-from exudyn_ehd.solid.modes.static import BoreModes
 from exudyn_ehd.solid.unrolled import Surface, directed
 
 # Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.

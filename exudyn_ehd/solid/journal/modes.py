@@ -1,7 +1,7 @@
 """`ElasticJournal`, and its reduction to what its surface does under an oil film.
 
-The modes are the displacements under the leading pressures of films, `exudyn_ehd.solid.modes.films`, wave by wave, so
-that a mode is a profile along z times cos(n theta) or sin(n theta). Its displacement is counted inwards, as it opens
+The modes are the displacements under the leading pressures of films, `exudyn_ehd.solid.pressure_modes`, wave by wave,
+so that a mode is a profile along z times cos(n theta) or sin(n theta). Its displacement is counted inwards, as it opens
 the gap: with it S q of a journal adds to that of a bore, and its loads are S^T (p A) alike.
 
 The user describes an elastic journal by its cylinder, its material and the bands where its body holds it. The body of
@@ -27,9 +27,9 @@ from math import ceil, log, log1p
 import numpy as np
 from scipy.linalg import block_diag
 
+from exudyn_ehd.solid import pressure_modes as films
 from exudyn_ehd.solid.bush import ModalBush, require_tolerance
 from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
-from exudyn_ehd.solid.modes import films
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
 from exudyn_ehd.storage import cached_arrays
@@ -178,7 +178,7 @@ def _place(where: str, value: tuple[float, float]) -> tuple[float, float]:
     return low, high
 
 
-# Version of the algorithm, like `exudyn_ehd.solid.modes.films.FORMAT`, which counts here too.
+# Version of the algorithm, like `exudyn_ehd.solid.pressure_modes.FORMAT`, which counts here too.
 FORMAT = 4
 # Elements through the wall and under the film, and waves around of the search; from this tolerance on the second set
 # does. Compliance of a solid pin off by 2e-4 at 8 waves around and 5e-3 at 24, by 6e-3 at 8 of the second set.
