@@ -28,9 +28,6 @@ from exudyn_ehd.pictures.style import (
 )
 from exudyn_ehd.tables import unit_of
 
-CURVES = (1.2 * COLUMN, 0.8 * COLUMN)
-
-
 Curve: TypeAlias = tuple[str, np.ndarray, np.ndarray]
 """Name in the legend, x and y (n,) in SI units."""
 
@@ -61,7 +58,7 @@ def plot_curves(
     """
     columns = [column(name, np.concatenate([curve[k + 1] for curve in curves]), units) for k, name in enumerate(names)]
     x_unit, y_unit = (unit for _, unit in columns)
-    with picture(ax, CURVES, path) as (figure, ax):
+    with picture(ax, (1.2 * COLUMN, 0.8 * COLUMN), path) as (figure, ax):
         for text, x, y in curves:
             order = np.argsort(x)
             ax.plot(x_unit(x[order]), y_unit(y[order]), "o-", label=text or None)
