@@ -2,7 +2,7 @@
 
 A shaft of 40 mm runs at 2865 rpm under 8 kN that stand still, in one bearing of 30 mm. A flywheel drives it through a
 coupling that turns it and holds it along its axis alone. The wall of a hollow shaft yields where the oil presses it:
-the peak falls from 17.8 to 12.6 MPa, and the film is thinnest at the bearing's ends now, where the wall yields least,
+the peak falls from 17.8 to 12.4 MPa, and the film is thinnest at the bearing's ends now, where the wall yields least,
 6.4 in place of 7.1 µm. If the hole is oval the shaft is softer in one direction than in the other, and the film
 breathes twice in every turn under a load that never changes, from 6.1 to 6.5 µm. A journal whose modes stand still in
 the film (`ElasticJournal`) can't show that; the modes of a finite-element body turn with it. The walls have the same

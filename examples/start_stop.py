@@ -122,13 +122,6 @@ def _integral(values: np.ndarray, x: np.ndarray) -> float:
     return float(np.sum(0.5 * np.diff(x) * (values[1:] + values[:-1])))
 
 
-def worn_volume(film: ehd.FilmFields) -> float:
-    """Volume worn off the bore, m3."""
-    assert film.wear_depth is not None
-    ring = film.wear_depth.mean(axis=0) * 2.0 * np.pi * RADIUS
-    return _integral(ring, film.z)
-
-
 def figures(run: Run, curve: ehd.StribeckResult) -> dict[str, float]:
     """Numbers of the table."""
     h = run.history
@@ -155,8 +148,8 @@ def figures(run: Run, curve: ehd.StribeckResult) -> dict[str, float]:
         "contact_share_when_stopped": float(share[last]),
         "kinetic_energy_lost_coasting_J": 0.5 * INERTIA * float(spin[first] ** 2 - spin[last] ** 2),
         "friction_work_coasting_J": _integral(np.abs(h.friction_torque * spin)[coast], h.time[coast]),
-        "deepest_wear_nm": 1e9 * float(run.film.wear_depth.max()),
-        "worn_volume_mm3": 1e9 * worn_volume(run.film),
+        "deepest_wear_nm": 1e9 * float(h.wear_depth[-1]),
+        "worn_volume_mm3": 1e9 * float(h.worn_volume[-1]),
         "worn_volume_by_archard_mm3": 1e9
         * WEAR_RATE
         * STARTS

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar, get_args
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
+from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.combinations import check_combinations
 from exudyn_ehd.film.grid import Arc
@@ -88,7 +88,7 @@ class MaximumGap:
     """
 
 
-Cavitation = FullSommerfeld | Gumbel | SwiftStieber | ElrodAdams
+Cavitation = FullSommerfeld | Gumbel | SwiftStieber | ElrodAdams | Closure
 Inlet = Periodic | MaximumGap
 
 
@@ -107,8 +107,8 @@ class JournalBearing(Checked):
     lubricant : Lubricant
     film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR, default FiniteLength()
         Film model and grid.
-    cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams, default SwiftStieber()
-        Closure at the cavity pressure.
+    cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure, default SwiftStieber()
+        Closure at the cavity pressure; `Closure` is one of your own, see "Extension points" in the package's README.
     inlet : Periodic or MaximumGap, default Periodic()
         Circumferential condition.
     arc : Arc or None, default None
@@ -232,8 +232,7 @@ class JournalBearing(Checked):
                         f"{getattr(item, f.name)!r}; {expected}"
                     )
         closure = self.cavitation
-        known_closure = isinstance(closure, (Gumbel, SwiftStieber))
-        if not known_closure or closure.cavity_pressure != 0.0 or closure.cavity_shear != 1.0:
+        if closure.conserves_mass or closure.cavity_pressure != 0.0 or closure.cavity_shear != 1.0:
             raise InputError(
                 "JournalBearing.cavitation must be Gumbel() or SwiftStieber() at cavity_pressure=0 and cavity_shear=1 "
                 f"with film=ImpedanceMap(...), got {closure!r}; {expected}"

@@ -328,4 +328,4 @@ def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
     if kind.refused_below <= size <= kind.refused_above:
         return f"{where}: {value!r} {kind.unit} is unusual, {text}", False
     limits = f"{kind.refused_below:g} and {kind.refused_above:g} {kind.unit}"
-    return f"{where} must be within {limits} in size, got {value!r}; {text}", True
+    return f"{where} must be between {limits} in size, got {value!r}; {text}", True

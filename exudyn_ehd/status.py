@@ -54,12 +54,12 @@ class Status(enum.IntEnum):
 
 _ADVICE = {
     Status.CONVERGED: "the film was evaluated.",
-    Status.NOT_CONVERGED: "the cavitation closure did not settle; refine the film grid (FiniteLength) or reduce the "
+    Status.NOT_CONVERGED: "the cavitation model did not converge; refine the film grid (FiniteLength) or reduce the "
     "step size, and please report the state.",
     Status.NO_FILM: "the gap closed somewhere, where a film has no solution; give the bearing a contact effect, "
     "contact=RegularisedWall(onset=...), reduce the load or the step size, or check the radial clearance.",
     Status.NO_PRESSURE: "the pressure runs away: with this viscosity-pressure law no finite pressure carries the film; "
-    "use RoelandsPressure instead of BarusPressure, or name an elastic liner or bush.",
+    "name an elastic liner or bush, which spreads the load, or reduce the load.",
     Status.OUTSIDE_MAP: "the journal left the domain of its impedance map; give ImpedanceMap a larger "
     "largest_eccentricity_ratio, or use film=FiniteLength(...), with contact=RegularisedWall(onset=...) if surfaces "
     "may touch.",
@@ -274,7 +274,7 @@ def require_number(
     bounds = [(f"{sign} {bound:g}", bound, holds) for sign, bound, holds in known if bound is not None]
     # a lower bound is named by itself, an upper one as the end of a range
     if len(bounds) == 2:
-        bounds[1] = (f"within {bounds[0][1]:g} and {bounds[1][1]:g}", *bounds[1][1:])
+        bounds[1] = (f"between {bounds[0][1]:g} and {bounds[1][1]:g}", *bounds[1][1:])
     expected = bounds[0][0] if bounds else "finite"
     kind = kind_of(where)
     if not unit and kind is not None:
@@ -306,7 +306,7 @@ def require_count(where: str, value: int, *, at_least: int, hint: str = "it is o
     """Return a number of vertices or intervals of a film grid in one direction, checked: up to `MOST_VERTICES`."""
     count = require_integer(where, value, at_least=at_least, hint=hint)
     if count > MOST_VERTICES:
-        raise InputError(f"{where} must be within {at_least} and {MOST_VERTICES}, got {value!r}; {hint}")
+        raise InputError(f"{where} must be between {at_least} and {MOST_VERTICES}, got {value!r}; {hint}")
     return count
 
 
@@ -362,9 +362,15 @@ def hint_arguments(item: Hinted) -> Hinted:
 def require_type(
     where: str, value: object, *types: type, hint: str = "options are objects, not strings or classes."
 ) -> None:
-    """Raise `InputError` for what is none of these types; ``type(None)`` stands for None."""
-    if not isinstance(value, types):
-        names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
+    """Raise `InputError` for an object of none of these types, and for a class.
+
+    ``type(None)`` stands for None. An object is of a protocol if it has all of its attributes.
+    """
+    if isinstance(value, type) or not isinstance(value, types):
+        called = {True: "a {} of your own", False: "{}(...)"}
+        names = " or ".join(
+            "None" if t is type(None) else called[getattr(t, "_is_protocol", False)].format(t.__name__) for t in types
+        )
         raise InputError(f"{where} must be {names}, got {value!r}; {hint}")
 
 
@@ -422,5 +428,5 @@ def require_size(where: str, value: float | np.ndarray, unit: str, *, smallest: 
     size = float(np.max(np.abs(value)))
     if size != 0.0 and not smallest <= size <= largest:
         raise InputError(
-            f"{where} must be 0 or within {smallest:g} and {largest:g} {unit} in size, got {value!r}; check its unit."
+            f"{where} must be 0 or between {smallest:g} and {largest:g} {unit} in size, got {value!r}; check its unit."
         )

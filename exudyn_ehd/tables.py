@@ -1,4 +1,4 @@
-"""Tables of named columns: as text, as CSV; units of the names that the package uses."""
+"""Tables of named columns: as text in engineers' units, as CSV in SI; units of the names that the package uses."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 # SI units by name; a name of several words may end in one of these.
 UNITS = {
     "time": "s",
+    "start": "s",
+    "end": "s",
     "seconds": "s",
     "journal_radius": "m",
     "length": "m",
@@ -49,6 +51,8 @@ UNITS = {
     "thrust_torque": "N m",
     "thrust_power_loss": "W",
     "thrust_contact_load": "N",
+    "wear_depth": "m",
+    "worn_volume": "m3",
     "film_temperature": "K",
     "peak_temperature": "K",
     "bush_temperature": "K",
@@ -63,6 +67,15 @@ UNITS = {
     "moment_x": "N m",
     "moment_y": "N m",
     "moment_z": "N m",
+}
+# Engineers' units of printed tables with the factor from SI, by SI unit, and by name for lengths far larger than a film
+# is thick. Other units are printed in SI.
+PRINTED = {
+    "m": ("um", 1e6),
+    "Pa": ("MPa", 1e-6),
+    "m3/s": ("l/min", 6e4),
+    "rad": ("deg", 180.0 / np.pi),
+    **dict.fromkeys(("journal_radius", "length", "minimum_gap_z", "axial_position"), ("mm", 1e3)),
 }
 PREFIXES = ("mean_", "largest_", "smallest_")
 SUFFIX = "_time"
@@ -83,6 +96,16 @@ def heads(names: Sequence[str], more: Mapping[str, str] | None = None) -> list[s
     """Column heads: name [unit]."""
     units = [unit_of(name, more) for name in names]
     return [name if unit is None else f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
+
+
+def printed(
+    columns: Mapping[str, np.ndarray], more: Mapping[str, str] | None = None
+) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Columns (n,) in SI units as they are printed, in engineers' units, and these units by name."""
+    known = {name: unit for name in columns if (unit := unit_of(name, more)) is not None}
+    units = {name: PRINTED.get(name, PRINTED.get(unit, (unit, 1.0))) for name, unit in known.items()}
+    scaled = {name: units.get(name, ("", 1.0))[1] * np.asarray(values) for name, values in columns.items()}
+    return scaled, {name: unit for name, (unit, _) in units.items()}
 
 
 def format_seconds(value: float) -> str:
@@ -134,10 +157,10 @@ def data_frame(columns: Mapping[str, object]) -> DataFrame:
 
 
 class Table:
-    """Named columns (n,) of numbers: printed, in notebooks, as CSV, as a data frame."""
+    """Named columns (n,) of numbers in SI units, as are CSV and data frame; print and notebooks show um, MPa, l/min."""
 
     def to_csv(self, path: str | pathlib.Path) -> None:
-        """Write the table: a header of names with units, a row per line, remarks last.
+        """Write the table in SI units: a header of names with units, a row per line, remarks last.
 
         Parameters
         ----------
@@ -166,7 +189,8 @@ class Table:
         return html_table(self._rows())
 
     def _rows(self) -> list[list[str]]:
-        return list(rows_of(self._columns(), "{:.5g}".format, self._units(), self._remarks()))
+        columns, units = printed(self._columns(), self._units())
+        return list(rows_of(columns, "{:.5g}".format, units, self._remarks()))
 
     def _columns(self) -> dict[str, np.ndarray]:
         raise NotImplementedError

@@ -13,7 +13,8 @@ from exudyn_ehd.plausible import ARGUMENTS, KINDS
 
 LAWS = {name: lubricant.LAWS[name][:-1] for name in ("pressure_law", "shear_law", "density_law")}
 
-CAVITATION = _OPTIONS["cavitation"]
+# without the protocol of those that users write
+CAVITATION = _OPTIONS["cavitation"][:-1]
 
 
 def specs():

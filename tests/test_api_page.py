@@ -110,7 +110,7 @@ def test_docstrings_say_the_defaults_of_signatures():
 
 
 def test_every_default_is_documented():
-    """Functions and classes that take arguments have a section for them; a result has attributes, or is an enumeration."""
+    """Whoever takes arguments has a section for them; a result has attributes, or is an enumeration."""
     for name in ehd.__all__:
         item = getattr(ehd, name)
         own = inspect.isfunction(item) or (dataclasses.is_dataclass(item) and dataclasses.fields(item))

@@ -57,6 +57,7 @@ READING = {
     "load_history.start", "load_history.end",
     "LubricatedJoint.plot_bearing.camera", "LubricatedJoint.plot_traces.quantities",
     "LubricatedJoint.plot_traces.options", "CreateLubricatedJoint.itemNumbers", "CreateFlexibleBush.supports",
+    "LubricatedJoint.plot_waterfall.speed", "LubricatedJoint.plot_waterfall.window",
     "CreateFlexibleBush.loads", "Support.nodes", "mesh_from_arrays.held",
     "mesh_from_fem.held", "mesh_from_file.held", "parameter_study.function", "parameter_study.hosts",
     "CreateLubricatedSphericalJoint.itemNumbers", "SolveEquilibrium.rotors", "SolveThreshold.rotors",

@@ -1,5 +1,6 @@
 """Tables as text, HTML, CSV and data frames."""
 
+import re
 import sys
 import types
 
@@ -34,6 +35,42 @@ def test_table_in_every_form(tmp_path, monkeypatch):
         table.to_dataframe()
     monkeypatch.setitem(sys.modules, "pandas", types.SimpleNamespace(DataFrame=dict))
     assert list(table.to_dataframe()) == ["speed", "cost", "error"]
+
+
+def test_print_is_in_engineers_units_and_all_else_in_si(tmp_path):
+    one = np.ones(1)
+    given = {
+        "minimum_gap": 4.1e-6 * one,
+        "radial_clearance": 2e-5 * one,
+        "journal_radius": 0.01 * one,
+        "peak_pressure": 24.6e6 * one,
+        "mean_leakage": 1.5e-6 * one,
+        "peak_angle": np.pi * one,
+        "minimum_gap_time": 0.02 * one,
+        "viscosity": 0.04 * one,
+        "count": 3 * one,
+    }
+
+    class Given(Table):
+        def _columns(self):
+            return given
+
+    head, row = (re.split(r"\s{2,}", text.strip()) for text in str(Given()).splitlines())
+    assert dict(zip(head, map(float, row), strict=True)) == {
+        "minimum_gap [um]": 4.1,
+        "radial_clearance [um]": 20.0,
+        "journal_radius [mm]": 10.0,
+        "peak_pressure [MPa]": 24.6,
+        "mean_leakage [l/min]": 0.09,
+        "peak_angle [deg]": 180.0,
+        "minimum_gap_time [s]": 0.02,
+        "viscosity [Pa s]": 0.04,
+        "count": 3.0,
+    }
+    assert "<th>peak_pressure [MPa]</th>" in Given()._repr_html_()
+    Given().to_csv(tmp_path / "table.csv")
+    head, row = (tmp_path / "table.csv").read_text().splitlines()
+    assert head.startswith("minimum_gap [m],radial_clearance [m]") and float(row.split(",")[3]) == 24.6e6
 
 
 def line(parameters):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
-from exudyn_ehd.film.cavitation.closures import Closure, Gumbel
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.grid import STRETCH, Arc, FilmGrid, arc_grid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
@@ -233,7 +233,7 @@ def check_film(
 
     ``open_ring``: inlet at the maximum gap.
     """
-    if isinstance(film, ClassicSOR) and not isinstance(closure, Gumbel):
+    if isinstance(film, ClassicSOR) and not closure.clips:
         raise InputError(
             f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Gümbel condition, got "
             f"cavitation={closure!r}; use cavitation=Gumbel(), or film=FiniteLength(...) for every other closure."
@@ -267,11 +267,9 @@ def no_line_with(film: FilmOption, closure: Closure, bush: object, oil: Lubrican
     """Names of a bearing's options that do not support the closure's rupture line inside the cells of the grid."""
     clips, oil_counts = closure.clips, closure.conserves_mass
     short = isinstance(film, ShortBearing) and not clips
-    kinds: tuple[type, ...] = (FiniteLength, LongBearing)
-    if not oil_counts:
-        kinds += (ShortBearing,) if clips else (ShortBearing, ImpedanceMap)
+    reduced = () if oil_counts else (ShortBearing,) if clips else (ShortBearing, ImpedanceMap)
     others = {
-        f"film={type(film).__name__}(...)": not isinstance(film, kinds),
+        f"film={type(film).__name__}(...)": not isinstance(film, (FiniteLength, LongBearing, *reduced)),
         # deflections end with the clipped pressure of a vertex: with the line between them tangents get worse
         "bush=ElasticLiner(...)": clips and isinstance(bush, ElasticLiner),
         "Lubricant.density_law": short and oil.density_law is not None,

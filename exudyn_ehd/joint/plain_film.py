@@ -23,7 +23,7 @@ _NO_CONTACT = np.zeros(6)
 
 def is_plain(parts: FilmParts, effects: Effects) -> bool:
     """Return whether `solve_plain` can solve films of these parts."""
-    s = parts.solver
+    s, arc = parts.solver, parts.bearing.arc
     return (
         effects == Effects()
         and type(s) is FilmSolver
@@ -31,7 +31,7 @@ def is_plain(parts: FilmParts, effects: Effects) -> bool:
         and s.complementary
         and not s.closure.conserves_mass
         and parts.supply is None
-        and parts.bearing.arc is None
+        and (arc is None or not any((*arc.pressures, *parts.bearing.end_pressures)))
     )
 
 
@@ -112,7 +112,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     for q in range(8):
         out[10 + q] = motion[q] * scale[q]
     pose, rate, integrals = out[10:14], out[14:], out[6:10]
-    smallest = rigid_gaps(pose, rate, squeeze, at, half_length, H, HF, H_t)
+    smallest = rigid_gaps(pose, rate, squeeze, at, half_length, mesh[2][-1] != 0.0, H, HF, H_t)
     # not where motions are not finite
     if not (smallest > 0.0 and np.isfinite(vx + vz + rate[0] + rate[1] + rate[2] + rate[3])):
         return False, 0, np.int64(0), np.int64(1), smallest, 0.0, 0.0

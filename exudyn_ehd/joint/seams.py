@@ -14,7 +14,7 @@ import numpy as np
 from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.film.reynolds.links import FluxEffect
+from exudyn_ehd.film.reynolds.links import FluxEffect, ShearFactor
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
@@ -45,19 +45,6 @@ class Wear(GapTerm, Protocol):
 
     def grown(self, film: SolvedFilm) -> np.ndarray:
         """Scaled depth (n, m) at the end of a solved film's step."""
-
-
-class ShearFactor(Protocol):
-    """Factor on the viscosity of Couette shear that depends on the gap, on the sliding speed, and maybe on gradients of
-    the pressure."""
-
-    def factor(
-        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
-    ) -> np.ndarray | None:
-        """mu/mu_0 at the vertices with its derivatives with respect to H and vx.
-
-        Returns those (2, n, m) to the gradients of the solver's unknown along theta and z, None if there are none.
-        """
 
 
 class ThermalEffect(Protocol):
@@ -109,10 +96,9 @@ class ShearProduct:
             slopes *= other
         elif others is not None:
             slopes = others * ratio_out
-        ratio_h_out *= other
-        ratio_h_out += ratio_out * other_h
-        ratio_v_out *= other
-        ratio_v_out += ratio_out * other_v
+        for out, by in ((ratio_h_out, other_h), (ratio_v_out, other_v)):
+            out *= other
+            out += ratio_out * by
         ratio_out *= other
         return slopes
 

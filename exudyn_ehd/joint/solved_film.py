@@ -185,7 +185,7 @@ class Scales(NamedTuple):
     pressure, force, shear : Pa, N, and N s/m of Couette shear
     ends : (2,) array, pressures at both ends
     cavity : the cavity's pressure
-    edges : (2,) array, minus the pressure at the leading edge of an arc and that at its trailing edge; None of a ring
+    edges : (2,) array, minus the pressure at the leading edge of an arc and that at its trailing edge; None without
     """
 
     pressure: float

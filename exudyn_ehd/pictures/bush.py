@@ -18,7 +18,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled, span
 from exudyn_ehd.pictures.records import FilmRecord, Target, label, unit_for
-from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, headed, new_figure, picture, style_ticks, styled
+from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, headed, new_figure, picture, style_ticks, styled, write
 from exudyn_ehd.solid.elements.element import Face, face_of
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError
@@ -219,6 +219,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Fi
             plots.append(axes)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
         style_ticks(figure.colorbar(bar, ax=plots, label=label, shrink=0.8, pad=0.02).ax)
+        write(figure, None)
     return figure
 
 

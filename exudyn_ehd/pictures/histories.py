@@ -1,4 +1,5 @@
-"""Pictures of a history: orbit in the clearance circle, polar diagram of the load, quantities over time or an angle."""
+"""Pictures of a history: orbit in the clearance circle, polar diagram of the load, quantities over time or an angle,
+waterfall of short-time spectra."""
 
 from __future__ import annotations
 
@@ -7,11 +8,13 @@ from enum import Enum
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from exudyn_ehd.pictures.records import QUANTITIES, HistoryRecord, Target, Unit, label, unit_for
+from exudyn_ehd.pictures.rotors import RPM
 from exudyn_ehd.pictures.style import (
     BLUE,
     COLUMN,
@@ -29,8 +32,12 @@ from exudyn_ehd.pictures.style import (
 from exudyn_ehd.status import InputError
 
 # Sizes of the pictures, and of the traces' margin, of one panel of them and of their title, inch.
-ORBIT, LOAD = (COLUMN, 1.12 * COLUMN), (COLUMN, 1.15 * COLUMN)
+ORBIT, LOAD, WATERFALL = (COLUMN, 1.12 * COLUMN), (COLUMN, 1.15 * COLUMN), (0.62 * PAGE, 0.5 * PAGE)
 MARGIN, PANEL, TITLE = 0.55, 1.35, 0.2
+# Of a waterfall: duration of one spectrum over that of the history, steps that it takes at least, steps from one
+# spectrum to the next and frequencies, over those of a spectrum; smallest amplitude shown over the largest; highest
+# frequency shown over the highest speed.
+_SPECTRUM, _LEAST, _SHIFT, _FINER, _FLOOR, _REACH = 0.05, 16, 0.125, 4, 1e-3, 1.2
 # Distances of ticks on an axis of angles, degrees.
 _TICKS = [15.0, 30.0, *(45.0 * 2.0**k for k in range(40))]
 
@@ -231,6 +238,124 @@ def plot_traces(
     return figure
 
 
+def spectra(
+    history: HistoryRecord, quantity: Enum | str = "eccentricity", *, window: float | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Amplitude spectra of a quantity over short windows (Hann) that run along the history.
+
+    Parameters
+    ----------
+    history : HistoryRecord
+        With all its steps; unequal ones are interpolated to their mean.
+    quantity : Quantity or str
+        Scalar of the history, or ``eccentricity`` for its x.
+    window : float, optional
+        Duration of one window, s; by default a twentieth of the history. Frequencies closer than 2 / window are one
+        peak.
+
+    Returns
+    -------
+    frequency : (n,) array
+        Hz.
+    time : (k,) array
+        Middle of each window, s.
+    amplitude : (n, k) array
+        In the SI unit of the quantity; a sine of amplitude A has a peak of A.
+
+    Raises
+    ------
+    InputError
+        For a quantity that `plot_traces` does not take either, and for a window below 16 steps or beyond the history.
+    """
+    # imported here: other pictures do without it
+    from scipy import signal
+
+    _require_steps("plot_waterfall", history)
+    of_place = str(getattr(quantity, "value", quantity)) == "eccentricity"
+    values = history.eccentricity[:, 0] if of_place else getattr(history, _checked(history, quantity, "plot_waterfall"))
+    duration, steps = float(np.ptp(history.time)) or 1.0, history.time.size - 1
+    count = round(_SPECTRUM * steps if window is None else window / duration * steps)
+    if not _LEAST <= count <= steps:
+        raise InputError(
+            f"plot_waterfall: window must hold at least {_LEAST} of the history's {steps} steps, which take "
+            f"{duration:.4g} s, got {count} steps{'' if window is None else f' in {window!r} s'}."
+        )
+    frequency, time, amplitude = signal.spectrogram(
+        np.interp(np.linspace(history.time[0], history.time[-1], steps + 1), history.time, values),
+        steps / duration,
+        window="hann",
+        nperseg=count,
+        noverlap=count - max(round(_SHIFT * count), 1),
+        nfft=_FINER * count,
+        detrend="linear",
+        scaling="spectrum",
+        mode="magnitude",
+    )
+    return frequency, history.time[0] + time, 2.0 * amplitude
+
+
+def plot_waterfall(
+    history: HistoryRecord,
+    quantity: Enum | str = "eccentricity",
+    *,
+    speed: np.ndarray | None = None,
+    window: float | None = None,
+    title: str = "",
+    ax: Axes | None = None,
+    path: Target = None,
+) -> Figure:
+    """Draw the spectra of a quantity over the time, or over a speed, with lines of the speed and of half of it.
+
+    Parameters
+    ----------
+    history : HistoryRecord
+        With all its steps.
+    quantity : Quantity or str
+        Scalar of the history; by default x of the journal's axis in the mid-plane.
+    speed : (n,) array, optional
+        Drawn along in place of the time, rad/s at ``history.time``: of the shaft, or ``history.motion[:, 8]``, the
+        journal's spin against the housing, whose lines are drawn over the time. It may not turn back.
+    window : float, optional
+        Duration of one spectrum, s; see `spectra`.
+    title : str
+        Of the figure, if it is a new one.
+    ax : matplotlib Axes, optional
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib Figure
+        Colours are amplitudes, down to a thousandth of the largest.
+
+    Raises
+    ------
+    InputError
+        As `spectra`, and for a speed of another shape or one that turns back.
+    """
+    frequency, time, amplitude = spectra(history, quantity, window=window)
+    spin = np.abs(history.motion[:, 8] if speed is None else np.asarray(speed, dtype=float))
+    at = np.interp(time, history.time, spin) if spin.shape == history.time.shape else np.zeros(0)
+    if at.size != time.size or (speed is not None and abs(np.sign(np.diff(at)).sum()) < time.size - 1):
+        raise InputError(
+            f"plot_waterfall: speed must have shape {history.time.shape} as history.time and rise, or fall, "
+            f"throughout, got shape {spin.shape}; leave it out for spectra over the time."
+        )
+    below = frequency <= (_REACH * at.max() / (2.0 * np.pi) or np.inf)
+    words, kind = QUANTITIES.get(str(getattr(quantity, "value", quantity)), ("x of the journal", "length"))
+    largest = float(amplitude[below].max()) or 1.0
+    unit, along = unit_for(kind, largest), unit_for("time", time) if speed is None else RPM
+    # amplitudes of a temperature without its offset
+    across, shown = along(time if speed is None else at), unit.factor * np.maximum(amplitude[below].T, _FLOOR * largest)
+    with picture(ax, WATERFALL, path, title=title) as (figure, ax):
+        colours = ax.pcolormesh(frequency[below], across, shown, norm=LogNorm(), shading="nearest", rasterized=True)
+        for order, style in ((1.0, ":"), (0.5, "--")):
+            ax.plot(order * at / (2.0 * np.pi), across, style, color="white", label=f"{order:g} x speed")
+        ax.set(xlabel="frequency [Hz]", ylabel=label("time" if speed is None else "speed", along))
+        ax.legend(loc="lower right", labelcolor="white")
+        style_ticks(figure.colorbar(colours, ax=ax, label=label(f"amplitude: {words}".replace("\n", " "), unit)).ax)
+    return figure
+
+
 def _new_panels(count: int, title: str, path: Target) -> np.ndarray:
     """Axes below each other in a new figure."""
     width = 0.62 * PAGE if count > 1 else COLUMN
@@ -249,14 +374,13 @@ def _require_steps(where: str, history: HistoryRecord) -> None:
         raise InputError(f"{where}: the history has no steps; run a solver first.")
 
 
-def _checked(history: HistoryRecord, quantity: Enum | str) -> str:
+def _checked(history: HistoryRecord, quantity: Enum | str, where: str = "plot_traces") -> str:
     name = str(getattr(quantity, "value", quantity))
     if name not in QUANTITIES or name == "time":
         known = ", ".join(sorted(set(QUANTITIES) - {"time"}))
-        raise InputError(f"plot_traces: quantities must be scalars of a history, got {quantity!r}; known are {known}.")
+        raise InputError(f"{where}: quantities must be scalars of a history, got {quantity!r}; known are {known}.")
     if not np.isfinite(getattr(history, name)).any():
         raise InputError(
-            f"plot_traces: this film has no {QUANTITIES[name][0]}, the history holds nan throughout; name other "
-            "quantities."
+            f"{where}: this film has no {QUANTITIES[name][0]}, the history holds nan throughout; name other quantities."
         )
     return name

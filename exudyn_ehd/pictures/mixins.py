@@ -10,6 +10,7 @@ from exudyn_ehd.pictures.records import FilmRecord, HistoryRecord, Target
 if TYPE_CHECKING:
     from enum import Enum
 
+    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
@@ -96,6 +97,22 @@ class HistoryPictures(Titled):
         from exudyn_ehd.pictures.histories import plot_traces
 
         return plot_traces(self._history(), quantities, **{"title": self._title(), **options})
+
+    def plot_waterfall(
+        self,
+        quantity: Enum | str = "eccentricity",
+        *,
+        speed: np.ndarray | None = None,
+        window: float | None = None,
+        ax: Axes | None = None,
+        path: Target = None,
+    ) -> Figure:
+        """Short-time spectra, of ``window`` seconds each, over the time or over a ``speed`` (n,) in rad/s."""
+        from exudyn_ehd.pictures.histories import plot_waterfall
+
+        return plot_waterfall(
+            self._history(), quantity, speed=speed, window=window, title=self._title(), ax=ax, path=path
+        )
 
     def _history(self) -> HistoryRecord:
         """Return the history to draw."""

@@ -144,6 +144,7 @@ _UNITS: dict[str, tuple[tuple[float, Unit], ...]] = {
     "temperature": ((0.0, Unit("°C", 1.0, -273.15)),),
     "stress": ((0.0, Unit("MPa", 1e-6)),),
     "ratio": ((0.0, Unit("-")),),
+    "volume": ((0.0, Unit("mm³", 1e9)),),
 }
 # Kinds of columns by their SI unit.
 KINDS = {
@@ -156,6 +157,7 @@ KINDS = {
     "W": "power",
     "m3/s": "flow",
     "K": "temperature",
+    "m3": "volume",
 }
 # Name of a quantity: what is written on an axis, in lines as long as a panel is high, and its kind.
 QUANTITIES: dict[str, tuple[str, str]] = {
@@ -184,6 +186,8 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "bush_temperature": ("bush temperature", "temperature"),
     "journal_temperature": ("journal temperature", "temperature"),
     "clearance": ("radial clearance", "length"),
+    "wear_depth": ("wear depth", "depth"),
+    "worn_volume": ("worn volume", "volume"),
 }
 
 

@@ -9,6 +9,7 @@ import pathlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import partial
 from typing import Any, cast
 
 import matplotlib
@@ -168,8 +169,21 @@ def style_ticks(ax: Axes, *, grid: bool = False) -> None:
         ax.grid(True, lw=RC["grid.linewidth"], color=RC["grid.color"])
 
 
+def _close(figure: Figure, **_: object) -> None:
+    from matplotlib import pyplot
+
+    pyplot.close(figure)
+
+
 def write(figure: Figure, path: Target) -> None:
-    """Write the figure if a path is given."""
+    """Write the figure if a path is given, and let a notebook show it once, whether its cell returns it or not.
+
+    IPython's inline backend shows what a cell returns, and behind the cell what pyplot holds: pyplot forgets a figure
+    as soon as it is shown.
+    """
+    if matplotlib.get_backend().endswith("inline"):
+        # IPython asks for it before it shows the figure; None leaves everything to its own formats
+        figure._repr_mimebundle_ = partial(_close, figure)  # type: ignore[attr-defined]
     if path is not None:
         path = pathlib.Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)

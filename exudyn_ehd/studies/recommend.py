@@ -207,7 +207,7 @@ def _require(
     low, high = require_vector("recommend: eccentricity_ratio", eccentricity_ratio, 2)
     if not 0.0 <= low <= high < 1.0:
         raise InputError(
-            f"recommend: eccentricity_ratio must be within 0 and 1, lowest first, got {eccentricity_ratio!r}."
+            f"recommend: eccentricity_ratio must be between 0 and 1, lowest first, got {eccentricity_ratio!r}."
         )
     if quantity not in SCALES:
         raise InputError(f"recommend: quantity must be one of {list(SCALES)}, got {quantity!r}.")
@@ -306,7 +306,7 @@ def _with_line(bearing: JournalBearing, in_cells: bool) -> Options | None:
     """The closure with its rupture line inside the cells or on the vertices; None where it has none or may not."""
     if math.isinf(bearing.cavitation.cavity_pressure):
         return None
-    lined: Any = dataclasses.replace(bearing.cavitation, line_in_cells=in_cells)  # type: ignore[arg-type]
+    lined: Any = dataclasses.replace(bearing.cavitation, line_in_cells=in_cells)  # type: ignore[type-var]
     try:
         dataclasses.replace(bearing, film=FiniteLength(), cavitation=lined)
     except InputError:

@@ -164,3 +164,67 @@ def test_dry_films_with_rates_that_last(line_in_cells):
             found += 1
             assert np.abs(one.wrench - other.wrench).max() <= SAME * np.abs(other.wrench).max(), motion
     assert found > 200
+
+
+def _bearing(closure, bore, **options):
+    """Bearing whose ends have the cavity's pressure, if no option says otherwise."""
+    plain = {
+        "journal_radius": RADIUS,
+        "length": LENGTH,
+        "radial_clearance": CLEARANCE,
+        "lubricant": ehd.Lubricant(viscosity=VISCOSITY),
+        "film": ehd.FiniteLength(n_theta=48, n_z=6),
+        "cavitation": closure,
+    }
+    return ehd.JournalBearing(**(plain | BORES[bore] | options))
+
+
+@pytest.mark.parametrize("bore", ["rigid", "liner"])
+@pytest.mark.parametrize("line_in_cells", [False, True])
+@pytest.mark.parametrize("kind", [ehd.SwiftStieber, ehd.ElrodAdams])
+def test_nothing_carries_oil_into_a_gap(kind, line_in_cells, bore):
+    """Films without wedge and squeeze have any set of full vertices: the tangent is that of the whole film."""
+    model = build_model(_bearing(kind(line_in_cells=line_in_cells), bore))
+    turning = np.array([0.6 * CLEARANCE, 0.1 * CLEARANCE, 0, 0, 0, 0, 0, 0, SPEED, 0])
+    flooded = model.initial_history(turning)
+    at_rest, pushed, centred = turning.copy(), turning.copy(), turning.copy()
+    at_rest[8], pushed[8:], centred[:2] = 0.0, (0.0, 0.5), 0.0
+    for still in (at_rest, pushed, centred):
+        assert model.evaluate(turning, flooded, 1e-4).status is ehd.Status.CONVERGED
+        one = model.evaluate(still, flooded, 1e-4)
+        wrench, tangent = one.wrench.copy(), one.tangent()
+        model.forget()
+        other = model.evaluate(still, flooded, 1e-4)
+        assert np.abs(wrench - other.wrench).max() <= NOTHING * RADIUS * LENGTH
+        assert np.abs(tangent - other.tangent()).max() <= 1e-9 * np.abs(tangent).max()
+
+
+def test_instants_on_a_liner():
+    """The force at the very instant of a history, when the journal has got other rates, is found in few steps."""
+    liner = {"bush": ehd.ElasticLiner(thickness=2e-3, youngs_modulus=3e9)}
+    model, rng = build_model(_bearing(ehd.SwiftStieber(line_in_cells=True), "liner", **liner)), np.random.default_rng(6)
+    for _ in range(24):
+        motion = _motion(rng, 0)
+        motion[8:] = SPEED, 0.0
+        history = model.evaluate(motion, model.initial_history(motion), 1e-4).history()
+        motion[4:8] = -500.0 * motion[:4]
+        one = model.evaluate(motion, history, 0.0)
+        assert one.status is ehd.Status.CONVERGED, motion
+        assert one.iterations < 50, motion
+        wrench = one.wrench
+        model.forget()
+        other = model.evaluate(motion, history, 0.0)
+        assert np.abs(wrench - other.wrench).max() <= 1e-11 * np.abs(wrench).max(), motion
+
+
+@pytest.mark.parametrize("law", ["constant", "roelands"])
+def test_journals_that_nearly_touch_a_soft_liner(law):
+    """A cold start finds a film that opens the gap by a hundred times its width."""
+    liner = {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e7)}
+    oil = {"lubricant": ehd.Lubricant(viscosity=0.005, **LAWS[law])}
+    model = build_model(_bearing(ehd.ElrodAdams(line_in_cells=True), "liner", **liner, **oil, end_pressures=(5e5, 5e5)))
+    for touching in (0.99, 0.999, 0.9999):
+        eps, tilt = 0.99 * CLEARANCE, touching * 0.01 * CLEARANCE * 2.0 / LENGTH
+        motion = np.array([eps, 0, -tilt, 0, 0, 0, 0, 0, 0, 0.14])
+        model.forget()
+        assert model.evaluate(motion).status is ehd.Status.CONVERGED, touching

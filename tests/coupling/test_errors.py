@@ -183,7 +183,7 @@ def test_an_integrator_that_amplifies_is_refused(solve):
     mbs, _ = system()
     growing = settings()
     growing.timeIntegration.generalizedAlpha.spectralRadius = 1.5
-    with pytest.raises(ehd.InputError, match=rf"{solve.__name__}.*spectralRadius must be within 0 and 1, got 1\.5"):
+    with pytest.raises(ehd.InputError, match=rf"{solve.__name__}.*spectralRadius must be between 0 and 1, got 1\.5"):
         solve(mbs, growing)
 
 
@@ -233,7 +233,7 @@ def test_explicit_solver_that_loses_its_film_names_itself():
 
 def test_lengths_in_millimetres():
     size = {"lubricant": ehd.Lubricant(viscosity=0.02)}
-    with pytest.raises(ehd.InputError, match=r"journal_radius must be within .* got 25.0; .* in mm, give 0.025"):
+    with pytest.raises(ehd.InputError, match=r"journal_radius must be between .* got 25.0; .* in mm, give 0.025"):
         ehd.JournalBearing(journal_radius=25.0, length=25.0, radial_clearance=0.05, **size)
     with pytest.raises(ehd.InputError, match=r"radial_clearance must be at most 0.1 of .* metres"):
         ehd.JournalBearing(journal_radius=0.025, length=0.025, radial_clearance=0.05, **size)
@@ -303,13 +303,11 @@ def test_a_film_that_heats_beyond_any_oil_ends_the_run():
 
 
 def test_a_film_without_pressure_is_told_by_its_law():
-    for law, remedy in (
-        (ehd.BarusPressure(coefficient=2e-8), "use RoelandsPressure"),
-        (ehd.RoelandsPressure(coefficient=2e-8), "with RoelandsPressure .* law.s coefficient, or name"),
-    ):
+    for law in (ehd.BarusPressure(coefficient=2e-8), ehd.RoelandsPressure(coefficient=2e-8)):
         oil = ehd.Lubricant(viscosity=0.02, pressure_law=law)
         mbs, _ = system(dataclasses.replace(BEARING, lubricant=oil), load=lambda t: -4e6)
-        with pytest.raises(ehd.FilmError, match=remedy):
+        said = rf"with {type(law).__name__} no finite .* 1 / coefficient = 50 MPa.* name an elastic liner or bush"
+        with pytest.raises(ehd.FilmError, match=said):
             ehd.SolveDynamic(mbs, settings())
 
 

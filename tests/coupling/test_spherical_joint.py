@@ -398,5 +398,5 @@ def test_forces_below_newtons_tolerance_are_told():
         with warnings.catch_warnings(record=True) as found:
             warnings.simplefilter("always")
             ehd.SolveDynamic(mbs, ehd.ConfigureSolver(scenes.settings(1e-4, 10), **options))
-        told.append([str(w.message) for w in found if "absolute tolerance lets" in str(w.message)])
+        told.append([str(w.message) for w in found if "Newton's absolute tolerance of" in str(w.message)])
     assert len(told[0]) == 1 and not told[1], told

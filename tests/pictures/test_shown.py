@@ -1,5 +1,8 @@
 """Figures that ``plt.show()`` shows where there is something to show them with."""
 
+import os
+import pickle
+import subprocess
 import sys
 import types
 
@@ -16,9 +19,9 @@ from exudyn_ehd.pictures.rotors import plot_curves
 from exudyn_ehd.studies.parameters import StudyTable
 
 
-@pytest.fixture
-def windows(monkeypatch):
-    """A backend whose windows are a list of the figures shown."""
+@pytest.fixture(params=["list_of_windows"])
+def windows(monkeypatch, request):
+    """A backend, of the name given, whose windows are a list of the figures shown."""
     shown = []
 
     class Manager(FigureManagerBase):
@@ -28,7 +31,7 @@ def windows(monkeypatch):
     class Canvas(FigureCanvasAgg):
         manager_class = Manager
 
-    backend = types.ModuleType("list_of_windows")
+    backend = types.ModuleType(request.param)
     backend.FigureCanvas, backend.FigureManager = Canvas, Manager
     monkeypatch.setitem(sys.modules, backend.__name__, backend)
     before = matplotlib.get_backend()
@@ -55,6 +58,57 @@ def test_show_shows_them_and_savefig_saves(windows, film, history, tmp_path):
     assert windows[-1] is figures[0]
     figures[0].savefig(tmp_path / "again.png")
     assert (tmp_path / "again.png").stat().st_size > 1000 and (tmp_path / "orbit.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("windows", ["windows_of_an_inline"], indirect=True)
+def test_a_notebook_shows_once_what_its_cell_returns(windows, film, history):
+    """IPython asks a returned figure for its formats, shows it, and behind the cell all figures of pyplot."""
+    others = plt.figure()
+    returned, on_axes, kept = (
+        plot_orbit(history),
+        plot_orbit(history, ax=others.add_subplot()),
+        plot_map(film, PRESSURE),
+    )
+    assert on_axes is others and len(plt.get_fignums()) == 3
+    for figure in (returned, others):
+        assert figure._repr_mimebundle_(include=None, exclude=None) is None
+    plt.show()
+    assert windows == [kept]
+    assert pickle.loads(pickle.dumps(returned)).axes[0].get_xlabel() == returned.axes[0].get_xlabel()
+
+
+NOTEBOOK = """
+from IPython.core.interactiveshell import InteractiveShell
+
+class Shell(InteractiveShell):
+    def enable_gui(self, gui=None):
+        pass
+
+shell, shown = Shell.instance(), []
+shell.display_pub.publish = lambda data, *_, **__: shown.append("image/png" in data)
+shell.displayhook.write_format_data = lambda data, md=None: shown.append("image/png" in data)
+shell.run_line_magic("matplotlib", "inline")
+shell.run_cell('''
+import numpy as np
+from matplotlib import pyplot as plt
+from exudyn_ehd.pictures.rotors import plot_curves
+draw = lambda ax=None: plot_curves([("a", np.arange(3.0), np.arange(3.0))], ("speed", "load"), {}, ax=ax)
+''')
+counts = []
+for cell in ("draw()", "figure = draw()", "draw(); draw()", "display(draw())", "figure, ax = plt.subplots(); draw(ax)"):
+    shown.clear()
+    assert shell.run_cell(cell).success
+    counts.append(sum(shown))
+assert counts == [1, 1, 2, 1, 1], counts
+"""
+
+
+@pytest.mark.slow
+def test_ipython_shows_every_picture_once():
+    pytest.importorskip("IPython")
+    pytest.importorskip("matplotlib_inline")
+    environment = os.environ | {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+    subprocess.run([sys.executable, "-c", NOTEBOOK], check=True, env=environment)
 
 
 def test_pyplot_keeps_none_that_it_can_not_show(history):

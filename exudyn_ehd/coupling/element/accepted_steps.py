@@ -213,9 +213,7 @@ class AcceptedSteps:
         # nothing has moved either run starts where the other ended
         goes_on = start > self.record.last_time and (place != before or self.asked[1] == before)
         resumed = self._resumed is not None and start == self._resumed[0]
-        solver = self.solver
-        if solvers != self.solvers:
-            solver = solver_state.running_solver(self.solvers, solvers)
+        solver = self.solver if solvers == self.solvers else solver_state.running_solver(self.solvers, solvers)
         if self._resumed is None and place == before and not goes_on:
             memory, self.begin, self.start = self._first_memory, None, start
         else:
@@ -229,7 +227,8 @@ class AcceptedSteps:
         self.film.outer.begin(self.solver)
         self.tangent = self.tolerance = None
         self.memory = self._first_memory = memory
-        self._first, self.began = place, start
+        self._first, self.began, self.asked = place, start, (start, place)
+        film.failures.refused = film.failures.refused if self.in_own_run else {}
         if not resumed and not goes_on:
             self.record.clear()
             if self.recorder is not None:
@@ -313,7 +312,7 @@ class AcceptedSteps:
             raise failures.chatter(start, trial, step=step, miss=self._chatter.error)
 
     def _warn_of_film(self, start: float, trial: Trial, row: np.ndarray) -> None:
-        """Warn, once per run, of a film that is too thin for smooth surfaces or presses too hard for any."""
+        """Warn, once per run, of a film that is too thin for smooth surfaces, or presses too hard for oil or steel."""
         failures = self.film.failures
         self._grid.take(start, row[PEAK_PRESSURE], getattr(trial.found, "film", None))
         if (gap := row[MINIMUM_GAP]) < self._thin:
@@ -365,17 +364,20 @@ class AcceptedSteps:
         self._resumed = (time, memory, begin)
 
     def tell(self, mbs: exu.MainSystem) -> None:
-        """Log the line of the run that has ended, once; bring its record to its file, if it has one."""
+        """Log the line of the run that has ended, once; bring its record to its file, if it has one.
+
+        Explicit solvers, and a control of errors, repeat steps as they go: the line names none.
+        """
         self.record.write()
         if self._told:
             return
         self._told = True
-        name, bearing, history = self.film.failures.name, self.film.model.bearing, self.history(mbs)
-        self._grid.tell(name)
-        poor_films.warn_of_tiny_forces(name, self.solver, self.tolerance, bearing, history)
+        failures, bearing, history = self.film.failures, self.film.model.bearing, self.history(mbs)
+        self._grid.tell(failures.name)
+        poor_films.warn_of_tiny_forces(failures.name, self.solver, self.tolerance, bearing, history)
         if summary.is_on() and history.time.size > 1:
-            since = self.began if solver_state.is_implicit(self.solver) and not self.chosen else None
-            summary.LOGGER.info("%s", summary.line(name, bearing, history, since=since))
+            why = () if self.chosen or solver_state.is_explicit(self.solver) else failures.refused.values()
+            summary.LOGGER.info("%s", summary.line(failures.name, bearing, history, why))
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the end of the run or the current state if that is later than the last step.

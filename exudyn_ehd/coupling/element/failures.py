@@ -1,4 +1,12 @@
-"""Messages for states without a valid film: place, cause and remedy."""
+"""Messages for states without a valid film, or close to one: place, cause and remedy.
+
+A pressure law carries a film of rigid surfaces up to an end of q, the integral of dp / r(p) with the viscosity ratio r:
+1 / alpha for Barus' law, 5 % more for Roelands' with 2e-8 1/Pa at 0.02 Pa s. With the peak at the share s of that end,
+a film at a given speed has reached the share 1 - (1 - s)^0.65 of the largest load that it can carry: within 0.03 for
+these two laws (within 0.17 for Roelands' with 1e-8 1/Pa at 0.2 Pa s, which is nearer to the end than that says), from
+s = 0.5 on, L/D of 0.25 to 1, and eccentricity ratios of 0.5 to 0.97 at the end. A mean pressure alone says less: at the
+end it is 0.2 to 0.9 of 1 / alpha.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +19,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
+from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.joint.balance.limits import (
     DEEPEST,
     HIGHEST_MEAN,
@@ -29,6 +38,10 @@ from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.thrust import ThrustEvaluation, no_film
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 
+# Share of the end of a pressure law from which on a film is told to be near it, at three quarters of its largest load,
+# and the exponent above. A smaller share also tells of films that pressure laws are made for: half of the load is
+# reached at a peak pressure of 1 / alpha, 50 MPa.
+NEAR_END, EXPONENT = 0.9, 0.65
 # Mean over peak pressure below which no film is.
 SHARE = 0.01
 # Tilting dominates where the eccentricity ratio at an end exceeds both: this many times that of the mid-plane (from 2
@@ -49,16 +62,34 @@ class Failures:
     ----------
     largest_force, largest_pressure : float
         Beyond which an accepted step ends the run, N and Pa; infinite and `HIGHEST_PEAK` unless told otherwise.
+    near_end : float
+        Peak pressure close to the end of the oil's pressure law, Pa; infinite where surfaces deflect, or without a law.
     axes : int
         In how many directions the film damps.
+    refused : dict
+        Reason of every step of the run that was repeated with a smaller size, by its start and its end, s; one for all
+        joints of a run of this package.
     """
 
     axes = 2
+    refused: dict[tuple[float, float], str]
 
     def __init__(self, name: str, bearing: JournalBearing) -> None:
         self.name, self.bearing = name, bearing
         self.bore, self._per_force = BoreGap(bearing), mean_pressure(bearing, 1.0)
         self.largest_force, self.largest_pressure = math.inf, HIGHEST_PEAK
+        # bearings of own models need not name their oil
+        law = self._law = transform_of(bearing.lubricant) if getattr(bearing, "yielding", bearing) is None else None
+        self.near_end = math.inf if law is None else float(np.interp(NEAR_END * law.q[-1], law.q, law.p))
+
+    def blame(self, start: float, time: float, reason: str) -> None:
+        """Note that this film refuses a step; not where another has, whose nan comes back in all films."""
+        self.refused.setdefault((start, time), f"in '{self.name}' {reason}")
+
+    def ask(self, start: float, time: float, last: float) -> None:
+        """Note that a solver asks for a step; one that ends before the ``last`` one, s, repeats that without a film."""
+        if time < last:
+            self.refused.setdefault((start, last), "Newton's method did not converge")
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
         """The film can't be evaluated, and the solver can't repeat the step."""
@@ -96,10 +127,10 @@ class Failures:
         largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
         return self._at(
             time,
-            f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: its last "
-            f"velocities miss its last displacement by {miss:.3g} m; {self.place(trial.motion)}with the journal's "
-            f"mass m and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C with "
-            "forward Euler and 2.8 m / C with RK44, tilting motions alike: use smaller steps, DOPRI5 with its "
+            f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: in the last "
+            f"step its displacement and its velocities disagree by {miss:.3g} m; {self.place(trial.motion)}with the "
+            f"journal's mass m and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C "
+            "with forward Euler and 2.8 m / C with RK44, tilting motions alike: use smaller steps, DOPRI5 with its "
             "automatic steps, or an implicit solver.",
         )
 
@@ -158,12 +189,11 @@ class Failures:
         """A run that rings with forces many times as large as their ``mean``, N, over three steps."""
         return self._at(
             time,
-            f"the film's force is out of all proportion to the inertia and loads at hand: up to {force:.4g} N, thrown "
-            f"from side to side from step to step, and {mean:.4g} N there in the mean of three steps, which is what "
-            f"moves the bodies and carries their loads; {self.place(trial.motion)}forces and "
-            "pressures of the last steps are the time integration's: use ehd.ConfigureSolver(simulationSettings), or a "
-            "spectral radius of 0.6 or less, ehd.SolveDynamic in place of mbs.SolveDynamic, and more steps until none "
-            "is halved.",
+            f"the film's force is out of all proportion to the inertia and loads at hand: it alternates from step to "
+            f"step with up to {force:.4g} N, while its mean over three steps, which moves the bodies and carries their "
+            f"loads, is {mean:.4g} N; {self.place(trial.motion)}the time integration causes forces and pressures of "
+            "the last steps: use ehd.ConfigureSolver(simulationSettings), or a spectral radius of 0.6 or less, "
+            "ehd.SolveDynamic in place of mbs.SolveDynamic, and more steps until none is halved.",
         )
 
     def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial, peak: float) -> FilmError | None:
@@ -225,16 +255,27 @@ class Failures:
         )
 
     def overload(self, row: np.ndarray) -> float:
-        """Pressures of an accepted step over what a material bears."""
+        """Pressures of an accepted step over what a material bears, or over the near end of a pressure law."""
         # films without a peak have nan
-        return max(self._mean(row[FORCE]) / HIGHEST_MEAN, float(row[PEAK_PRESSURE]) / HIGHEST_PEAK)
+        return max(self._mean(row[FORCE]) / HIGHEST_MEAN, float(row[PEAK_PRESSURE]) / min(HIGHEST_PEAK, self.near_end))
 
     def overloaded(self, time: float, row: np.ndarray, motion: np.ndarray) -> str:
-        """Return the message for an accepted step whose pressure neither oil nor steel bears."""
-        force, mean = float(np.linalg.norm(row[FORCE])), self._mean(row[FORCE])
+        """Return the message for an accepted step near the end of a pressure law, or beyond what oil and steel bear."""
+        force, mean, peak = float(np.linalg.norm(row[FORCE])), self._mean(row[FORCE]), float(row[PEAK_PRESSURE])
+        if self._law is not None and self.near_end < peak <= HIGHEST_PEAK and mean <= HIGHEST_MEAN:
+            left = 1.0 - float(np.interp(peak, self._law.p, self._law.q)) / self._law.q[-1]
+            return (
+                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: the film is close to the largest load that it can "
+                f"carry between rigid surfaces with {self.bearing.lubricant.pressure_law}: the peak pressure is "
+                f"{1e-6 * peak:.3g} MPa, the mean pressure (force / diameter / length) {1e-6 * mean:.3g} MPa of about "
+                f"{1e-6 * mean / (1.0 - left**EXPONENT):.3g} MPa, beyond which no "
+                "finite pressure carries it and the run ends; give the bearing a bush that deflects "
+                "(bush=ModalBush(...)), more length or a larger radius, or check load, viscosity and the law's "
+                "coefficient."
+            )
         return (
             f"LubricatedJoint '{self.name}' at t = {time:.9g} s: the accepted step has a film that neither oil nor "
-            f"steel bears: peak pressure {1e-6 * row[PEAK_PRESSURE]:.4g} MPa, force {force:.4g} N, {1e-6 * mean:.4g} "
+            f"steel bears: peak pressure {1e-6 * peak:.4g} MPa, force {force:.4g} N, {1e-6 * mean:.4g} "
             f"MPa on the projected area; {self.place(motion)}if loads and inertia forces of the model are much "
             "smaller, the time integration has thrown the film: use ehd.SolveDynamic, "
             "ConfigureSolver(simulationSettings), more steps, or a StepControl; if they are not, check masses, loads, "

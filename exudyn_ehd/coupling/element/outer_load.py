@@ -9,8 +9,10 @@ follows from an accepted state alone, with the accelerations that the equations 
 between film and inertia from step to step cancels in L; a load that jumps does not. The momentum that a step has
 missed is W^-1 J (q'1 - q'0 - integral of q''). It is kept with the trapezoid; the record knows what parabolas add,
 also behind a restart. Constraints and terms of the second order in
-the rates are left out of W and of J q'': they change smoothly. Only rigid bodies and mass points have a
-mass here; with any other body at the joint L = -F, the load on a film that outweighs the inertia.
+the rates are left out of W and of J q'': they change smoothly. Only rigid bodies and mass points in one or two films
+have a mass here; with any other body at the joint L = -F, the load on a film that outweighs the inertia. A crankshaft
+in more films is held by the others, whose damping a film alone does not know: with its whole mass on each of them,
+errors of 0.2 % in seven films were told as 20 to 50 %.
 
 Loads of a system that are functions of time, and their impulse within a step.
 
@@ -242,18 +244,18 @@ class OuterLoad:
 
     def _mass(self, mbs: exu.MainSystem, J: np.ndarray) -> np.ndarray:
         """W^-1 of all blocks, zero where a body's mass is not known; sets what loads (20,) have in common."""
-        W, first, self.constant = np.zeros((6, 6)), 0, np.zeros(LOADS)
-        mass = np.zeros((len(self.rows), len(self.rows)))
-        for side in self.sides:
-            last = first + side.size
+        W, size, count = np.zeros((6, 6)), self.sides[0].size, mbs.systemData.NumberOfObjects()
+        mass, self.constant = np.zeros((len(self.rows), len(self.rows))), np.zeros(LOADS)
+        for side, part in zip(self.sides, (slice(size), slice(size, None)), strict=True):
             if side.size:
-                body = body_of_node(mbs, side.nodes[0]) if len(side.nodes) == 1 else None
+                node, held = side.nodes[0], [mbs.GetObject(i).get("nodeNumbers", ()) for i in range(count)]
+                films = sum(int(node) in map(int, nodes) for nodes in held)
+                body = body_of_node(mbs, node) if len(side.nodes) == 1 and films < 3 else None
                 M = None if body is None else object_mass(mbs, body)
                 if not isinstance(M, np.ndarray) or M.shape != (side.size, side.size):
                     return mass
                 # Euler parameters have no inertia along themselves, where no force of the joint points either
-                W += J[first:last].T @ np.linalg.pinv(M, rcond=1e-9, hermitian=True) @ J[first:last]
-            first = last
+                W += J[part].T @ np.linalg.pinv(M, rcond=1e-9, hermitian=True) @ J[part]
         place, column = 0, MASS
         for rows in self.blocks:
             end, upper = place + len(rows), np.triu_indices(len(rows))

@@ -112,14 +112,17 @@ class FilmElement:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
         steps, trial = self.steps, self.arrive(mbs, t, q, q_t)
         if steps.solver is None or not steps.is_idle:
+            self.failures.ask(steps.start, t, steps.asked[0])
             steps.asked = t, q
         if self.crew is not None:
             self.crew.evaluate(mbs, t, self, trial)
         if trial is not self.last:
             self.evaluate(trial)
         if self._refuses(t, trial):
+            self.failures.blame(steps.start, t, trial.status.advice.partition(";")[0])
             return np.full(len(q), np.nan)
         if steps.control is not None and t > steps.start and steps.control.rejects(trial, steps.solver):
+            self.failures.blame(steps.start, t, "the gap changed by more than StepControl.largest_gap_change")
             return np.full(len(q), np.nan)
         force = self._generalized_force(trial)
         if trial.faces is not None:

@@ -23,7 +23,7 @@ from exudyn_ehd.tables import data_frame, write_csv
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-FORMAT = "exudyn_ehd JointHistory 5"
+FORMAT = "exudyn_ehd JointHistory 6"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
@@ -76,6 +76,8 @@ class Quantity(enum.Enum):
     THRUST_TORQUE = "thrust_torque"
     THRUST_POWER_LOSS = "thrust_power_loss"
     THRUST_CONTACT_LOAD = "thrust_contact_load"
+    WEAR_DEPTH = "wear_depth"
+    WORN_VOLUME = "worn_volume"
 
 
 # Scalar quantities of the film: those behind motion, eccentricities and loads.
@@ -155,7 +157,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         Torque of the friction of touching surfaces on the journal about its own axis. Sign as
         ``friction_torque``, of which it is a part; nan with an `ImpedanceMap`.
     supply_flow : (n,) [m3/s]
-        Oil that comes from all supply areas together. Positive into the film; nan without ``supply``.
+        Oil that comes from all supply areas together, or enters an arc at its edges. Positive into the film; nan
+        without ``supply`` and ``arc``.
     film_temperature : (n,) [K]
         Mean temperature of the film over its area. Absolute; nan without ``thermal``.
     peak_temperature : (n,) [K]
@@ -197,6 +200,10 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         ``power_loss``.
     thrust_contact_load : (n,) [N]
         Sum of the loads that the end faces carry by contact. From 0, a part of ``thrust_force``.
+    wear_depth : (n,) [m]
+        Largest depth worn off the bore since the start. From 0; nan without ``wear``.
+    worn_volume : (n,) [m3]
+        Volume worn off the bore since the start. As ``wear_depth``.
     step_error : (n,) [-]
         Estimated error of the gap that the time steps have made, over the minimum film thickness of the step. From 0;
         of implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -240,6 +247,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     thrust_peak_pressure: np.ndarray
     thrust_torque: np.ndarray
     thrust_contact_load: np.ndarray
+    wear_depth: np.ndarray
+    worn_volume: np.ndarray
     step_count: np.ndarray
     journal_radius: float
 
@@ -370,9 +379,9 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         """
         if self.is_thinned:
             raise InputError(
-                f"JointHistory.revolutions: the record keeps {self.time.size} of {np.ptp(self.step_count) + 1} states, "
-                "the worst of spans that are no revolutions, of which neither extremes nor means of a revolution "
-                "follow; record all steps, with File(...) where memory is short."
+                f"JointHistory.revolutions: the record is thinned and keeps {self.time.size} of "
+                f"{np.ptp(self.step_count) + 1} states, which do not give extremes and means of a revolution; "
+                "record all steps, with File(...) where memory is short."
             )
         return revolutions({name: getattr(self, name) for name in COLUMNS}, period)
 

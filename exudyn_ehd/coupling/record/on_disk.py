@@ -26,7 +26,7 @@ from exudyn_ehd.status import InputError, RunError, require_type
 from exudyn_ehd.storage import require_path
 
 HEAD = 512
-FORMAT = "exudyn_ehd rows 4"
+FORMAT = "exudyn_ehd rows 5"
 # Numbers in a row, and bytes.
 WIDE = WIDTH + 2
 BYTES = 8 * WIDE

@@ -15,14 +15,14 @@ from exudyn_ehd.tables import Table
 Columns: TypeAlias = Mapping[str, np.ndarray]
 """The columns of a `JointHistory` by name."""
 TURN = 2.0 * np.pi
-_UNITS = {"start": "s", "end": "s"}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class Revolutions(Table):
-    """Table of a history, a row per revolution: minimum film thickness, peak pressure, losses; ``print`` shows it.
+    """Table of a history, a row per revolution: minimum film thickness, peak pressure, losses.
 
-    SI units; nan where the film does not provide a quantity.
+    ``print`` shows it in um, MPa, W and l/min; arrays, `to_csv` and `to_dataframe` have SI units. A quantity that the
+    film does not provide is nan.
 
     Attributes
     ----------
@@ -87,9 +87,6 @@ class Revolutions(Table):
 
     def __repr__(self) -> str:
         return f"<Revolutions: {len(self)}, print them for a table>"
-
-    def _units(self) -> Mapping[str, str]:
-        return _UNITS
 
 
 def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:

@@ -7,14 +7,18 @@ the lines go to the standard error stream.
 from __future__ import annotations
 
 import logging
+import math
+from collections import Counter
+from collections.abc import Iterable
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.joint.audit.findings import LIMITS
-from exudyn_ehd.joint.audit.samples import time_mean
+from exudyn_ehd.joint.audit.samples import RING_COMPLIANCE, adiabatic_rise, time_mean
 from exudyn_ehd.joint.audit.switches import (
+    STEEL,
     TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_ROUGHNESS,
     TYPICAL_SHEAR_ONSET,
@@ -23,10 +27,6 @@ from exudyn_ehd.joint.audit.switches import (
 from exudyn_ehd.joint.step_error import enough_steps
 
 LOGGER = logging.getLogger("exudyn_ehd")
-# Young's modulus of steel, Pa: a rigid bore is taken for a ring of it about half a radius thick.
-STEEL = 2.1e11
-# Share of the largest step below which a step was halved.
-HALVED = 0.75
 
 
 def is_on() -> bool:
@@ -39,7 +39,7 @@ def is_on() -> bool:
     return LOGGER.isEnabledFor(logging.INFO)
 
 
-def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: float | None) -> str:
+def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Iterable[str] = ()) -> str:
     """The line of a joint whose run has ended.
 
     Parameters
@@ -49,8 +49,8 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: fl
     bearing : JournalBearing
     history : JointHistory
         With one step or more.
-    since : float, optional
-        Start of the run, s, if it has steps in time that differ in size only where they were halved.
+    reasons : iterable of str
+        Why steps were halved, one for each of them; those of all joints of the run.
     """
     h, time = history, history.time
     text = f"LubricatedJoint '{name}', {h.step_count[-1]} steps to t = {time[-1]:.6g} s"
@@ -62,9 +62,9 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: fl
         if np.any(np.isfinite(values)):
             k = int(worst(values))
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
-    # a thinned record does not know the size of every step
-    halved = 0 if since is None or h.is_thinned else _halved(time[time >= since])
-    text += f", {halved} halved steps" if halved else ""
+    counts = Counter(reasons)
+    why = "; ".join(f"{count} x {reason}" for reason, count in counts.most_common())
+    text += f", halved steps: {counts.total()} ({why})" if why else ""
     error = float(np.nanmax(h.step_error, initial=0.0))
     if error > LIMITS["time step"].value:
         k = int(np.nanargmax(h.step_error))
@@ -76,12 +76,6 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, since: fl
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
 
 
-def _halved(time: np.ndarray) -> int:
-    """Steps far smaller than the largest; the last one may end anywhere."""
-    steps = np.diff(time)[:-1]
-    return int(np.sum(steps < HALVED * steps.max())) if steps.size else 0
-
-
 def spins(bearing: object, history: JointHistory) -> np.ndarray:
     """Size (n,) of the relative spin, rad/s; a ball's rows have its angular velocity in three parts."""
     parts = slice(8, 9) if isinstance(bearing, JournalBearing) else slice(6, 9)
@@ -89,24 +83,28 @@ def spins(bearing: object, history: JointHistory) -> np.ndarray:
 
 
 def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
-    """Effects that the record alone shows to matter, and that the bearing leaves out."""
+    """Effects that the record alone shows to matter and that the bearing leaves out, each with its size."""
     b, h, spin = bearing, history, spins(bearing, history)
     thinnest, highest = float(np.nanmin(h.minimum_gap)), float(np.nanmax(h.peak_pressure, initial=0.0))
     speed = float(np.max(spin)) * b.journal_radius
-    couette = 0.5 * time_mean(h.time, spin) * b.journal_radius * b.radial_clearance * b.length
-    flow = float(np.fmax(time_mean(h.time, h.leakage), couette))
-    heat = b.lubricant.density * b.lubricant.specific_heat * flow
-    rise = time_mean(h.time, h.power_loss) / heat if heat > 0.0 else 0.0
-    rough = not (b.asperity is None and b.contact is None and b.roughness is None)
+    means = (np.array(time_mean(h.time, x)) for x in (h.power_loss, h.leakage, spin * b.journal_radius))
+    rise = float(adiabatic_rise(b, *means))
+    deflection = RING_COMPLIANCE * b.journal_radius * highest / STEEL["youngs_modulus"]
+    thickening = TYPICAL_PRESSURE_COEFFICIENT * highest
+    reynolds = b.lubricant.density * speed * b.radial_clearance / b.lubricant.viscosity
+    # a gap that has closed has no shear rate
+    rate = speed / thinnest if thinnest > 0.0 else math.inf
     found = {
-        "elasticity": b.bush is None and highest * b.journal_radius / STEEL > LIMITS["elasticity"].value * thinnest,
-        "piezoviscosity": b.lubricant.pressure_law is None
-        and TYPICAL_PRESSURE_COEFFICIENT * highest > LIMITS["piezoviscosity"].value,
-        "heating": b.thermal is None and TYPICAL_TEMPERATURE_COEFFICIENT * rise > LIMITS["heating"].value,
-        "shear thinning": b.lubricant.shear_law is None
-        and speed > LIMITS["shear thinning"].value * TYPICAL_SHEAR_ONSET * thinnest,
-        "turbulence": b.turbulence is None
-        and speed * b.radial_clearance > LIMITS["turbulence"].value * b.lubricant.viscosity / b.lubricant.density,
-        "roughness": not rough and thinnest < LIMITS["roughness"].value * TYPICAL_ROUGHNESS,
+        f"elasticity: {1e6 * deflection:.3g} um of a steel ring": b.bush is None
+        and deflection > LIMITS["elasticity"].value * thinnest,
+        f"piezoviscosity: viscosity x {math.exp(min(thickening, 99.0)):.3g}": b.lubricant.pressure_law is None
+        and thickening > LIMITS["piezoviscosity"].value,
+        f"heating: {rise:+.3g} K": b.thermal is None
+        and TYPICAL_TEMPERATURE_COEFFICIENT * rise > LIMITS["heating"].value,
+        f"shear thinning: {rate:.3g} 1/s": b.lubricant.shear_law is None
+        and rate > LIMITS["shear thinning"].value * TYPICAL_SHEAR_ONSET,
+        f"turbulence: Re = {reynolds:.3g}": b.turbulence is None and reynolds > LIMITS["turbulence"].value,
+        f"roughness: film of {1e6 * thinnest:.3g} um": b.asperity is b.contact is b.roughness is None
+        and thinnest < LIMITS["roughness"].value * TYPICAL_ROUGHNESS,
     }
-    return [name for name, matters in found.items() if matters]
+    return [text for text, matters in found.items() if matters]

@@ -20,7 +20,7 @@ from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
 
-_FORMAT = "exudyn_ehd SystemState 5"
+_FORMAT = "exudyn_ehd SystemState 6"
 Part = TypeVar("Part", History, StepStart)
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 

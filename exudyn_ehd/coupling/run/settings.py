@@ -31,7 +31,7 @@ def require_time(where: str, settings: exu.SimulationSettings) -> None:
     radius = time.generalizedAlpha.spectralRadius
     if not radius <= 1.0:
         raise InputError(
-            f"{where}.simulationSettings.timeIntegration.generalizedAlpha.spectralRadius must be within 0 and 1, got "
+            f"{where}.simulationSettings.timeIntegration.generalizedAlpha.spectralRadius must be between 0 and 1, got "
             f"{radius:g}; beyond 1 vibrations grow in every step, ConfigureSolver sets {RADIUS:g}."
         )
 

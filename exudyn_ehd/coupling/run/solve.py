@@ -279,8 +279,9 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
 @contextmanager
 def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
     """Turn Exudyn's errors into this package's; errors of other user functions pass."""
+    refused: dict[tuple[float, float], str] = {}
     for joint in joints_of(mbs):
-        joint.element.steps.in_own_run = True
+        joint.element.steps.in_own_run, joint.element.failures.refused = True, refused
     try:
         yield
         for joint in joints_of(mbs):

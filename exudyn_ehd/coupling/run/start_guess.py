@@ -212,7 +212,10 @@ def refuse(films: Sequence[FilmElement], own: _UserFunction, mbs: exu.MainSystem
     """
     error, size = own(mbs, t)
     solver = mbs.sys.get("dynamicSolver")
-    if solver is None or all(film.has_result() for film in films) or not solver_state.can_reject_step(solver):
+    failed = [film for film in films if not film.has_result()]
+    if solver is None or not failed or not solver_state.can_reject_step(solver):
         return [error, size]
+    for film in failed:
+        film.failures.blame(film.steps.start, t, "the pressure exceeded what oil and steel bear")
     half = 0.5 * solver.it.currentStepSize
     return [REFUSED, half if size < 0.0 else min(size, half)]

@@ -180,7 +180,7 @@ def warn(name: str, time: float, turn: float, radius: float) -> None:
     """Warn that a body at the joint ``name`` turns too far in a step."""
     fate = f"loses some {100.0 * lost_share(radius) * turn**2:.2g} % of its angular momentum in the first turn"
     if turn > GROWING * (1.0 - radius):
-        fate += ", and its elements vibrate more and more, up to nonsense"
+        fate += ", and the vibrations of its elements grow until results are useless"
     wanted, usual = (math.ceil(2.0 * math.pi / largest_turn(each)) for each in (radius, USUAL_RADIUS))
     warnings.warn(
         f"LubricatedJoint '{name}': in the step to t = {time:.9g} s the finite elements that it holds turn by "

@@ -11,7 +11,7 @@ Films thinner than the surfaces are rough, where the bearing says nothing about 
 
 Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.resolution`), at the highest pressure.
 
-Films that carry so little that Newton's absolute tolerance lets them be anything.
+Films that carry so little that Newton's absolute tolerance is a share of it.
 """
 
 from __future__ import annotations
@@ -124,8 +124,8 @@ def warn_of_tiny_forces(
     unit = reference_force(float(spins(bearing, history).max()))
     if newton.residualMode == 0 and ROUNDING * unit < force < left / LOOSE:
         warnings.warn(
-            f"LubricatedJoint '{name}': its film carries {force:.2g} N in the mean, of which Newton's absolute "
-            f"tolerance lets {left:.2g} N be anything: ConfigureSolver(simulationSettings, absoluteTolerance="
-            f"{CLOSE * force:.0e}).",
+            f"LubricatedJoint '{name}': Newton's absolute tolerance of {left:.2g} N is {100.0 * left / force:.2g} % of "
+            f"the film's mean load of {force:.2g} N, so that its forces may be off by as much; use "
+            f"ConfigureSolver(simulationSettings, absoluteTolerance={CLOSE * force:.0e}).",
             stacklevel=2,
         )

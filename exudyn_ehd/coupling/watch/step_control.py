@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
@@ -70,14 +69,14 @@ class StepControl:
         require_number("StepControl.largest_gap_change", self.largest_gap_change, at_least=0.01)
         if self.largest_gap_change > 1.0:
             raise InputError(
-                f"StepControl.largest_gap_change must be within 0.01 and 1, got {self.largest_gap_change!r}; leave the "
-                "control out with stepControl=None."
+                f"StepControl.largest_gap_change must be between 0.01 and 1, got {self.largest_gap_change!r}; leave "
+                "the control out with stepControl=None."
             )
         if self.error is not None:
             require_number("StepControl.error", self.error, at_least=1e-4, at_most=0.5)
             if self.largest_gap_change != LARGEST_GAP_CHANGE:
                 raise InputError(
-                    "StepControl: error is of a run, largest_gap_change of a joint; give one StepControl to "
+                    "StepControl: error is for a whole run, largest_gap_change for one joint; give one StepControl to "
                     "SolveDynamic and another to CreateLubricatedJoint."
                 )
 
@@ -87,8 +86,8 @@ def require_of_joint(where: str, control: object) -> None:
     require_type(where, control, StepControl, type(None))
     if isinstance(control, StepControl) and control.error is not None:
         raise InputError(
-            f"{where}: StepControl.error is of a run; give it to ehd.SolveDynamic(mbs, simulationSettings, "
-            "stepControl=...) or SolveDynamicSparse (mbs.SolveDynamic has no control of errors)."
+            f"{where}: StepControl.error sets the steps of a whole run; give it to ehd.SolveDynamic(mbs, "
+            "simulationSettings, stepControl=...) or SolveDynamicSparse (mbs.SolveDynamic has no control of errors)."
         )
 
 
@@ -115,7 +114,6 @@ class GapWatch:
             least = SMALLEST_GAP_SHARE * faces.clearance
             self.range_of_faces = least if faces.contact is None else faces.contact.onset
         self.gap = self.film = self.face = np.nan
-        self.rejections = 0
 
     def start(self, trial: Trial, film: float | None) -> None:
         """Remember the gaps at the start of a step; ``film`` is that of a film in a worn or soft bore."""
@@ -131,9 +129,4 @@ class GapWatch:
         if trial.faces is not None:
             change = abs(trial.faces.minimum_gap - self.face)
             too_far = too_far or change > self.share * max(self.face, self.range_of_faces)
-        if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
-            return False
-        if not solver_state.can_reject_step(solver):
-            return False
-        self.rejections += 1
-        return True
+        return bool(too_far and solver_state.is_implicit(solver) and solver_state.can_reject_step(solver))

@@ -14,7 +14,7 @@ here are scaled (see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -34,27 +34,36 @@ VACUUM = -1.1e5
 Placed = TypeVar("Placed", bound="Closure")
 
 
+@runtime_checkable
 class Closure(Protocol):
-    """Properties of a cavitation model that a film solver needs; its films are found by `solve_sets`."""
+    """Properties of a cavitation model that a film solver needs; its films are found by `solve_sets`.
 
-    @property
-    def cavity_pressure(self) -> float: ...
+    Derive a frozen dataclass from it, and set what differs.
 
-    @property
-    def cavity_shear(self) -> float: ...
+    Attributes
+    ----------
+    cavity_pressure : float
+        Gauge pressure at which the film ruptures and that its cavities have, Pa; -inf: it does not rupture.
+    cavity_shear : float
+        Share of the full film's Couette shear that the ruptured part transmits.
+    conserves_mass : bool
+        True: cavities hold oil, the film fraction. It decides before ``clips``.
+    clips : bool
+        True: a linear film of which pressures below the cavity's are cut off. False: pressures at least the cavity's,
+        no oil from cavities, and one of both at every vertex (complementarity).
+    line_in_cells : bool or None
+        Whether the rupture line lies inside the cells of the grid; None: where the bearing's other options allow it.
+    """
 
-    @property
-    def conserves_mass(self) -> bool: ...
-
-    @property
-    def clips(self) -> bool: ...
-
-    @property
-    def line_in_cells(self) -> bool | None: ...
+    cavity_pressure: float
+    cavity_shear: float = 1.0
+    conserves_mass: bool = False
+    clips: bool = False
+    line_in_cells: bool | None = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class FullSommerfeld:
+class FullSommerfeld(Closure):
     """No cavitation: the film carries tension.
 
     For comparison with closed forms and for fully flooded, pressurised films.
@@ -69,14 +78,10 @@ class FullSommerfeld:
     """
 
     cavity_pressure = -np.inf
-    cavity_shear = 1.0
-    conserves_mass = False
-    clips = False
-    line_in_cells = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gumbel:
+class Gumbel(Closure):
     """Half-Sommerfeld (Gümbel) cavitation: solve the linear film, then cut off pressures below the cavity pressure.
 
     Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It
@@ -107,7 +112,6 @@ class Gumbel:
     cavity_shear: float = 1.0
     line_in_cells: bool = False
 
-    conserves_mass = False
     clips = True
 
     def __post_init__(self) -> None:
@@ -115,7 +119,7 @@ class Gumbel:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SwiftStieber:
+class SwiftStieber(Closure):
     """Default cavitation (Swift-Stieber or Reynolds): pressure and its gradient vanish at the rupture line.
 
     The standard closure for steadily loaded bearings, and cheaper than `Gumbel` here because only the unbroken film is
@@ -153,9 +157,6 @@ class SwiftStieber:
     cavity_pressure: float = 0.0
     cavity_shear: float = 1.0
     line_in_cells: bool | None = None
-
-    conserves_mass = False
-    clips = False
 
     def __post_init__(self) -> None:
         _check_closure(self)

@@ -20,12 +20,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from exudyn_ehd.film.cavitation.closures import check_cavity_pressure
+from exudyn_ehd.film.cavitation.closures import Closure, check_cavity_pressure
 from exudyn_ehd.status import require_bool
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElrodAdams:
+class ElrodAdams(Closure):
     """Cavitation that conserves the oil: rupture and reformation, with the oil in the cavity remembered in time.
 
     For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a
@@ -64,9 +64,7 @@ class ElrodAdams:
     cavity_pressure: float = 0.0
     line_in_cells: bool = False
 
-    cavity_shear = 1.0
     conserves_mass = True
-    clips = False
 
     def __post_init__(self) -> None:
         check_cavity_pressure("ElrodAdams", self.cavity_pressure)

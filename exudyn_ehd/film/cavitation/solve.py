@@ -96,7 +96,7 @@ def factor_film(film, kind, oil, full, P, fill, factor):
 
 
 @njit(cache=True)
-def look(terms, late, kind, curve, even, is_last, full, state, rest, progress):
+def look(terms, late, kind, curve, even, stored, is_last, full, state, rest, progress):
     """Add vertices at which oil piles up to the film, and judge the residual; returns (outcome, progress).
 
     Parameters
@@ -108,6 +108,8 @@ def look(terms, late, kind, curve, even, is_last, full, state, rest, progress):
         As for `solve_film`, pressures above the cavity's.
     even : float
         Largest residual of a film that is found, over the largest flow.
+    stored : float
+        That of `imbalance`.
     is_last : bool
         Whether no step is left. The residual then decides: pressures of a film at rest are round-off and never
         converge.
@@ -124,7 +126,7 @@ def look(terms, late, kind, curve, even, is_last, full, state, rest, progress):
         set_states(terms, late, curve, full, u, P, fill)
     outcome = GOES_ON
     if done or is_last:
-        of_drive, of_flows = imbalance(terms, P, rest, full, kind == RUPTURE)
+        of_drive, of_flows = imbalance(terms, P, rest, full, kind == RUPTURE, stored)
         # where a pressure's last digit changes the balances by more, the residual can't be smaller
         rests = done and last <= LEFT
         if of_flows <= even or rests:
@@ -198,7 +200,7 @@ def _newton(film, pc, kind, oil, start, factor, x, full, state):
         if kind == RUPTURE:
             take_sink(curve, rest)
         even, is_last = EVEN if oil is None else EVEN_DENSE, step + 1 == MOST_STEPS
-        outcome, progress = look(terms, carried, kind, curve, even, is_last, full, state, rest, progress)
+        outcome, progress = look(terms, carried, kind, curve, even, 0.0, is_last, full, state, rest, progress)
         if outcome != GOES_ON:
             return outcome == FOUND, step, is_exact(progress), count, width
         fresh = not progress[0]

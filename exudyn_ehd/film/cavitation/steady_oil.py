@@ -50,13 +50,14 @@ def has_unfed_row(P, H, fixed, turns, pc):
 
 
 @njit(cache=True)
-def imbalance(terms, P, balance, full, ruptures):
+def imbalance(terms, P, balance, full, ruptures, stored):
     """Return the largest balance (n, m) of an unknown vertex over the largest flow that drives the film, and over the
     largest flow that it has; P (n, m) above the cavity's.
 
-    Of a film that ``ruptures`` without a memory the ``full`` vertices alone are unknown.
+    Of a film that ``ruptures`` without a memory the ``full`` vertices alone are unknown. ``stored``: largest flow into
+    storage of which the terms hold a difference.
     """
-    worst = drive = most = 0.0
+    worst, drive, most = 0.0, 0.0, stored
     n, m = P.shape
     for i in range(n):
         for j in range(m):

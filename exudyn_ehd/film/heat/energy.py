@@ -62,12 +62,9 @@ class ViscosityField(FluxEffect):
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Divide the conductances by the ratio on the link."""
-        for conductances, inverse in (
-            ((flux.gx, flux.gx_h, flux.gx_v), self.inverse_x),
-            ((flux.gz, flux.gz_h, flux.gz_v), self.inverse_z),
-        ):
-            for conductance in conductances[: 2 + flux.speeds]:
-                conductance *= inverse
+        for x, z in ((flux.gx, flux.gz), (flux.gx_h, flux.gz_h), (flux.gx_v, flux.gz_v))[: 2 + flux.speeds]:
+            x *= self.inverse_x
+            z *= self.inverse_z
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numba import njit
@@ -36,6 +36,7 @@ AT_THE_END = 1.0 - 1e-9
 SMALLEST_EXPONENT = 1e-30
 
 
+@runtime_checkable
 class DensityLaw(Protocol):
     """Density ratio ``rho / rho_0`` at gauge pressures p, Pa; below ambient pressure it is ``exp(coefficient p)``."""
 
@@ -171,7 +172,7 @@ class DensityField:
 
     def at(self, pressure: float) -> float:
         """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""
-        return float(density_of(pressure * self.scale, self.law.kernel_table))
+        return float(law_at(pressure * self.scale, self.law.kernel_table)[1])
 
 
 class CompressibleLaw(PressureTransform):
@@ -239,12 +240,6 @@ def law_at(q, law):
     r3 = (a + 2.0 * k) / 3.0 * s * r2
     r4 = (a + 3.0 * k) / 4.0 * s * r3
     return p, rho, s, k * s * s, r1, r2, r3, r4
-
-
-@njit(cache=True)
-def density_of(q, law):
-    """Density ratio at a transformed pressure q, Pa, within the law's range."""
-    return law_at(q, law)[1]
 
 
 @njit(cache=True)

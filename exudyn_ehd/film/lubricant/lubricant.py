@@ -28,10 +28,20 @@ import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, get_args, get_type_hints
 
-from exudyn_ehd.film.lubricant.density import CompressibleLaw, DowsonHigginson
-from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, PressureTransform, RoelandsPressure
-from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
-from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityLaw, DowsonHigginson
+from exudyn_ehd.film.lubricant.pressure_viscosity import (
+    BarusPressure,
+    PressureOption,
+    PressureTransform,
+    RoelandsPressure,
+)
+from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear, ShearLaw
+from exudyn_ehd.film.lubricant.temperature_viscosity import (
+    ReynoldsTemperature,
+    TemperatureLaw,
+    VogelTemperature,
+    WaltherTemperature,
+)
 from exudyn_ehd.status import KELVIN, POSITIVE, Checked, InputError, require_type
 
 # kg/(m3 K), ASTM D1250, table 54D
@@ -96,11 +106,12 @@ class Lubricant(Checked):
         changes the viscosity along.
     specific_heat : float, default 2000.0
         J/(kg K); only used by thermal effects.
-    pressure_law : BarusPressure, RoelandsPressure or None, default None
-    temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature or None, default None
-    shear_law : CarreauShear or None, default None
-    density_law : DowsonHigginson or None, default None
+    pressure_law : BarusPressure, RoelandsPressure, PressureOption or None, default None
+    temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature, TemperatureLaw or None, default None
+    shear_law : CarreauShear, ShearLaw or None, default None
+    density_law : DowsonHigginson, DensityLaw or None, default None
         Density under pressure, at any temperature; None: incompressible. Flows are then mass flows over ``density``.
+        The last kind of every law is one of your own: "Extension points" in the package's README.
 
     Raises
     ------
@@ -118,32 +129,29 @@ class Lubricant(Checked):
     density: float = 870.0
     temperature: float = 313.15
     specific_heat: float = 2000.0
-    pressure_law: BarusPressure | RoelandsPressure | None = None
-    temperature_law: ReynoldsTemperature | VogelTemperature | WaltherTemperature | None = None
-    shear_law: CarreauShear | None = None
-    density_law: DowsonHigginson | None = None
+    pressure_law: BarusPressure | RoelandsPressure | PressureOption | None = None
+    temperature_law: ReynoldsTemperature | VogelTemperature | WaltherTemperature | TemperatureLaw | None = None
+    shear_law: CarreauShear | ShearLaw | None = None
+    density_law: DowsonHigginson | DensityLaw | None = None
 
     checks: ClassVar = {"viscosity": POSITIVE, "density": POSITIVE, "temperature": KELVIN, "specific_heat": POSITIVE}
 
     def __post_init__(self) -> None:
         super().__post_init__()
         for name, laws in LAWS.items():
-            hint = "laws are objects, not strings or classes."
-            require_type(f"Lubricant.{name}", getattr(self, name), *laws, hint=hint)
+            require_type(
+                f"Lubricant.{name}", getattr(self, name), *laws, hint="laws are objects, not strings or classes."
+            )
         if self.viscosity is None:
-            object.__setattr__(self, "viscosity", self._viscosity_from_law())
+            if self.temperature_law is None:
+                raise InputError(
+                    "Lubricant.viscosity must be > 0 Pa s, got None; give viscosity=..., a temperature_law=..., or "
+                    'take a named oil, oil("ISO VG 46").'
+                )
+            object.__setattr__(self, "viscosity", float(self.temperature_law.viscosity(self.temperature, self.density)))
             POSITIVE("Lubricant.viscosity", self.viscosity)
         if self.pressure_law is not None:
             self.pressure_law.bound(self.viscosity)
-
-    def _viscosity_from_law(self) -> float:
-        if self.temperature_law is None:
-            raise InputError(
-                "Lubricant.viscosity must be > 0 Pa s, got None; give viscosity=..., a temperature_law=..., or take a "
-                "named "
-                'oil, oil("ISO VG 46").'
-            )
-        return float(self.temperature_law.viscosity(self.temperature, self.density))
 
     def at(self, temperature: float) -> Lubricant:
         """Return the same lubricant at another temperature.

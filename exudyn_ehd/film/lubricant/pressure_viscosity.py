@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numba import njit
@@ -51,6 +51,18 @@ class PressureLaw(Protocol):
 
     def ratio_slope(self, p: np.ndarray) -> np.ndarray:
         """dr/dp for p >= 0, 1/Pa."""
+
+
+@runtime_checkable
+class PressureOption(Protocol):
+    """Viscosity that depends on pressure: `BarusPressure`, `RoelandsPressure` or a law of one's own."""
+
+    @property
+    def coefficient(self) -> float:
+        """Slope of ln(mu) at ambient pressure, 1/Pa."""
+
+    def bound(self, viscosity: float) -> PressureLaw:
+        """The law for a reference viscosity in Pa s."""
 
 
 LARGEST_COEFFICIENT = 1e-4

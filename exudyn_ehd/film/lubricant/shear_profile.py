@@ -20,7 +20,8 @@ Symbols: x along the sliding, z across; _s derivative to S (which has no part ac
 from __future__ import annotations
 
 import functools
-from typing import Any, NamedTuple
+from collections.abc import Hashable
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
@@ -32,8 +33,7 @@ _unsigned: Any = np.uint64
 _1, _2, _3, _4 = (_unsigned(k) for k in range(1, 5))
 # Bits of a number: its power of two, and the interval within.
 _MANTISSA, _SHIFT, _PARTS_SHIFT = (_unsigned(k) for k in (52, 47, 5))
-_FIRST, _TURNED = _unsigned(1023 << 5), _unsigned(2046)
-_PLACE, _ONE = _unsigned((1 << 52) - 1), _unsigned(1023 << 52)
+_FIRST, _TURNED, _PLACE, _ONE = (_unsigned(k) for k in (1023 << 5, 2046, (1 << 52) - 1, 1023 << 52))
 # Gauss points across the film, of the pressure flow and of the mean stress. Largest error of a flow for exponents from
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
@@ -48,14 +48,13 @@ SAME = 1e-12
 LAST = 20
 # Share of the stress up to which the derivatives lead to the next profile.
 FAR = 0.3
-# Newton steps for the stress of sliding alone at most, and the one behind which its law is asked.
+# Newton steps for the stress of sliding alone at most, and the one behind which its table is asked.
 MOST_TRIALS, ASKS = 8, 2
 # Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
 SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
 STILL = 1e-3
-_BISECTIONS = 90
-_FUSE = {"contract", "arcp", "nsz"}
+_BISECTIONS, _FUSE = 90, {"contract", "arcp", "nsz"}
 
 
 class Profile(NamedTuple):
@@ -76,22 +75,42 @@ class Profile(NamedTuple):
 
 
 class Oil(NamedTuple):
-    """The law as kernels take it: coefficients of the fluidity's cubics, four each; exponent, residual of the law."""
+    """The law as kernels take it: coefficients of the fluidity's cubics, four each; scaled rates at their ends."""
 
     table: np.ndarray
-    exponent: float
-    residual: float
+    rates: np.ndarray
+
+
+class RateLaw(Hashable, Protocol):
+    """Viscosity ratio ``mu / mu_0`` at shear rates from 0 to 1e36 over the relaxation time.
+
+    It is 1 at rest and smooth there: an even function of the rate. The stress, ratio times rate, grows with the rate.
+    Equal laws have equal hashes.
+    """
+
+    @property
+    def relaxation_time(self) -> float:
+        """Unit of time of the law's table, s: the ratio changes at rates around 1 over it."""
+
+    def ratio(self, rate: np.ndarray) -> np.ndarray:
+        """mu / mu_0."""
+
+    def ratio_slope(self, rate: np.ndarray) -> np.ndarray:
+        """Derivative of the ratio to the rate, s."""
+
+    def ratio_bend(self, rate: np.ndarray) -> np.ndarray:
+        """Second derivative of the ratio to the rate, s^2."""
 
 
 @functools.lru_cache(maxsize=16)
-def fluidity_table(exponent: float, residual: float) -> Oil:
-    """Fluidity ``f(s)``, s = |T|^2, of ``T = Gamma (r + (1 - r) (1 + Gamma^2)^((n - 1) / 2))`` as cubics in s.
+def fluidity_table(law: RateLaw) -> Oil:
+    """Fluidity ``f(s)``, s = |T|^2, of ``T = Gamma ratio(Gamma)`` as cubics in s; of Carreau's law within 1e-8.
 
-    Value and slope are exact at the ends of 32 equal parts of every factor of two in 1 + s, so that errors stay below
-    1e-8 of the value. Behind the last one, at `FASTEST` or 2^48, the fluidity stays.
+    Value and slope are exact at the ends of 32 equal parts of every factor of two in 1 + s. Behind the last one, at
+    `FASTEST` or 2^48, the fluidity stays.
     """
-    e = 0.5 * (exponent - 1.0)
-    highest = FASTEST * (residual + (1.0 - residual) * (1.0 + FASTEST**2) ** e)
+    unit = 1.0 / law.relaxation_time
+    highest = FASTEST * float(law.ratio(np.array(FASTEST * unit)))
     octaves = min(OCTAVES, int(np.log2(1.0 + highest**2)) + 1)
     edges = (1.0 + np.arange(PARTS) / PARTS) * 2.0 ** np.arange(octaves)[:, None]
     s = np.append(edges.ravel(), 2.0**octaves) - 1.0
@@ -99,17 +118,16 @@ def fluidity_table(exponent: float, residual: float) -> Oil:
     low, high = np.log(t), np.full(t.size, 3.0 * np.log(FASTEST))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        above = middle + np.log(residual + (1.0 - residual) * np.exp(e * np.logaddexp(0.0, 2.0 * middle))) > np.log(t)
+        above = middle + np.log(law.ratio(np.exp(middle) * unit)) > np.log(t)
         low, high = np.where(above, low, middle), np.where(above, middle, high)
     rate = np.exp(0.5 * (low + high))
-    thin = (1.0 - residual) * np.exp(e * np.log1p(rate * rate))
-    steep = residual + thin + thin * 2.0 * e * rate**2 / (1.0 + rate**2)
+    steep = law.ratio(rate * unit) + rate * unit * law.ratio_slope(rate * unit)
     f = np.append(1.0, rate / t)
-    f_s = np.append(-e * (1.0 - residual), (1.0 / steep - f[1:]) / (2.0 * s[1:]))
+    f_s = np.append(-0.5 * unit**2 * law.ratio_bend(np.zeros(1)), (1.0 / steep - f[1:]) / (2.0 * s[1:]))
     h = np.diff(s)
     d0, d1, rise = f_s[:-1] * h, f_s[1:] * h, np.diff(f)
     table = np.array([f[:-1], d0, 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise]).T
-    return Oil(np.append(table, [f[-1], 0.0, 0.0, 0.0]), exponent, residual)
+    return Oil(np.append(table, [f[-1], 0.0, 0.0, 0.0]), np.append(0.0, rate))
 
 
 @functools.lru_cache(maxsize=16)
@@ -173,8 +191,9 @@ def _moments(T_x, T_z, S, G_x, G_z, oil, points):
 
 @njit(cache=True, error_model="numpy")
 def couette_stress(S, oil):
-    """Stress of a shear rate."""
-    return S * (oil.residual + (1.0 - oil.residual) * (1.0 + S * S) ** (0.5 * (oil.exponent - 1.0)))
+    """Stress of a shear rate, rounded down to the nearest end of the table's intervals."""
+    low = max(np.searchsorted(oil.rates, abs(S)) - 1, 0)
+    return np.sign(S) * oil.rates[low] / oil.table[4 * low]
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE)

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import ClassVar
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from numba import njit
@@ -32,15 +32,31 @@ from exudyn_ehd.film.lubricant.shear_profile import (
     FLOW_POINTS,
     LAST,
     STRESS_POINTS,
+    RateLaw,
     fluidity_table,
     gauss_points,
     thin_links,
     thin_shear,
 )
-from exudyn_ehd.film.reynolds.links import Fluidity, FluxEffect, LinkFlux
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked
+from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
 THINS = "the law is that of an oil that thins."
+
+
+@runtime_checkable
+class ShearLaw(Protocol):
+    """Viscosity that depends on the shear rate: `CarreauShear`, or a law of one's own."""
+
+    @property
+    def onset(self) -> float:
+        """Shear rate from which on the oil thins, 1/s, for the audit."""
+
+    def bound(self, radius: float, clearance: float) -> LinkLaw:
+        """The law as flux effect and shear factor of a bearing of this radius and clearance, m.
+
+        `ShearThinning` where it follows the shear rate at every height of the film; the law is then a `RateLaw`.
+        """
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +106,17 @@ class CarreauShear(Checked):
         b = 1.0 + (self.relaxation_time * np.asarray(rate)) ** 2
         return self.residual + (1.0 - self.residual) * b ** (0.5 * (self.exponent - 1.0))
 
+    def ratio_slope(self, rate: np.ndarray) -> np.ndarray:
+        """Derivative of the ratio to the rate, s."""
+        n, k, x = self.exponent, self.relaxation_time, self.relaxation_time * np.asarray(rate)
+        return (1.0 - self.residual) * (n - 1.0) * k * x * (1.0 + x * x) ** (0.5 * (n - 3.0))
+
+    def ratio_bend(self, rate: np.ndarray) -> np.ndarray:
+        """Second derivative of the ratio to the rate, s^2."""
+        n, k, x = self.exponent, self.relaxation_time**2, self.relaxation_time * np.asarray(rate)
+        steep = (n - 1.0) * (1.0 + (n - 2.0) * x * x) * (1.0 + x * x) ** (0.5 * (n - 5.0))
+        return (1.0 - self.residual) * k * steep
+
     @property
     def onset(self) -> float:
         """Shear rate from which on the oil thins, 1/s."""
@@ -100,14 +127,14 @@ class CarreauShear(Checked):
         return ShearThinning(self, radius, clearance)
 
 
-class ShearThinning(FluxEffect):
-    """A `CarreauShear` in scaled form: flux effect and shear factor of one bearing model.
+class ShearThinning(LinkLaw):
+    """A law of the shear rate in scaled form: flux effect and shear factor of one bearing model.
 
     The film solver calls `place` once, and `see` whenever its pressure changes.
 
     Parameters
     ----------
-    law : CarreauShear
+    law : RateLaw
     radius, clearance : float
         m.
 
@@ -120,12 +147,16 @@ class ShearThinning(FluxEffect):
     changes_carriers = False
     depends_on_speed = True
 
-    def __init__(self, law: CarreauShear, radius: float, clearance: float) -> None:
+    def __init__(self, law: RateLaw, radius: float, clearance: float) -> None:
+        if not abs(rest := float(law.ratio(np.zeros(1))[0]) - 1.0) < 1e-9:
+            raise InputError(
+                f"{type(law).__name__}: the ratio must be 1 at rest, got {1.0 + rest:g}; it multiplies "
+                "Lubricant.viscosity, which is that of low shear rates."
+            )
         self.law = law
-        self.oil = fluidity_table(law.exponent, law.residual)
+        self.oil = fluidity_table(law)
         self.flow_points, self.stress_points = gauss_points(FLOW_POINTS), gauss_points(STRESS_POINTS)
         self.per_speed = 2.0 * radius * law.relaxation_time / clearance
-        self.field: Fluidity | None = None
 
     def place(self, grid: FilmGrid, flow_x: float) -> None:
         """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
@@ -170,10 +201,10 @@ class ShearThinning(FluxEffect):
         """
         gap = flux.gap_x
         law, S = self.law, self.per_speed * vx / gap
-        b, e, r = 1.0 + S * S, 0.5 * (law.exponent - 1.0), law.residual
-        steep = 1.0 + law.exponent * S * S
-        slope = r + (1.0 - r) * b ** (e - 1.0) * steep
-        bend = (1.0 - r) * 2.0 * S * b ** (e - 2.0) * ((e - 1.0) * steep + law.exponent * b)
+        rate = np.abs(S) / law.relaxation_time
+        thins = law.ratio_slope(rate)
+        slope = law.ratio(rate) + rate * thins
+        bend = np.sign(S) / law.relaxation_time * (2.0 * thins + rate * law.ratio_bend(rate))
         exact, by_rate = 1.0 / (slope * self.found[0, 0]), -bend / slope
         flux.gx[:] *= exact
         flux.gx_h[:] = flux.gx_h * exact - flux.gx * by_rate * S / gap

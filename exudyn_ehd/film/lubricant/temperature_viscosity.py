@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import ClassVar
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -18,6 +18,14 @@ from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_vector
 # Walther's constant for viscosities above 2 mm2/s, ASTM D341.
 WALTHER_SHIFT = 0.7
 CELSIUS_15 = 288.15
+
+
+@runtime_checkable
+class TemperatureLaw(Protocol):
+    """Viscosity that depends on temperature: a law of this module or one's own."""
+
+    def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
+        """Dynamic viscosity, Pa s, at ambient pressure, temperatures in K and the lubricant's density, kg/m3."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -37,17 +37,20 @@ def largest_eccentricity(pose, half_length):
 
 
 @njit(cache=True)
-def rigid_gaps(pose, rate, squeeze, at, half_length, H, HF, H_t):
+def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
     """Gaps of a rigid journal at vertices and links, with ``squeeze`` also their rate; returns the smallest gap.
 
-    ``at``: `exudyn_ehd.film.grid.Directions`, as a tuple.
+    ``at``: `exudyn_ehd.film.grid.Directions`, as a tuple; ``closed``: whether the grid is a ring. On an arc the
+    smallest gap is one of vertices and links.
     """
     cos_x, sin_x, cos_f, sin_f, z = at
     rigid_gap(pose, cos_x, sin_x, z, 1.0, H)
     rigid_gap(pose, cos_f, sin_f, z, 1.0, HF)
     if squeeze:
         rigid_gap(rate, cos_x, sin_x, z, 0.0, H_t)
-    return 1.0 - largest_eccentricity(pose, half_length)
+    if closed:
+        return 1.0 - largest_eccentricity(pose, half_length)
+    return min(H.min(), HF[:-1].min())
 
 
 @njit(cache=True, fastmath=_FAST)

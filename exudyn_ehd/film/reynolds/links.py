@@ -121,6 +121,31 @@ class FluxEffect(Protocol):
         self.apply(flux, flux.gap_x, flux.gap_z, vx, vz)
 
 
+class ShearFactor(Protocol):
+    """Factor on the viscosity of Couette shear that depends on the gap, on the sliding speed, and maybe on gradients of
+    the pressure."""
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> np.ndarray | None:
+        """mu/mu_0 at the vertices with its derivatives with respect to H and vx.
+
+        Returns those (2, n, m) to the gradients of the solver's unknown along theta and z, None if there are none.
+        """
+
+
+class LinkLaw(FluxEffect, ShearFactor, Protocol):
+    """A law of the oil that changes what links carry and the shear.
+
+    Attributes
+    ----------
+    field : Fluidity or None
+        Viscosity over that of the film's scale, set by the bearing's model if it varies over the film.
+    """
+
+    field: Fluidity | None = None
+
+
 def link_flux(gap_x: np.ndarray, effects: tuple[FluxEffect, ...]) -> LinkFlux:
     """Buffers for these effects; ``gap_x`` (n, m) as in `LinkFlux`."""
     carriers = any(effect.changes_carriers for effect in effects)

@@ -34,7 +34,7 @@ from typing import ClassVar
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.links import Fluidity, FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
 # Taylor number Re sqrt(c / R) at which vortices set in between concentric cylinders; G. I. Taylor, Phil. Trans. R. Soc.
@@ -171,7 +171,7 @@ class Hirs(_Transition):
         return np.array([(factor, power, 1.0, ROUNDING) for factor in factors])
 
 
-class TurbulentFlow(FluxEffect):
+class TurbulentFlow(LinkLaw):
     """`NgPan` or `Hirs` in scaled form: flux effect and shear factor of one bearing model.
 
     Parameters
@@ -194,7 +194,6 @@ class TurbulentFlow(FluxEffect):
 
     def __init__(self, powers: np.ndarray, transition: tuple[float, float], per_speed: float) -> None:
         self.powers, self.transition, self.per_speed = powers, transition, per_speed
-        self.field: Fluidity | None = None
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Divide the links' conductances by k / 12 at their gaps (n, m), with derivatives."""

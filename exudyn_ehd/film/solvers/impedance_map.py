@@ -129,7 +129,7 @@ def build_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -
 def _squeeze_force(s: FilmSolver, eps: float, alpha: float) -> np.ndarray:
     """Scaled force (2,) along e and across, for a velocity at the angle ``alpha`` from e."""
     at, rate = s.grid.directions, np.array([math.cos(alpha), math.sin(alpha), 0.0, 0.0])
-    rigid_gaps(np.array([eps, 0.0, 0.0, 0.0]), rate, True, at, 0.0, s.H, s.HF, s.H_t)
+    rigid_gaps(np.array([eps, 0.0, 0.0, 0.0]), rate, True, at, 0.0, True, s.H, s.HF, s.H_t)
     s.pressure[:, 0] = s.pressure[:, -1] = 0.0
     status, _ = s.solve(0.0, 0.0, 0.0)
     if status is not Status.CONVERGED:

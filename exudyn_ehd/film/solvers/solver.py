@@ -104,9 +104,12 @@ class FilmSolver(FilmAnswers):
         """
         s = self.system
         self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz if self.axial else 0.0, cavity_pressure, None
-        follows = self.elements is not None or self.density is not None
-        if follows and self.vx == self.vz == 0.0 and not self.H_t.any():
-            # a film at rest makes a cold start, not one from the remains of the last film
+        if (self.elements is not None or self.density is not None or self.closure.conserves_mass) and not (
+            self.H_t.any()
+            or (vx != 0.0 and np.ptp(self.H, axis=0).any())
+            or (self.vz != 0.0 and np.ptp(self.H, axis=1).any())
+        ):
+            # a film without a wedge and without squeeze makes a cold start, not one from the remains of the last film
             self.forget()
         if self.elements is not None:
             return self._solve_yielding(self.elements, mass_old, step)

@@ -36,7 +36,8 @@ class ArchardWear(Checked):
 
     The worn volume is k times the integral of contact pressure and sliding distance over the surface. ``contact_load``
     is the vector sum of that pressure: k times contact_load times distance is 3 % below the worn volume of a contact
-    over 0.8 rad.
+    over 0.8 rad. A joint shows the largest depth as ``history.wear_depth``, the volume as ``history.worn_volume``, and
+    the depth on its bore by ``plot_wear_depth()``.
 
     Source
     ------

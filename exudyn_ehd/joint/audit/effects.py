@@ -16,7 +16,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
-from exudyn_ehd.joint.audit.samples import SMALLEST_GAP_SHARE, time_mean
+from exudyn_ehd.joint.audit.samples import SMALLEST_GAP_SHARE, adiabatic_rise, time_mean
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
     TYPICAL_PRESSURE_COEFFICIENT,
@@ -202,20 +202,14 @@ def piezoviscosity(case: Case) -> Finding:
 
 
 def _temperature_rise(case: Case) -> float:
-    """Adiabatic rise P / (rho c_p Q), K, averaged over a record.
-
-    Without flow through the bearing, that of one turn's Couette flow.
-    """
-    b, r, oil = case.bearing, case.record, case.bearing.lubricant
+    """Largest `adiabatic_rise`, K, that of a record by its means."""
+    b, r = case.bearing, case.record
     power, flow, speed = (case.numbers[name] for name in ("power_loss", "flow", "speed"))
     if r is not None and b.arc is None and np.all(np.isfinite(r.leakage)):
         means = (time_mean(r.time, values) for values in (r.power_loss, r.leakage, case.slide(r.motion)))
         power, flow, spin = (np.array([mean]) for mean in means)
         speed = spin * b.journal_radius
-    couette = 0.5 * speed * b.radial_clearance * b.length
-    flow = np.where(flow > 1e-2 * couette, flow, couette)
-    rises = np.divide(power, oil.density * oil.specific_heat * flow, out=np.zeros_like(flow), where=flow > 0.0)
-    return max(0.0, float(rises.max()))
+    return max(0.0, float(adiabatic_rise(b, power, flow, speed).max()))
 
 
 def heating(case: Case) -> Finding:

@@ -172,8 +172,8 @@ def warn(name: str, watch: RingingWatch, *, starts_well: bool) -> None:
     start = "" if starts_well else "use ehd.SolveDynamic(mbs, simulationSettings) in place of mbs.SolveDynamic, or "
     warnings.warn(
         f"LubricatedJoint '{name}': from t = {watch.first:.9g} s to {watch.last:.9g} s the film's force alternates "
-        f"from step to step, thrown anew {watch.most} times within {WINDOW} steps: forces and pressures there "
-        f"are the time integration's; {start}take more steps until none is halved, or a smaller spectral "
+        f"from step to step, thrown anew {watch.most} times within {WINDOW} steps: the time integration causes these "
+        f"forces and pressures; {start}take more steps until none is halved, or a smaller spectral "
         "radius.",
         RingingWarning,
         stacklevel=2,

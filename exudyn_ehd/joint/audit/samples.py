@@ -111,6 +111,17 @@ def time_mean(time: np.ndarray, values: np.ndarray) -> float:
     return float(np.trapezoid(values, time)) / span if span > 0.0 else float(values[-1]) if values.size else math.nan
 
 
+def adiabatic_rise(bearing: JournalBearing, power: np.ndarray, flow: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Temperature rise P / (rho c_p Q), K, by power losses, W, flows, m3/s, and sliding speeds, m/s.
+
+    Without flow through the bearing, that of one turn's Couette flow.
+    """
+    couette = 0.5 * speed * bearing.radial_clearance * bearing.length
+    # not true for a flow that is not known
+    heat = bearing.lubricant.density * bearing.lubricant.specific_heat * np.where(flow > 1e-2 * couette, flow, couette)
+    return np.divide(power, heat, out=np.zeros_like(heat), where=heat > 0.0)
+
+
 def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmState]:
     """The worst states of a record, with the histories that its last steps lead to (a worn depth starts at zero).
 

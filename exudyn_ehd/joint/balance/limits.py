@@ -9,7 +9,6 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.conduction import Walls
-from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
@@ -122,9 +121,9 @@ def too_hot(T: Temperature, carried: float) -> str:
         return ""
     most = f" Followed from smaller loads, the film carries at least {carried:.4g} N." if carried else ""
     return (
-        f"{most} The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film "
-        "thins faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
-        "supply of oil or a housing_conductance raises it."
+        f"{most} The film is at {float(np.max(T)):.0f} K there: heat limits the load: beyond the limit the oil "
+        "gets thinner by the heat of film and asperities faster than the closing gap makes up for, and the bearing "
+        "seizes; a supply of oil or a housing_conductance raises the limit."
     )
 
 
@@ -145,12 +144,12 @@ def advice(status: Status, bearing: object) -> str:
         )
     law = getattr(getattr(bearing, "lubricant", None), "pressure_law", None)
     if status is Status.NO_PRESSURE and law is not None:
-        barus = "use RoelandsPressure instead of BarusPressure, " if isinstance(law, BarusPressure) else ""
         return (
             f"the pressure runs away: with {type(law).__name__} no finite pressure carries a film that is pressed "
-            "together as fast as here, and between rigid surfaces none carries more than a mean pressure (force / "
-            f"diameter / length) of some 1 / coefficient = {1.0 / law.coefficient:.3g} Pa; reduce loads and speeds of "
-            f"approach (initial velocities), check the law's coefficient, {barus}or name an elastic liner or bush."
+            "together as fast as here, and between rigid surfaces none carries a mean pressure (force / diameter / "
+            f"length) far above 1 / coefficient = {1e-6 / law.coefficient:.3g} MPa, thin films a fifth of it; name an "
+            "elastic liner or bush, which spreads the load, reduce loads and speeds of approach (initial velocities), "
+            "or check the law's coefficient."
         )
     oil, closure = getattr(bearing, "lubricant", None), getattr(bearing, "cavitation", None)
     if (
@@ -189,8 +188,8 @@ def _without_a_shape(evaluation: ElasticEvaluation) -> str:
     missing = f"no shape of the {kind}'s {surface} was found in balance with a film"
     if last is None or last.gap > CLOSED * bearing.radial_clearance or evaluation.model.effects.contacts:
         return (
-            f"{missing}, neither by Newton's method nor on the way of a viscous bore from its undeformed shape; "
-            "thicken what is thin in it, name a contact=RegularisedWall(...) if the surfaces touch, or refine the "
+            f"{missing}, neither by Newton's method nor by a slow deformation from the undeformed shape; thicken "
+            "what is thin in it, name a contact=RegularisedWall(...) if the surfaces touch, or refine the "
             "film's grid."
         )
     return (

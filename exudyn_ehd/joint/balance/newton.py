@@ -370,8 +370,8 @@ def settled_history(
     if not balance.is_balanced(found):
         require_oil_bears(found.film.temperature, model.grid, where)
         raise FilmError(
-            f"{where}: the film's temperature does not settle, its last change is {np.abs(found.change).max():.3g} K; "
-            "the heating is too strong for a steady film, check speed, clearance and the temperature law."
+            f"{where}: the film's temperature does not converge, its last change is {np.abs(found.change).max():.3g} "
+            "K; the heating is too strong for a steady film, check speed, clearance and the temperature law."
         )
     return found.film.history
 

@@ -112,15 +112,16 @@ def _wanted(
 def coarse_film(found: Resolution, where: str) -> str:
     """Return the message for a film whose pressure peak the grid does not resolve; it begins with ``where``."""
     thin = (
-        "films this thin take a grid of seconds for one film: look at the position, or model what surfaces do that "
-        "nearly touch (asperity=, contact=, a bush)"
+        "a grid that resolves a film this thin takes seconds for each evaluation: check the journal's position, or "
+        "model how surfaces behave that nearly touch (asperity=, contact=, a bush)"
     )
     grid = found.wanted
     advice = thin if grid is None else f"take film={grid!r}"
     return (
         f"{where}: the grid does not resolve the film's pressure peak, whose pressure may be off by more than 5 %: "
-        f"{found.columns:.2g} intervals across its half height around (from {FEWEST:g} on), the film "
-        f"{found.narrowing:.2g} times as thick one interval before the end as on it (up to {STEEPEST:g}); {advice}."
+        f"around the bore the peak spans {found.columns:.2g} intervals at half its height (it needs {FEWEST:g}), and "
+        f"one interval before the bearing's end the film is {found.narrowing:.2g} times as thick as at the end (up to "
+        f"{STEEPEST:g} is resolved); {advice}."
     )
 
 

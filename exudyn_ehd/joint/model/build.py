@@ -10,8 +10,6 @@ from dataclasses import fields
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.cavitation.closures import SwiftStieber
-from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.model.effects import collect_effects
@@ -58,11 +56,12 @@ def compile_together(bearing: JournalBearing, *more: str) -> None:
 def _groups(bearing: JournalBearing) -> tuple[str, ...]:
     """Groups of kernels that a bearing needs for sure."""
     oil = bearing.lubricant
-    plain = oil.pressure_law is None and oil.shear_law is None and oil.density_law is None
-    plain = plain and all(getattr(bearing, f.name) == f.default for f in fields(bearing) if f.name not in _BESIDE)
-    kinds, closure = ((SwiftStieber, True, "swift"), (ElrodAdams, False, "elrod")), bearing.closure
-    own = [name for kind, line, name in kinds if isinstance(closure, kind) and closure.line_in_cells is line]
-    return ("film", *own) if plain and own and isinstance(bearing.film, FiniteLength) else ()
+    plain = oil.pressure_law is oil.shear_law is oil.density_law is None and all(
+        getattr(bearing, f.name) == f.default for f in fields(bearing) if f.name not in _BESIDE
+    )
+    closure, known = bearing.closure, {(True, False, False): "swift", (False, True, False): "elrod"}
+    own = known.get((bool(closure.line_in_cells), closure.conserves_mass, closure.clips))
+    return ("film", own) if plain and own and isinstance(bearing.film, FiniteLength) else ()
 
 
 def compile_kernels(model: BearingModel) -> None:

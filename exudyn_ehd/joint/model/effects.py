@@ -16,9 +16,8 @@ from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
-from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.models import film_grid, film_solver
-from exudyn_ehd.film.reynolds.turbulence import TurbulentFlow
+from exudyn_ehd.film.reynolds.links import LinkLaw
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
@@ -192,7 +191,7 @@ def _rheology(
     """Thermal effect, growth of its walls, flux effects and shear factors of shear thinning or turbulence, and of a
     temperature field."""
     oil, spec, R, c = bearing.lubricant, bearing.thermal, bearing.journal_radius, bearing.radial_clearance
-    laws: list[ShearThinning | TurbulentFlow] = []
+    laws: list[LinkLaw] = []
     if oil.shear_law is not None:
         laws.append(oil.shear_law.bound(R, c))
     if bearing.turbulence is not None:

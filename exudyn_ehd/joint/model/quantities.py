@@ -100,8 +100,7 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         "peak_contact_pressure": peak_contact,
     }
     if p.supply is not None or p.bearing.arc is not None:
-        flows = supply_flows(film)
-        out["supply_flow"] = float((flows if p.bearing.arc is None else flows.clip(0.0)).sum())
+        out["supply_flow"] = float(supply_flows(film).sum())
     if film.temperature is not None:
         out["film_temperature"] = float(np.average(np.broadcast_to(film.temperature, area.shape), weights=area))
         T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
@@ -125,10 +124,16 @@ def _unbroken_couette(film: SolvedFilm) -> float:
 
 
 def supply_flows(film: SolvedFilm) -> np.ndarray:
-    """Return the inflow of every area of ``bearing.supply``, or at both edges of an arc, m3/s; empty without."""
+    """Return the inflow of every area of ``bearing.supply``, m3/s; empty without.
+
+    Of an arc what enters at its leading and at its trailing edge, 0 where oil leaves.
+    """
     p, flow_scale = film.parts, film.parts.flow_scale
     if p.bearing.arc is not None:
-        return p.solver.inflow(ended=True)[[0, -1]].sum(axis=1) * flow_scale
+        y, ends = p.solver.system, [0, -1]
+        # less the flows from its corners along the ends, where pressures jump
+        jumps = y.kx[[0, -2]] * (y.pressure[ends] - y.pressure[[1, -2]])
+        return (p.solver.inflow()[ends].sum(axis=1) - jumps[:, ends].sum(axis=1)).clip(0.0) * flow_scale
     if p.supply is None:
         return np.zeros(0)
     # that of a turning area would change at once where an edge passes a column
@@ -141,17 +146,16 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
     s, g = film.solver, film.grid
     if not g.flows_along_z:
         return 0.0, 0.0
-    if film.parts.bearing.arc is not None:
-        inflow = s.inflow(ended=True)[1:-1]
-        return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
-    if s.closure.conserves_mass:
+    is_arc = film.parts.bearing.arc is not None
+    if s.closure.conserves_mass and not is_arc:
         inflow = s.inflow()
         return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
     fx, fz, rate = s.couette_flows()
     P, full = s.flow_pressures()
     if film.parts.supply is not None:
         full = np.logical_or.reduce([full, *film.parts.supply.masks])
-    return loads.end_flows(P, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, full)
+    # the corners of an arc belong to its edges
+    return loads.end_flows(P, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, full, int(is_arc))
 
 
 def minimum_place(film: SolvedFilm) -> tuple[float, float]:

@@ -87,11 +87,19 @@ class Evaluation:
         return self.tangent(slow_motion=exact)
 
     def quantities(self) -> dict[str, float]:
-        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
-        film, p = self._current(), self.model.parts
+        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`.
+
+        With wear also ``wear_depth`` (m, the largest) and ``worn_volume`` (m3) of the bore at the end of the step.
+        """
+        film, p, wear = self._current(), self.model.parts, self.model.effects.wear
         if film is None:
             return {"minimum_gap": self.minimum_gap} | eccentricities(p, self.motion[:4] * p.pose_scale)
-        return quantities(film)
+        found = quantities(film)
+        if wear is not None:
+            depth = p.bearing.radial_clearance * wear.grown(film)
+            volume = p.grid.reference_length**2 * float(np.sum(depth * p.grid.area))
+            found |= {"wear_depth": float(depth.max()), "worn_volume": volume}
+        return found
 
     def history(self) -> History | None:
         """Return the bearing's memory after this state, if it is accepted; None without effects that remember.
@@ -152,7 +160,7 @@ class BearingModel:
         pressure = 12.0 * mu * R**2 / c**2
         known = self._known / pressure
         self.viscosity_ratio = ratio
-        edges = None if b.arc is None else known[3:] * (-1.0, 1.0)
+        edges = known[3:] * (-1.0, 1.0) if known[3:].any() else None
         self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]), edges)
         # what the solver is told: the transformed pressures of a pressure law
         self._prescribed = known if law is None else law.transform(self._known) / pressure
@@ -317,10 +325,8 @@ class BearingModel:
         Returns the smallest, scaled, with the record's fields of these names.
         """
         s, p, at = self.solver, self.parts, self.grid.directions
-        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, s.H, s.HF, s.H_t)
-        if self.bearing.arc is not None:
-            # beside the arc there is no bore
-            smallest = float(min(s.H.min(), s.HF[:-1].min()))
+        closed = self.bearing.arc is None
+        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, closed, s.H, s.HF, s.H_t)
         extra = None
         if self.effects.gap_terms or self.flexible:
             smallest, extra = self._add_gap_terms(history)

@@ -27,7 +27,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
+from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
@@ -176,8 +176,9 @@ class SphericalBearing(Checked):
         Vertices around the axis, at least 16.
     n_chi : int, default 24
         Intervals from edge to edge (of a closed patch from the pole to the edge), at least 4.
-    cavitation : FullSommerfeld, Gumbel or SwiftStieber, default SwiftStieber()
-        Without a line inside the cells. Its ``cavity_pressure`` must not be above the ambient pressure.
+    cavitation : FullSommerfeld, Gumbel, SwiftStieber or Closure, default SwiftStieber()
+        Without a memory and without a line inside the cells; `Closure` is one of your own. Its ``cavity_pressure`` must
+        not be above the ambient pressure.
     contact : RegularisedWall or None, default None
         Takes over before the gap vanishes.
 
@@ -199,7 +200,7 @@ class SphericalBearing(Checked):
     socket_angles: tuple[float, float] = (0.0, 0.5 * math.pi)
     n_phi: int = 48
     n_chi: int = 24
-    cavitation: SwiftStieber | Gumbel | FullSommerfeld = SwiftStieber()
+    cavitation: SwiftStieber | Gumbel | FullSommerfeld | Closure = SwiftStieber()
     contact: RegularisedWall | None = None
 
     # what a joint's watches and audits ask of every bearing
@@ -238,11 +239,12 @@ class SphericalBearing(Checked):
                 f"{LEAST_ANGLE} and end <= {end:.5g}, got {self.socket_angles!r}; use math.radians for degrees."
             )
         object.__setattr__(self, "socket_angles", (first, last))
-        require_type(f"{name}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld)
-        if self.cavitation.line_in_cells or self.cavitation.cavity_pressure > 0.0:
+        require_type(f"{name}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld, Closure)
+        if self.cavitation.conserves_mass or self.cavitation.line_in_cells or self.cavitation.cavity_pressure > 0.0:
             raise InputError(
-                f"{name}.cavitation must have line_in_cells=False (its line lies on vertices) and a cavity_pressure "
-                f"<= 0 Pa, that of the open edges, got {self.cavitation!r}."
+                f"{name}.cavitation must be SwiftStieber(...) or another closure without a memory, with "
+                "line_in_cells=False (its line lies on vertices) and a cavity_pressure <= 0 Pa, that of the open "
+                f"edges, got {self.cavitation!r}."
             )
         object.__setattr__(self, "cavitation", place_line(self.cavitation, False))
         require_type(f"{name}.contact", self.contact, RegularisedWall, type(None))

@@ -36,8 +36,8 @@ LOADED = 0.9
 # Distance over the clearance up to which two positions are one.
 SAME_PLACE = 1e-3
 STEADINESS = (
-    "has a negative determinant: a journal leaves it",
-    "is not positive definite: whether a journal stays is the damping's matter",
+    "has a negative determinant: a journal does not stay there",
+    "is not positive definite: the damping decides whether a journal stays",
     "is positive definite",
 )
 

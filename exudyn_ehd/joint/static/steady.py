@@ -179,7 +179,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         W, m3/s out of both ends, N; ``contact_load`` is the vector sum of the contact's pressure, whose integral is
         larger where it acts around an arc (3 % over 0.8 rad).
     supply_flows : (k,) array
-        m3/s out of every area of ``bearing.supply``.
+        m3/s out of every area of ``bearing.supply``; into an arc at its leading and its trailing edge, 0 where oil
+        leaves.
     contact_torque, contact_power_loss, peak_contact_pressure : float
         Boundary friction of the contacts on the journal about its own axis (Nm, part of ``friction_torque``) and the
         loss it makes (W, part of ``power_loss``); Pa.

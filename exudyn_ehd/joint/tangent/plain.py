@@ -23,7 +23,7 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
 def is_plain(film: SolvedFilm) -> bool:
     """Return whether `plain_tangent` holds for this film."""
-    s, p, oil = film.solver, film.parts, film.oil
+    s, p, oil, arc = film.solver, film.parts, film.oil, film.parts.bearing.arc
     return (
         type(s) is FilmSolver
         and s.axial
@@ -36,7 +36,7 @@ def is_plain(film: SolvedFilm) -> bool:
         and film.limited is None
         and film.pressing is None
         and p.supply is None
-        and p.bearing.arc is None
+        and (arc is None or not any((*arc.pressures, *p.bearing.end_pressures)))
         and not p.uneven_drag
     )
 

@@ -309,7 +309,8 @@ def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
     That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
     """
     slope, edges, g, out = _film_gap_slope(film), film.scales.edges, film.grid, np.zeros((2, 1, 4))
-    if not ((slope is not None or edges is not None) and (film.scales.ends.any() or edges is not None)):
+    whole = slope is None and film.parts.bearing.arc is None
+    if edges is None and (whole or not film.scales.ends.any()):
         return out[:, 0]
     fields = np.zeros((2, 1, *g.shape))
     fields[0, 0, :, [0, -1]] = np.outer(film.scales.ends * (-1.0, 1.0), g.width_x)

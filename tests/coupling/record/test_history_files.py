@@ -133,7 +133,7 @@ def test_revolutions_of_a_turning_journal(history):
 def test_table_as_text_and_csv(history, tmp_path):
     table = history.revolutions()
     lines = str(table).splitlines()
-    assert len(lines) == 3 and "mean_power_loss [W]" in lines[0] and "minimum_gap_z [m]" in lines[0]
+    assert len(lines) == 3 and "mean_power_loss [W]" in lines[0] and "minimum_gap_z [mm]" in lines[0]
     table.to_csv(tmp_path / "turns.csv")
     with open(tmp_path / "turns.csv", newline="", encoding="utf-8") as file:
         head, *rows = list(csv.reader(file))

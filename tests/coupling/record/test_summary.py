@@ -1,9 +1,12 @@
 """A run ends with one line per joint: what was thinnest and highest, when, and what was left out."""
 
 import dataclasses
+import itertools
 import logging
+import re
 import subprocess
 import sys
+import warnings
 
 import exudyn as exu
 import numpy as np
@@ -11,6 +14,7 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.joint.step_error import enough_steps
 
@@ -92,10 +96,72 @@ def test_steps_smaller_than_those_of_the_run_before_are_not_halved(lines):
     assert len(lines) == 2 and "200 steps" in lines[1] and "halved" not in "".join(lines)
 
 
-def test_halved_steps_are_counted_and_the_last_one_is_not():
-    steps = np.array([1.0, 1.0, 0.5, 0.25, 0.25, 1.0, 0.3])
-    assert summary._halved(np.concatenate(([0.0], np.cumsum(steps)))) == 3
-    assert summary._halved(np.array([0.0, 1.0])) == 0
+@pytest.mark.parametrize("kick", [0.0, 3.0], ids=["control", "closed gap"])
+def test_the_line_says_which_joint_halved_steps_why_and_how_often(lines, monkeypatch, kick):
+    """Every step that a film was asked for and that was not accepted is one halved step with one reason."""
+    asked, force = set(), FilmElement.force
+
+    def spied(film, mbs, t, *rest):
+        asked.add((mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep), t))
+        return force(film, mbs, t, *rest)
+
+    monkeypatch.setattr(FilmElement, "force", spied)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=50e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=32, n_z=4),
+    )
+    mbs = scenes.new_system()
+    controls = {"quiet": None, "first": None if kick else ehd.StepControl(largest_gap_change=0.05)}
+    for name, control in controls.items():
+        body = scenes.add_body(
+            mbs,
+            "Rxyz",
+            velocity=(0.0, -kick * (name == "first"), 0.0),
+            spin=(0.0, 0.0, 300.0),
+            gravity=[0.0, -500.0, 0.0],
+        )
+        joint = ehd.CreateLubricatedJoint(
+            mbs,
+            name=name,
+            itemNumbers=[mbs.CreateGround(), body],
+            position=[0, 0, 0],
+            axis=[0, 0, 1],
+            bearing=bearing,
+            stepControl=control,
+            axial=ehd.Held(),
+            tilt=ehd.Held(),
+        )
+    mbs.Assemble()
+    with warnings.catch_warnings():
+        # the start is an impact
+        warnings.simplefilter("ignore")
+        ehd.SolveDynamic(mbs, ehd.ConfigureSolver(scenes.settings(0.01, 20)))
+    refused = len({(a, b) for a, b in asked if b > a} - set(itertools.pairwise(joint.history.time)))
+    assert refused > 1
+    for line in lines:
+        said = re.search(r", halved steps: (\d+) \((.*?)\)[,;.]", line)
+        counts = {reason: int(count) for count, reason in re.findall(r"(\d+) x ([^;]*)", said[2])}
+        assert int(said[1]) == sum(counts.values()) == refused
+        assert not any("'quiet'" in reason for reason in counts)
+        expected = "the gap closed somewhere" if kick else "the gap changed by more than StepControl.largest_gap_change"
+        assert any(reason.startswith(f"in 'first' {expected}") for reason in counts)
+    assert len(lines) == 2
+
+
+def test_steps_for_which_no_film_is_to_blame_are_newtons(lines, monkeypatch):
+    """Once per refused step, also by Exudyn's own call, of which the next run starts to count anew."""
+    mbs, joint = scene()
+    settings = ehd.ConfigureSolver(scenes.settings(0.004, 20, tolerance=1e-12))
+    settings.timeIntegration.newton.maxIterations, settings.timeIntegration.newton.relativeTolerance = 3, 1e-14
+    settings.timeIntegration.newton.absoluteTolerance = 1e-9
+    for solve in (ehd.SolveDynamic, exu.MainSystem.SolveDynamic):
+        solve(mbs, settings)
+        assert joint.history.time[-1] == 0.004
+    found = [re.search(r", halved steps: (\d+) \(\1 x Newton's method did not converge\)", line) for line in lines]
+    assert len(found) == 2 and all(found)
 
 
 def test_a_run_that_ends_with_an_error_has_its_line(lines):
@@ -138,6 +204,20 @@ def test_effects_left_out_are_named_where_they_matter(lines, load, options, name
     assert [name for name in absent if name in line] == []
 
 
+def test_effects_left_out_come_with_numbers(lines):
+    """Those of the audit: a steel ring's deflection, a mineral oil's thickening at the peak, the mean heating."""
+    mbs, joint = scene(12e3)
+    ehd.SolveDynamic(mbs, scenes.settings(0.02, 100, tolerance=1e-8))
+    peak, thinnest = joint.history.peak_pressure.max(), joint.history.minimum_gap.min()
+    ring = 0.7 * joint.bearing.journal_radius * peak / 2.1e11
+    rise = re.search(r"rise of (\S+) K", joint.audit()["heating"].indicator)[1]
+    said = lines[0].split("worth an audit (joint.audit()): ")[1]
+    assert said == (
+        f"elasticity: {1e6 * ring:.3g} um of a steel ring, piezoviscosity: viscosity x {np.exp(2e-8 * peak):.3g}, "
+        f"heating: +{rise} K, shear thinning: {300.0 * 0.025 / thinnest:.3g} 1/s."
+    )
+
+
 @pytest.mark.slow
 def test_steps_that_are_too_coarse_are_named(lines):
     """Step errors from 5 % of the film thickness on are named, with a sufficient number of steps; so does the audit."""
@@ -150,7 +230,7 @@ def test_steps_that_are_too_coarse_are_named(lines):
     coarse.step_error[40] = 0.08
     needed = enough_steps(coarse.time, coarse.motion[:, 8], coarse.step_error)
     said = f"error of the time steps 8 % of the minimum film thickness at {history.time[40]:.6g} s: take {needed}"
-    assert said in summary.line("bearing", joint.bearing, coarse, since=0.0)
+    assert said in summary.line("bearing", joint.bearing, coarse)
 
 
 @pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])
@@ -175,6 +255,7 @@ PROGRAM = """
 import logging, sys
 if "configured" in sys.argv:
     logging.basicConfig(stream=sys.stdout, level=logging.INFO, format="own %(message)s")
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record import summary
 if "off" in sys.argv:
     logging.getLogger("exudyn_ehd").setLevel("WARNING")

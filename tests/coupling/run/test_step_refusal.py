@@ -11,8 +11,11 @@ from exudyn_ehd.coupling.run.start_guess import refuse
 
 
 def falling(before, largest, own):
-    """Times of a falling point whose steps behind 0.055 s have a result only up to a size; ``before`` is the user's."""
-    mbs, times = scenes.new_system(), []
+    """Times of a falling point whose steps behind 0.055 s have a result only up to a size; ``before`` is the user's.
+
+    Also the ends of the steps for which the film is blamed.
+    """
+    mbs, times, blamed = scenes.new_system(), [], []
     mbs.CreateMassPoint(mass=1.0, gravity=[0, -9.81, 0])
     mbs.Assemble()
 
@@ -20,21 +23,24 @@ def falling(before, largest, own):
         iteration = mbs.sys["dynamicSolver"].it
         return iteration.currentTime < 0.055 or iteration.currentStepSize <= largest
 
-    mbs.SetPostNewtonUserFunction(partial(refuse, [SimpleNamespace(has_result=has_result)], before) if own else before)
+    failures = SimpleNamespace(blame=lambda start, end, reason: blamed.append(end))
+    film = SimpleNamespace(has_result=has_result, steps=SimpleNamespace(start=0.0), failures=failures)
+    mbs.SetPostNewtonUserFunction(partial(refuse, [film], before) if own else before)
     mbs.SetPostStepUserFunction(lambda mbs, t: not times.append(t))
     mbs.SolveDynamic(scenes.settings(0.1, 10))
-    return np.array(times)
+    return np.array(times), blamed
 
 
 def test_a_step_without_a_result_is_halved():
     asked = []
-    times = falling(lambda mbs, t: asked.append(t) or [0.0, -1.0], 0.003, True)
+    times, blamed = falling(lambda mbs, t: asked.append(t) or [0.0, -1.0], 0.003, True)
     steps = np.diff(times)
     behind = times[1:] > 0.05 + 1e-9
     assert steps[~behind][:4] == pytest.approx(0.01) and steps[behind].max() <= 0.003
     assert times[-1] == pytest.approx(0.1)
     # every attempt, refused or not
     assert len(asked) > steps.size and set(times[1:]) <= set(asked)
+    assert len(blamed) == len(asked) - steps.size > 0
 
 
 def test_a_smaller_step_of_the_users_function_goes_first():
@@ -42,4 +48,4 @@ def test_a_smaller_step_of_the_users_function_goes_first():
         step = mbs.sys["dynamicSolver"].it.currentStepSize
         return [1e9, 0.1 * step] if t > 0.055 and step > 0.002 else [0.0, -1.0]
 
-    np.testing.assert_array_equal(falling(user, 0.009, True), falling(user, 1.0, False))
+    np.testing.assert_array_equal(falling(user, 0.009, True)[0], falling(user, 1.0, False)[0])

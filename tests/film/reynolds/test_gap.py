@@ -36,7 +36,9 @@ def test_rigid_gaps(squeeze):
     theta, between, z = rng.uniform(0, 6, 9), rng.uniform(0, 6, 9), np.linspace(-1, 1, 5)
     (pose, rate), out = rng.normal(size=(2, 4)), np.zeros((3, 9, 5))
     at = np.cos(theta), np.sin(theta), np.cos(between), np.sin(between), z
-    smallest = rigid_gaps(pose, rate, squeeze, at, 0.7, *out)
+    smallest = rigid_gaps(pose, rate, squeeze, at, 0.7, True, *out)
+    on_arc = rigid_gaps(pose, rate, squeeze, at, 0.7, False, *out)
+    assert on_arc == min(out[0].min(), out[1][:-1].min())
     assert smallest == 1.0 - largest_eccentricity(pose, 0.7)
     expected = _gap(pose, theta, z, 1.0), _gap(pose, between, z, 1.0), squeeze * _gap(rate, theta, z, 0.0)
     np.testing.assert_allclose(out, expected, rtol=1e-13, atol=1e-14)

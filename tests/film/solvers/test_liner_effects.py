@@ -126,7 +126,7 @@ def contact_twin(contact):
 def link_twin(effect, vx, grid, Q):
     """(conductance, carrier) as functions of (i, j, axis, gap) from the textbook formulas; Q the film's unknown."""
     if effect == "carreau":
-        k, oil = 2.0 * THINNING.relaxation_time * 0.02 / CLEARANCE, fluidity_table(THINNING.exponent, THINNING.residual)
+        k, oil = 2.0 * THINNING.relaxation_time * 0.02 / CLEARANCE, fluidity_table(THINNING)
         # gradients at the vertices, numpy's of second order
         along = np.gradient(np.pad(Q, ((1, 1), (0, 0)), mode="wrap"), grid.x[1] - grid.x[0], axis=0)[1:-1]
         across = np.gradient(Q, grid.z, axis=1)

@@ -155,7 +155,7 @@ def test_divergence_is_reported(make_bearing):
         ({"n_theta": 8}, "n_theta must be an integer >= 16"),
         ({"n_z": 2}, "n_z must be an integer >= 4"),
         ({"tolerance": 0.0}, "tolerance must be > 0"),
-        ({"relaxation": 2.0}, "within 0 and 2"),
+        ({"relaxation": 2.0}, "between 0 and 2"),
     ],
 )
 def test_refused_values(values, message):

@@ -101,15 +101,26 @@ def test_tangent_against_differences(name):
         assert (np.abs(tangent - differences) / scale[:, None]).max() < 1e-5, name
 
 
-@pytest.mark.parametrize("cavitation", [ehd.FullSommerfeld(), ehd.ElrodAdams(cavity_pressure=-1e5)], ids=repr)
-def test_what_enters_at_the_edges_leaves_at_the_ends(cavitation):
-    arc = ehd.Arc(start=3.6, extent=2.1, leading_pressure=2e5)
-    film = ehd.steady(
-        bearing_on(arc, cavitation=cavitation), speed=300.0, eccentricity_ratio=0.7, direction=4.4, tilt=(1e-4, 0.0)
-    )
-    assert film.supply_flows.shape == (2,)
-    assert film.supply_flows[0] > 0.0
-    assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-8)
+def test_what_enters_at_the_edges_leaves_at_the_ends():
+    """To rounding without motion, when both edges feed the film."""
+    arc = ehd.Arc(start=3.6, extent=2.1, leading_pressure=2e5, trailing_pressure=1e5)
+    film = ehd.steady(bearing_on(arc), speed=0.0, eccentricity_ratio=0.7, direction=4.4, tilt=(1e-4, 0.0))
+    assert film.supply_flows.min() > 0.0
+    assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-10)
+
+
+@pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams()], ids=repr)
+def test_flows_and_friction_on_a_finer_grid(cavitation):
+    """Within 0.5 % of those on 384 columns; nothing enters where the film leaves."""
+    films = []
+    for grid in ({}, {"n_theta": 384, "n_z": 40}):
+        bearing = bearing_on(ehd.Arc(start=3.4, extent=2.3), cavitation=cavitation, film=ehd.FiniteLength(**grid))
+        films.append(ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.75, direction=4.5, tilt=(1e-4, 0.0)))
+    found, fine = films
+    assert found.supply_flows[1] == fine.supply_flows[1] == 0.0
+    for name in ("leakage", "friction_torque", "power_loss"):
+        assert getattr(found, name) == pytest.approx(getattr(fine, name), rel=5e-3), name
+    assert found.supply_flows[0] == pytest.approx(fine.supply_flows[0], rel=5e-3)
 
 
 def test_the_journal_is_free_beside_the_arc():

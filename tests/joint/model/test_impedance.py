@@ -297,8 +297,8 @@ def test_refused_bearings(make_bearing, options, message):
         ({"n_z": 1}, "n_z must be"),
         ({"n_eccentricity": 2}, "n_eccentricity"),
         ({"n_direction": 2}, "n_direction"),
-        ({"largest_eccentricity_ratio": 0.999}, "within 0.5 and 0.995"),
-        ({"stretch": 0.99}, "within 0 and 0.95"),
+        ({"largest_eccentricity_ratio": 0.999}, "between 0.5 and 0.995"),
+        ({"stretch": 0.99}, "between 0 and 0.95"),
     ],
 )
 def test_refused_values(values, message):

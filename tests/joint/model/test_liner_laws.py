@@ -68,7 +68,7 @@ def motion(eps, angle=0.7, speed=SPEED, rate=0.0):
 
 def length_of(effect, flow, p_end, K):
     """Length (m) over which a flow (m2/s) along z takes the pressure to ``p_end`` in the sheared gap C + K p."""
-    oil, points = fluidity_table(CARREAU.exponent, CARREAU.residual), gauss_points(12)
+    oil, points = fluidity_table(CARREAU), gauss_points(12)
     time = CARREAU.relaxation_time
 
     def per_slope(p):

@@ -370,7 +370,7 @@ def test_place_of_the_smallest_gap_with_a_profile(make_bearing, make_motion):
 def test_grids_beyond_any_use_are_refused_when_described(film, name):
     """Grids of a million vertices, and of the first number that is too many, raise errors that name the limit."""
     for count in (20_001, 1_000_000, 10**30):
-        with pytest.raises(ehd.InputError, match=rf"{name} must be within \d+ and 20000, got {count}; "):
+        with pytest.raises(ehd.InputError, match=rf"{name} must be between \d+ and 20000, got {count}; "):
             film(**{name: count})
 
 

@@ -212,18 +212,19 @@ def test_contact_supports_a_standing_journal():
 
 
 def test_wear_grows_by_archard():
-    """One step: k p v dt at every vertex to rounding.
-
-    Two halves of a step from the same state wear the same to first order.
-    """
+    """One step: k p v dt at every vertex to rounding, told as the largest depth and the volume at its end."""
     rate, step = 1e-13, 1e-3
     model = build_model(bearing(asperity=ASPERITY, wear=ehd.ArchardWear(wear_rate=rate)))
     motion = at(0.98, axial=1.0)
     start = model.initial_history(motion)
     assert start.wear.shape == model.grid.shape and not start.wear.any()
-    after = model.evaluate(motion, start, step).history()
-    speed = math.hypot(R * SPEED, 1.0)
-    np.testing.assert_allclose(after.wear * C, rate * model.parts.contacts.P[0] * speed * step, rtol=1e-13)
+    evaluation = model.evaluate(motion, start, step)
+    told, after = evaluation.quantities(), evaluation.history()
+    depth = rate * model.parts.contacts.P[0] * math.hypot(R * SPEED, 1.0) * step
+    np.testing.assert_allclose(after.wear * C, depth, rtol=1e-13)
+    assert told["wear_depth"] == pytest.approx(depth.max(), rel=1e-13)
+    assert told["worn_volume"] == pytest.approx(R**2 * np.sum(depth * model.grid.area), rel=1e-13)
+    assert "worn_volume" not in build_model(bearing(asperity=ASPERITY)).evaluate(motion).quantities()
     assert not start.wear.any()
     accelerated = build_model(bearing(asperity=ASPERITY, wear=ehd.ArchardWear(wear_rate=rate / 1e3, acceleration=1e3)))
     other = accelerated.evaluate(motion, accelerated.initial_history(motion), step).history()

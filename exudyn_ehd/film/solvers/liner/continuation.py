@@ -41,19 +41,21 @@ def cold_start(film: LinerFilm) -> tuple[bool, int]:
 
 def _dry_guess(film: LinerFilm) -> None:
     """Set a full film as the initial guess. Without a contact, its pressure opens gaps below `THIN` to `THIN`, within
-    the limits of `_transformed`; in a film at rest it is at most the largest prescribed pressure."""
+    the limits of `_transformed`; in a film at rest it is at most the largest prescribed pressure. Curves open the liner
+    by `THIN` at most."""
     H0 = film.rigid[0]
-    guess = np.zeros(H0.shape)
+    # curves of a nearly shut gap have pressures that would open it by many clearances
+    guess, most = np.zeros(H0.shape), np.full(H0.shape, THIN / max(film.beta, 1e-300))
     if film.contact is None and H0.min() < THIN and film.beta > 0.0:
         guess = np.maximum((THIN - H0) / film.beta, 0.0)
     if film.oil is not None and film.beta > 0.0:
-        guess = _transformed(film, film.oil, guess)
+        guess, most = _transformed(film, film.oil, guess), _transformed(film, film.oil, most)
     fixed = film.film.grid.fixed
     if _at_rest(film):
         guess = np.minimum(guess, film.P[fixed].max(initial=0.0))
     lowest = film.film.system.cavity_pressure if film.film.ruptures else 0.0
     film.P[~fixed] = np.maximum(guess, lowest)[~fixed]
-    film.fill_up()
+    film.fill_up(most)
 
 
 def _at_rest(film: LinerFilm) -> bool:

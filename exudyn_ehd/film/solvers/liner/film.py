@@ -186,12 +186,13 @@ class LinerFilm(WinklerElements):
             chain = GapChain(a.rate_t.copy(), self.bend.copy(), a.link.copy(), follow)
         self.at_line = AtLine((gaps[0], gaps[1]), flux, chain)
 
-    def fill_up(self) -> None:
-        """Remove the cavity: every vertex is full and has at least the pressure of a fully developed curve."""
-        w, curve = self.film.work, CurveFields(*self.film.system.curve).whole.reshape(self.P.shape)
-        np.logical_not(self.film.grid.fixed, out=w.active)
+    def fill_up(self, most: np.ndarray) -> None:
+        """Remove the cavity: every vertex is full and has at least the pressure of a fully developed curve, or
+        ``most``, whichever is less."""
+        curve = CurveFields(*self.film.system.curve).whole.reshape(self.P.shape)
+        np.logical_not(self.film.grid.fixed, out=self.film.work.active)
         self.fill[:] = 1.0
-        np.maximum(self.P, base_of(self.film.system) + curve, out=self.P, where=curve > 0.0)
+        np.maximum(self.P, np.minimum(base_of(self.film.system) + curve, most), out=self.P, where=curve > 0.0)
 
     def solve(self) -> tuple[bool, int]:
         """Solve by Newton's method from the present pressures and sets, in place; returns (found, steps)."""

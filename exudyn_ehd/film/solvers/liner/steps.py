@@ -191,11 +191,11 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, film, elements, links
             progress = (False, False, False, progress[3], progress[4])
     if not (gap > 0.0 and norm < np.inf):
         return LOST, course
-    curve, is_last = curve_of(film[3]), step + 1 == MOST_STEPS
+    terms, curve, is_last = terms_of(film[0], film[1]), curve_of(film[3]), step + 1 == MOST_STEPS
+    # old and new deflection cancel at an instant
+    stored = elements[3][1] * np.max(np.abs(elements[1][2]) * terms.area)
     even = EVEN_DENSE if progress[2] and step >= PATIENT else EVEN
-    outcome, progress = look(
-        terms_of(film[0], film[1]), film[2], kind, curve, even, is_last, full, state, rest, progress
-    )
+    outcome, progress = look(terms, film[2], kind, curve, even, stored, is_last, full, state, rest, progress)
     fresh = not progress[0]
     if outcome == GOES_ON and fresh:
         ok, count, width = factor_film(kind, P, oil, film, elements, links, thin, matrix, full)
