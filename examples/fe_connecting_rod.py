@@ -34,7 +34,7 @@ from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
 from exudyn_ehd.pictures.style import styled
-from exudyn_ehd.solid.elements.hex20 import NODES
+from exudyn_ehd.solid.elements.kinds import HEX_NODES
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
 CRANK, ROD = 0.043, 0.14
@@ -74,7 +74,7 @@ def rod_mesh(across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         return first + xi[..., None] * (second - first)
 
     cell = np.stack(np.meshgrid(*map(np.arange, (ALONG, across, AXIAL)), indexing="ij"), axis=-1).reshape(-1, 1, 3)
-    xi, eta, zeta = np.moveaxis((cell + 0.5 * (NODES + 1.0)) / np.array([ALONG, across, AXIAL]), -1, 0)
+    xi, eta, zeta = np.moveaxis((cell + 0.5 * (HEX_NODES + 1.0)) / np.array([ALONG, across, AXIAL]), -1, 0)
     shank = bridge(xi, 2.0 * eta - 1.0, LENGTH * (zeta - 0.5))
     places = np.concatenate([(big.nodes - [ROD, 0.0, 0.0])[big.elements], small.nodes[small.elements], shank]).reshape(
         -1, 3

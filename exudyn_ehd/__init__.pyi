@@ -96,10 +96,10 @@ from exudyn_ehd.joint.static.equilibrium import equilibrium as equilibrium
 from exudyn_ehd.joint.static.solve_film import FilmResult as FilmResult
 from exudyn_ehd.joint.static.solve_film import solve_film as solve_film
 from exudyn_ehd.joint.static.steady import SteadyResult as SteadyResult
+from exudyn_ehd.joint.static.steady import ThrustResult as ThrustResult
 from exudyn_ehd.joint.static.steady import steady as steady
 from exudyn_ehd.joint.static.stribeck import StribeckResult as StribeckResult
 from exudyn_ehd.joint.static.stribeck import stribeck as stribeck
-from exudyn_ehd.joint.static.thrust import ThrustResult as ThrustResult
 from exudyn_ehd.progress import show_progress as show_progress
 from exudyn_ehd.solid.bush import ANCFBush as ANCFBush
 from exudyn_ehd.solid.bush import ModalBush as ModalBush
@@ -107,9 +107,9 @@ from exudyn_ehd.solid.bush import Rayleigh as Rayleigh
 from exudyn_ehd.solid.fe_bore import BoreModesReport as BoreModesReport
 from exudyn_ehd.solid.fe_bore import FEBore as FEBore
 from exudyn_ehd.solid.fe_bore import add_bore_modes as add_bore_modes
-from exudyn_ehd.solid.journal.description import ElasticJournal as ElasticJournal
-from exudyn_ehd.solid.journal.description import HeldBands as HeldBands
-from exudyn_ehd.solid.journal.description import HeldEnds as HeldEnds
+from exudyn_ehd.solid.journal.modes import ElasticJournal as ElasticJournal
+from exudyn_ehd.solid.journal.modes import HeldBands as HeldBands
+from exudyn_ehd.solid.journal.modes import HeldEnds as HeldEnds
 from exudyn_ehd.solid.journal.turning import FEJournal as FEJournal
 from exudyn_ehd.solid.loads import DeadPressure as DeadPressure
 from exudyn_ehd.solid.loads import FollowerPressure as FollowerPressure

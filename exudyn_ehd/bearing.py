@@ -46,7 +46,7 @@ from exudyn_ehd.status import (
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.journal.description import ElasticJournal
+    from exudyn_ehd.solid.journal.modes import ElasticJournal
     from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
@@ -354,7 +354,7 @@ def _check_elastic(bearing: JournalBearing) -> None:
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.journal.description import ElasticJournal
+    from exudyn_ehd.solid.journal.modes import ElasticJournal
     from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 
     kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))

@@ -217,13 +217,10 @@ class PlausibilityWarning(UserWarning):
 def warn_user(text: str, kind: type[Warning]) -> None:
     """Warn at the line of the caller's scene, however deep inside the package this is called."""
     frame, level = sys._getframe(1), 3
-    while frame.f_back is not None and _is_own(frame.f_back.f_globals.get("__name__", "")):
+    own = __name__.partition(".")[0], "dataclasses"
+    while frame.f_back is not None and frame.f_back.f_globals.get("__name__", "").partition(".")[0] in own:
         frame, level = frame.f_back, level + 1
     warnings.warn(text, kind, stacklevel=level)
-
-
-def _is_own(module: str) -> bool:
-    return module.partition(".")[0] in (__name__.partition(".")[0], "dataclasses")
 
 
 def require_plausible(where: str, value: object, size: float | np.ndarray | None = None) -> None:

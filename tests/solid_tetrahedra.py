@@ -5,7 +5,7 @@ from itertools import permutations
 import numpy as np
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.elements.tet10 import EDGES
+from exudyn_ehd.solid.elements.kinds import TET_EDGES
 
 # Corners of a hexahedron by their bits (radial, around, along).
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
@@ -41,7 +41,7 @@ def tetrahedra(cylinder, shift=0.0, straight=False):
     r = np.hypot(nodes[:, 0], nodes[:, 1])
     z = nodes[:, 2] + inner * push * cylinder.length / cylinder.axial
     nodes = np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
-    pairs, place = np.unique(np.sort(corners[:, EDGES[:, :2]].reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    pairs, place = np.unique(np.sort(corners[:, TET_EDGES[:, :2]].reshape(-1, 2), axis=1), axis=0, return_inverse=True)
     middle = nodes[pairs].mean(axis=1)
     if not straight:
         middle[:, :2] *= (r[pairs].mean(axis=1) / np.hypot(middle[:, 0], middle[:, 1]))[:, None]

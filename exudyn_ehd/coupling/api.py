@@ -27,8 +27,7 @@ from exudyn_ehd.coupling.record.on_disk import File
 from exudyn_ehd.coupling.record.thinning import Every, Period
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
-from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.model.compile import compile_together
+from exudyn_ehd.joint.model.build import build_model, compile_together
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 
 RecordOption: TypeAlias = File | Every | Period

@@ -250,7 +250,7 @@ class LubricatedSphericalJoint(Joint):
         """Find the effects that mattered in the accepted steps, and those of them that a ball's film omits; print it.
 
         The films at the worst recorded steps are evaluated again, on a model of their own: the joint is not touched.
-        See `exudyn_ehd.joint.spherical.audit`.
+        See `exudyn_ehd.joint.spherical.steady`.
 
         Raises
         ------
@@ -258,7 +258,7 @@ class LubricatedSphericalJoint(Joint):
             If nothing was recorded yet.
         """
         # imported here: runs need none of it
-        from exudyn_ehd.joint.spherical.audit import audit_ball
+        from exudyn_ehd.joint.spherical.steady import audit_ball
 
         record = self._audited()
         return audit_ball(self.bearing, record.motion, record)

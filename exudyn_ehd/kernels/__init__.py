@@ -2,7 +2,5 @@
 
 Module map
 ----------
-ahead         which kernels a scene needs, shared out between this process and a helper
-helper        the second process
-signatures    the table ``first_films.txt``: kernels and the types of their arguments
+ahead  which kernels a scene needs, by the table ``first_films.txt``, shared out between this process and a helper
 """

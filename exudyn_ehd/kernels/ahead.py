@@ -1,29 +1,111 @@
 """Compiles the kernels of a first film by two processes, before the film would compile them one after the other.
 
-numba compiles under one lock, so that threads do not help. A helper, `exudyn_ehd.kernels.helper`, compiles kernels into
+numba compiles under one lock, so that threads do not help. A helper, a second process in `main`, compiles kernels into
 numba's cache, from which this process reads them; both take the next one of the table whose callees are there. The
 helper lives as long as the call that needs it. Where it does not start, or dies, this process compiles what is left.
 
 There is no helper if all is in the cache, on a machine with one core, in the processes of a study or of a parallel test
 run, and with ``EXUDYN_EHD_HELPER=0``.
+
+The table ``first_films.txt`` has the kernels that the first films compile, with the types of their arguments as text: a
+line has a group, a kernel as ``module:function``, its arguments, and the kernels of the table that it calls. Types
+are f, i, u, b for 64-bit floats, integers, unsigned integers and bool; f2 for a contiguous array of two dimensions, f2A
+for one with any strides; - for None; (f1 f1) for a tuple and ``module:Name(f1 f1)`` for a NamedTuple. Modules are those
+of the package.
+
+The helper reads numbers of lines of the table from its standard input and answers each with the same number. It ends
+with its input, and so with the process that started it.
 """
 
 from __future__ import annotations
 
+import importlib
 import itertools
 import multiprocessing
 import os
 import pathlib
+import re
+import signal
 import subprocess
 import sys
 import threading
 from collections.abc import Iterable
 from contextlib import suppress
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
+from numba.core import types
+from numba.core.types.containers import BaseTuple
 
-from exudyn_ehd.kernels.signatures import TABLE, Kernel, table
+TABLE = pathlib.Path(__file__).parent / "first_films.txt"
+PACKAGE = __name__.split(".")[0]
+SCALARS = {"f": types.float64, "i": types.int64, "u": types.uint64, "b": types.boolean, "-": types.none}
+_TOKEN = re.compile(r"[()]|[\w.]+:\w+|[fiub]\d?A?|-")
+
+
+class Kernel(NamedTuple):
+    """One line of the table.
+
+    Attributes
+    ----------
+    group : str
+        Films that need it.
+    function : str
+        ``module:function``, modules without the package's name.
+    arguments : str
+        Types, see this module.
+    after : tuple of str
+        Kernels of the table that it calls, each ``module:function``.
+    """
+
+    group: str
+    function: str
+    arguments: str
+    after: tuple[str, ...]
+
+    def compile(self) -> bool:
+        """Compile the kernel, or read it from numba's cache; returns whether it was there."""
+        dispatcher = find(self.function)
+        before = sum(dispatcher.stats.cache_hits.values())
+        known = len(dispatcher.signatures)
+        dispatcher.compile(read_types(self.arguments))
+        return len(dispatcher.signatures) == known or sum(dispatcher.stats.cache_hits.values()) > before
+
+
+def find(name: str) -> Any:
+    """Return the object of the package with the path ``module:name``."""
+    module, function = name.split(":")
+    return getattr(importlib.import_module(f"{PACKAGE}.{module}"), function)
+
+
+def table() -> tuple[Kernel, ...]:
+    """All lines, the first to be compiled first."""
+    lines = (f"{line} ".split("|") for line in TABLE.read_text(encoding="utf-8").splitlines())
+    return tuple(Kernel(g.strip(), f.strip(), a.strip(), tuple(after.split())) for g, f, a, after in lines)
+
+
+def read_types(text: str) -> tuple[types.Type, ...]:
+    """Types of the arguments of a kernel from their text."""
+    stack: list[list[types.Type]] = [[]]
+    makers: list[str] = []
+    named = ""
+    for token in _TOKEN.findall(text):
+        if token == "(":
+            stack.append([])
+            makers.append(named)
+            named = ""
+        elif token == ")":
+            items, maker = stack.pop(), makers.pop()
+            stack[-1].append(BaseTuple.from_types(items, find(maker) if maker else None))
+        elif ":" in token:
+            named = token
+        elif len(token) == 1:
+            stack[-1].append(SCALARS[token])
+        else:
+            stack[-1].append(types.Array(SCALARS[token[0]], int(token[1]), "A" if token.endswith("A") else "C"))
+    return tuple(stack[0])
+
 
 HELPER_VARIABLE = "EXUDYN_EHD_HELPER"
 # s after which a helper that has not answered is given up; it needs 2 s for its longest kernel on a quiet machine
@@ -37,7 +119,7 @@ PROBES = {
     "elrod": "film.reynolds.links:lag_void",
     "bodies": "coupling.kinematics.relative:_jac_column",
 }
-_START = "import sys; sys.path.insert(0, sys.argv[1]); from exudyn_ehd.kernels.helper import main; main()"
+_START = "import sys; sys.path.insert(0, sys.argv[1]); from exudyn_ehd.kernels.ahead import main; main()"
 _seen: set[str] = set()
 
 
@@ -167,3 +249,14 @@ def _start_helper() -> subprocess.Popen[str]:
         env=environment,
         creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
     )
+
+
+def main() -> None:
+    """Answer until the input ends."""
+    # who interrupts the run from its terminal means the first process, which ends this one
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    kernels = table()
+    print(TABLE, flush=True)
+    for line in sys.stdin:
+        kernels[int(line)].compile()
+        print(line.strip(), flush=True)

@@ -6,9 +6,9 @@ records    what pictures look at: a film, the film of a joint, a history; in whi
 mixins     ``plot_...`` methods of what is or has a film or a history; draws nothing itself
 style      sizes, colours, fonts; opening and writing a figure
 maps       unrolled maps of pressure, gap, fill and temperature; a ball's socket
-bearing3d  pressure around the bore with the journal in it
 histories  orbit in the clearance circle, polar diagram of the load, quantities over time or angle, waterfall
-bush       deformed bushes with contours of a nodal field
+bush       in space: deformed bushes with contours of a nodal field; pressure around the bore, with the journal in it
+rotors     rotors over their speed; curves of any table
 animation  orbit and pressure as gif or mp4
 vtk        film and bush as files for ParaView
 """

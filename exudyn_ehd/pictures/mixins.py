@@ -58,7 +58,7 @@ class FilmPictures(Titled):
         self, *, camera: tuple[float, float] | None = None, ax: Axes | None = None, path: Target = None
     ) -> Figure:
         """The bearing in space: pressure, journal, load on the bush; ``camera`` is elevation and azimuth, degrees."""
-        from exudyn_ehd.pictures.bearing3d import plot_bearing
+        from exudyn_ehd.pictures.bush import plot_bearing
 
         return plot_bearing(self._film(), camera=camera, title=self._title(), ax=ax, path=path)
 

@@ -12,8 +12,9 @@ total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures
 stress              Cauchy and von Mises stress at nodes and at any point
 linear              factors of a mesh's matrices
-modes               a bush reduced to modes: static ones of its bore, what these lack in motion
+pressure_modes      pressures of oil films, and the modes that they need
+bush_modes          a bush reduced to static modes of its bore
 journal             elastic journals: cylinders by harmonics, their modes
-fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`
-fe_faces            its nodes and faces, and their shape functions
+fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`;
+                    its nodes and faces, and their shape functions
 """

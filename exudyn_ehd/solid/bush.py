@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_ehd.solid.elements.element import Quadrature
-from exudyn_ehd.solid.elements.hex20 import HEX20
+from exudyn_ehd.solid.elements.kinds import HEX20
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, own_rule
 from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_number, require_type
@@ -83,8 +83,8 @@ class ANCFBush(_Solid):
     material : SaintVenantKirchhoff or NeoHooke
         `NeoHooke` for soft bushes, beyond strains of a few per cent.
     quadrature : Quadrature or None, default None
-        Of hexahedra (`exudyn_ehd.solid.elements.hex20`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
-        speed; of tetrahedra (`exudyn_ehd.solid.elements.tet10`) `HAMMER4` by default, `WALKINGTON14` for the reference.
+        Of hexahedra (`exudyn_ehd.solid.elements.kinds`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
+        speed; of tetrahedra (`exudyn_ehd.solid.elements.kinds`) `HAMMER4` by default, `WALKINGTON14` for the reference.
     damping : Rayleigh or None, default None
     parallel : bool, default False
         Loops over elements on numba's threads.
@@ -136,7 +136,7 @@ class ModalBush(_Solid):
     tolerance : float, default 0.07
         Largest error of the bore's displacement on the film's own length under sampled films of all directions, in the
         root mean square over the surface, over that displacement; of a bush that moves as a whole over what it deforms
-        locally (`exudyn_ehd.solid.modes.films`); 2e-3 to 0.2. The sampled films have an eccentricity ratio of 0.9, on
+        locally (see `solid.pressure_modes`); 2e-3 to 0.2. The sampled films have an eccentricity ratio of 0.9, on
         bores that are tilted, wavy or crowned too. At 0.07, of 150 random bushes on meshes of 12 to 24 around (held
         outside, on half of it, on a foot of 1.1 rad or at an end, 1 to 3 times as long as the film, walls of 0.15 to 1
         radius, 3e9 to 2e11 Pa, aligned and tilted) peak pressure and minimum film thickness are within 0.9 % of the

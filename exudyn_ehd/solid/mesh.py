@@ -13,8 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_ehd.solid.elements.element import Element
-from exudyn_ehd.solid.elements.hex20 import NODES
-from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
+from exudyn_ehd.solid.elements.kinds import HEX_NODES, boundary_faces, element_of
 from exudyn_ehd.solid.unrolled import Surface, patch, wrapped
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer, require_number
 
@@ -167,7 +166,7 @@ class HollowCylinder(Checked):
         """Return the mesh; xi runs along r, eta along theta, zeta along z; all mid-edge nodes lie on the cylinders."""
         counts = np.array([self.radial, self.circumferential, self.axial])
         corner = np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1).reshape(-1, 1, 3)
-        grid = 2 * corner + (NODES + 1).astype(int)
+        grid = 2 * corner + (HEX_NODES + 1).astype(int)
         grid[..., 1] %= 2 * self.circumferential
         shape = (2 * self.circumferential, 2 * self.axial + 1, 2 * self.radial + 1)
         key = np.ravel_multi_index((grid[..., 1], grid[..., 2], grid[..., 0]), shape)

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.elements.faces import Face, face_of
+from exudyn_ehd.solid.elements.element import Face, face_of
 from exudyn_ehd.status import InputError
 
 # Share of the faces that are smaller than a small one.
@@ -29,7 +29,7 @@ class Surface:
     nodes : ndarray of int, shape (k,)
         Mesh nodes of the surface, each once, ascending.
     faces : ndarray of int, shape (f, a)
-        Mesh nodes of each face, outward normal x_,r × x_,s, order of `exudyn_ehd.solid.elements.faces`.
+        Mesh nodes of each face, outward normal x_,r × x_,s, order of `exudyn_ehd.solid.elements.element`.
     local_faces : ndarray of int, shape (f, a)
         The same faces as indices into ``nodes``.
     tolerance : float

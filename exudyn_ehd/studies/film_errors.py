@@ -23,8 +23,8 @@ from typing import TypeAlias
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.balance.film import settled_history
 from exudyn_ehd.joint.balance.limits import advice
+from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.impedance import ImpedanceEvaluation, ImpedanceModel
 from exudyn_ehd.joint.model.quantities import supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation

@@ -158,7 +158,9 @@ def recommend_steps(
         bounds = _bounds(changes)
         kept = [k for k, bound in enumerate(bounds) if bound <= error]
         if kept:
-            _say_again(caught)
+            # those of the finest run; warnings of coarser ones are about steps that nobody takes
+            for text, kind in {(str(w.message), w.category) for w in caught}:
+                warn_user(text, kind)
             steps, left = FEWEST * 2 ** kept[0], bounds[kept[0]]
             reason = f"{steps} steps a period: the minimum film thickness within {error:g}, bound {left:.2g}"
             return StepRecommendation(found=True, steps=steps, error=left, reason=reason, evidence=tuple(evidence))
@@ -194,12 +196,6 @@ def _bounds(changes: list[float]) -> list[float]:
         return []
     behind = changes[-1] / (2.0 ** order_of(changes[-2], changes[-1], 2.0, 2.0) - 1.0)
     return [MARGIN * (sum(changes[k:]) + behind) for k in range(len(changes) - 1)]
-
-
-def _say_again(caught: list[warnings.WarningMessage]) -> None:
-    """Warnings of the finest run; those of coarser ones are about steps that nobody takes."""
-    for text, kind in {(str(w.message), w.category) for w in caught}:
-        warn_user(text, kind)
 
 
 def _periodic(values: np.ndarray, period: float) -> CubicHermiteSpline:

@@ -20,8 +20,7 @@ from numba.core import types
 from numba.core.types.containers import BaseTuple
 
 import exudyn_ehd as ehd
-from exudyn_ehd.kernels.ahead import HELPER_VARIABLE
-from exudyn_ehd.kernels.signatures import PACKAGE, SCALARS, TABLE, find
+from exudyn_ehd.kernels.ahead import HELPER_VARIABLE, PACKAGE, SCALARS, TABLE, find
 
 SIZE = {"journal_radius": 0.01, "length": 0.02, "radial_clearance": 20e-6}
 FILMS = ("swift", "elrod", "bodies")

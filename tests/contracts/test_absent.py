@@ -91,7 +91,7 @@ EFFECTS = {
             "joint.model.flexible",
             "joint.tangent.bore",
             "joint.bore.equilibrium",
-            "solid.modes.static",
+            "solid.bush_modes",
         ),
         {
             "bush": ehd.ModalBush(

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from exudyn_ehd.kernels import ahead
-from exudyn_ehd.kernels.signatures import TABLE, Kernel
+from exudyn_ehd.kernels.ahead import TABLE, Kernel
 
 ANSWERS = """
 import os, sys, time

@@ -8,7 +8,7 @@ from numba.core import types
 
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.kernels import ahead
-from exudyn_ehd.kernels.signatures import TABLE, find, read_types, table
+from exudyn_ehd.kernels.ahead import TABLE, find, read_types, table
 from tests.benchmarks.first_films import write_type
 
 f2, b2 = types.Array(types.float64, 2, "C"), types.Array(types.boolean, 2, "C")

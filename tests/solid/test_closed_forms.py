@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.hex20 import GAUSS8, GAUSS27, IRONS14
+from exudyn_ehd.solid.elements.kinds import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery

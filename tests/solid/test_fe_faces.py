@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.fe_bore import ReducedBore, quadrature
-from exudyn_ehd.solid.fe_faces import OUTSIDE
+from exudyn_ehd.solid.fe_bore import OUTSIDE, ReducedBore, quadrature
 from exudyn_ehd.solid.unrolled import patch
 
 RADIUS, LENGTH, AROUND, ALONG = 0.03, 0.06, 16, 3

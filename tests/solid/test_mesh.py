@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.hex20 import EDGES, GAUSS27, HEX20
+from exudyn_ehd.solid.elements.kinds import GAUSS27, HEX20, HEX_EDGES
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.mesh_import import OnCylinder, OnPlane, mesh_from_arrays, mesh_from_fem
 from exudyn_ehd.status import InputError
@@ -182,7 +182,7 @@ def test_impossible_cylinders_are_refused(argument, value, message):
 
 
 def test_middle_nodes_lie_half_way_in_cylinder_coordinates():
-    a, b, middle = np.moveaxis(MESH.nodes[MESH.elements[:, EDGES]], 2, 0)
+    a, b, middle = np.moveaxis(MESH.nodes[MESH.elements[:, HEX_EDGES]], 2, 0)
     radius = [np.hypot(*x[..., :2].reshape(-1, 2).T) for x in (a, b, middle)]
     assert np.allclose((radius[0] + radius[1]) / 2, radius[2], rtol=1e-13)
 

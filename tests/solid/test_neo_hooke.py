@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.hex20 import GAUSS27
+from exudyn_ehd.solid.elements.kinds import GAUSS27
 from exudyn_ehd.solid.loads import FollowerPressure
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery

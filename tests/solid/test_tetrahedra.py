@@ -9,8 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
-from exudyn_ehd.solid.elements.hex20 import IRONS14
-from exudyn_ehd.solid.elements.tet10 import EDGES, HAMMER4, WALKINGTON14
+from exudyn_ehd.solid.elements.kinds import HAMMER4, IRONS14, TET_EDGES, WALKINGTON14
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, SurfaceLoad, dead_forces
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery
@@ -34,7 +33,7 @@ def distorted(straight):
     """All nodes shifted at random by up to a fifth of an element; mid-edge nodes follow if edges shall be straight."""
     nodes = SMALL.nodes + (0.005 if straight else 0.002) * np.random.default_rng(4).uniform(-1, 1, SMALL.nodes.shape)
     if straight:
-        edges = SMALL.elements[:, EDGES].reshape(-1, 3)
+        edges = SMALL.elements[:, TET_EDGES].reshape(-1, 3)
         nodes[edges[:, 2]] = (nodes[edges[:, 0]] + nodes[edges[:, 1]]) / 2
     return dataclasses.replace(SMALL, nodes=nodes)
 

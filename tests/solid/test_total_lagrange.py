@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.solid.elements.blocks import smallest_volume_ratio
-from exudyn_ehd.solid.elements.hex20 import EDGES, GAUSS8, GAUSS27, IRONS14, NODES, shapes
+from exudyn_ehd.solid.elements.kinds import GAUSS8, GAUSS27, HEX_EDGES, HEX_NODES, IRONS14, hex_shapes
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
@@ -22,7 +22,7 @@ SMALL = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=2, 
 def straightened(mesh):
     """Return the mesh with mid-edge nodes half way between the corners."""
     nodes = mesh.nodes.copy()
-    edges = mesh.elements[:, EDGES].reshape(-1, 3)
+    edges = mesh.elements[:, HEX_EDGES].reshape(-1, 3)
     nodes[edges[:, 2]] = (nodes[edges[:, 0]] + nodes[edges[:, 1]]) / 2
     return dataclasses.replace(mesh, nodes=nodes)
 
@@ -44,7 +44,7 @@ def readable_force(solid, u):
     force = np.zeros_like(u)
     for nodes in solid.mesh.elements:
         for point, weight in zip(solid.quadrature.points, solid.quadrature.weights, strict=True):
-            natural = shapes(point)[1][0]
+            natural = hex_shapes(point)[1][0]
             jacobian = solid.mesh.nodes[nodes].T @ natural
             G = natural @ np.linalg.inv(jacobian)
             F = np.eye(3) + u[nodes].T @ G
@@ -162,7 +162,7 @@ def test_serial_and_parallel_kernels_agree_to_rounding(rule):
 
 def block_mesh():
     """One straight block of 0.3 x 0.2 x 0.1 m, whose mass and inertia are known."""
-    nodes = NODES * [0.15, 0.1, 0.05]
+    nodes = HEX_NODES * [0.15, 0.1, 0.05]
     return dataclasses.replace(SMALL, nodes=nodes, elements=np.arange(20)[None])
 
 
@@ -224,7 +224,7 @@ def test_damped_tangent_is_exact_in_the_rate():
 
 def test_shape_functions_carry_the_isoparametric_map():
     nodes = SMALL.nodes[SMALL.elements[0]]
-    assert np.allclose(shapes(np.zeros(3))[0] @ nodes, (nodes[8:].sum(axis=0) - nodes[:8].sum(axis=0)) / 4)
+    assert np.allclose(hex_shapes(np.zeros(3))[0] @ nodes, (nodes[8:].sum(axis=0) - nodes[:8].sum(axis=0)) / 4)
 
 
 @pytest.mark.parametrize(

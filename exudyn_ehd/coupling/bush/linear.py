@@ -18,7 +18,7 @@ from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.solid.linear.solvers import sparse_factor
+from exudyn_ehd.solid.linear import sparse_factor
 
 # Coordinates and multipliers beside the meshes at most, which are solved for as dense.
 LARGEST_REST = 200

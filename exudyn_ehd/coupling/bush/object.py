@@ -20,7 +20,7 @@ from exudyn_ehd.coupling.contract import CURRENT, Index, NodeIndex, Side, requir
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.items.reduced_bodies import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.solid.bush import ANCFBush
-from exudyn_ehd.solid.elements.faces import face_of
+from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.solid.loads import BushLoad
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.stress import StressRecovery

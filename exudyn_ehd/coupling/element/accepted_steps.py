@@ -30,8 +30,8 @@ from exudyn_ehd.coupling.watch import poor_films, solver_state
 from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, warn_of_radius
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
-from exudyn_ehd.joint.balance.film import lacks_oil
 from exudyn_ehd.joint.balance.limits import HOT
+from exudyn_ehd.joint.balance.newton import lacks_oil
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start

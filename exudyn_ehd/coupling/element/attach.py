@@ -27,8 +27,8 @@ from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
+from exudyn_ehd.joint.model.build import MESSAGE
 from exudyn_ehd.joint.model.build_flexible import TurningModel
-from exudyn_ehd.joint.model.compile import MESSAGE
 from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History

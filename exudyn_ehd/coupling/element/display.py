@@ -34,7 +34,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data, Index, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.history import COLUMNS, WIDTH, Quantity
-from exudyn_ehd.solid.elements.faces import face_of
+from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.status import InputError, Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization

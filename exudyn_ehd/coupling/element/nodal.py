@@ -35,9 +35,9 @@ from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build_flexible import TurningEvaluation, TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.tangent.spread import complete, resultant, spread_matrix
+from exudyn_ehd.joint.tangent.nodes import complete, resultant, spread_matrix
+from exudyn_ehd.solid.bush_modes import BoreModes
 from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.solid.modes.static import BoreModes
 from exudyn_ehd.status import Status
 
 # An explicit solver that is not stored gives itself away by so many whole steps in a row, behind the first one.

@@ -21,7 +21,7 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.record.on_disk import read_arrays
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.joint.balance.film import settled_history
+from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium

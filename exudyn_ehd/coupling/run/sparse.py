@@ -44,7 +44,7 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import idle, user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
-from exudyn_ehd.solid.linear.solvers import solve_by_products
+from exudyn_ehd.solid.linear import solve_by_products
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Exudyn's stubs lack the self of its solvers' methods.

@@ -6,8 +6,7 @@ audit        table of findings, the rows that it goes through
 findings     verdict about an effect; the limits from which on each matters
 case         the audited films, to compare with those of another description at the same load
 samples      recorded steps, their worst states, numbers of motions and films
-surfaces     rows of elasticity, profile, roughness, contact and wear
-oil          rows of its viscosity and heat
+effects      rows of elasticity, profile, roughness, contact and wear; of the oil's viscosity and heat
 assumptions  rows of the flow, grid, time step and ringing
 switches     effects added to a description, with typical numbers, and taken away
 ringing      forces that alternate from step to step

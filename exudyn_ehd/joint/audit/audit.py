@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.audit import assumptions, oil, surfaces
+from exudyn_ehd.joint.audit import assumptions, effects
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import Finding
 from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states
@@ -27,23 +27,23 @@ _ON = {True: "on", False: "off", None: "-"}
 AuditRow = Callable[[Case], Finding | None]
 ROWS: Mapping[str, AuditRow] = {
     "misalignment": assumptions.misalignment,
-    "elasticity": surfaces.elasticity,
-    "journal elasticity": surfaces.journal_elasticity,
-    "profile": surfaces.shape,
-    "piezoviscosity": oil.piezoviscosity,
-    "heating": oil.heating,
-    "walls": oil.walls,
-    "oil temperature": oil.temperature,
-    "shear thinning": oil.shear_thinning,
-    "roughness": surfaces.roughness,
-    "contact": surfaces.contact,
-    "wear": surfaces.wear,
+    "elasticity": effects.elasticity,
+    "journal elasticity": effects.journal_elasticity,
+    "profile": effects.shape,
+    "piezoviscosity": effects.piezoviscosity,
+    "heating": effects.heating,
+    "walls": effects.walls,
+    "oil temperature": effects.temperature,
+    "shear thinning": effects.shear_thinning,
+    "roughness": effects.roughness,
+    "contact": effects.contact,
+    "wear": effects.wear,
     "squeeze": assumptions.squeeze,
     "cavitation": assumptions.cavitation,
     "rupture": assumptions.rupture,
     "mass conservation": assumptions.mass_conservation,
-    "thrust faces": oil.faces_share,
-    "heat of thrust faces": oil.faces_heat,
+    "thrust faces": effects.faces_share,
+    "heat of thrust faces": effects.faces_heat,
     "Taylor vortices": assumptions.vortices,
     "turbulence": assumptions.turbulence,
     "fluid inertia": assumptions.inertia,

@@ -19,7 +19,7 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.reynolds.turbulence import NgPan
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
-from exudyn_ehd.joint.balance.film import is_fed
+from exudyn_ehd.joint.balance.newton import is_fed
 
 # Mineral oils: pressure and temperature coefficients of the viscosity; multigrade oils: onset of shear thinning, power
 # and residual viscosity.
@@ -69,7 +69,7 @@ def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
     With a ``tolerance`` of 0.08, peaks are 1 to 3 % off where the change is large.
     """
     # imported here: a rigid bearing needs no solid
-    from exudyn_ehd.solid.journal.description import ElasticJournal
+    from exudyn_ehd.solid.journal.modes import ElasticJournal
     from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 
     half, steel = 0.5 * bearing.length, SaintVenantKirchhoff(**STEEL)

@@ -5,21 +5,254 @@
 Modal and nodal bushes differ in S (and in what resists q) only. delta > 0 points outward and opens the gap.
 Displacements are those in the joint frame, q in m; loads are carried back by the transpose, so that the film's work
 on the bush is its work on q.
+
+Transfer between the film's vertices and the faces of a bore, pressures as loads and displacements as gaps: the pressure
+is interpolated along every line of vertices, ``p(x) = sum_v p_v L_v(x)``, by the cubic through the four vertices around
+x. With the vertices' integration weights A_v and the bore's shape functions N
+
+    load of a node  = int p N dA = sum_v p_v A_v S_v,    S_v = int L_v N dA / A_v,
+
+and the bore displaces the film's vertices by the same means S: the film's work on the bore is the bore's. The integrals
+are Gauss sums over the film's intervals, parted where faces meet. Shape functions at the vertices alone are point
+loads where an interval is no smaller than faces: the bore's displacement is then a saw-tooth.
+
+Around the bore, with even steps, the integrals of the cubics are the weights, their first three moments vanish, and S
+takes the mean of a displacement to fourth order. Along it A_v are the film's own weights, on vertices that are
+stretched between ends. There the L_v are changed as little as possible, by differences of the pressure over four
+vertices, of which those that vanish where it is linear come first, until ``int L_v dz = A_v`` and
+``int L_v z dz = A_v z_v``: force and moments of the loads are those of the film's wrench to rounding, rigid motions are
+taken exactly, and uniform pressures load the bore uniformly.
+
+On the ends, where bores constrict a film, S is the displacement itself, and likewise next to edges at which faces end,
+as of slots and holes: no mean of both sides of a slot is the bore's. `end_means` has the loads of pressures that do not
+vanish on the ends.
 """
 
 from __future__ import annotations
 
 import abc
+from math import ceil
+from typing import Protocol
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags_array
+from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.joint.bore.transfer import end_means, separate_means, vertex_means
+from exudyn_ehd.solid.bush_modes import BoreModes
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.modes import JournalModes
-from exudyn_ehd.solid.modes.static import BoreModes
 from exudyn_ehd.solid.unrolled import Surface, directed
+
+# Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.
+STENCIL = 4
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
+# Share of an interval that is too short for a panel; round-off of lengths, and of values of order one.
+TOUCHING, ROUNDING, SMALLEST = 1e-3, 1e-9, 1e-14
+LINEAR = 0.03
+# Distance, as a share of half the length, within which an edge lies on the film's end.
+RIM = 1e-4
+# Points that are looked up at once, times faces.
+LARGEST_BLOCK = 2e7
+
+
+class Faces(Protocol):
+    """Faces of a bore."""
+
+    @property
+    def cuts(self) -> tuple[np.ndarray, np.ndarray]:
+        """Angles [rad] from 0 to 2 pi, and places z [m], ascending, at which they meet."""
+
+    @property
+    def rims(self) -> np.ndarray:
+        """Edges at which they end: middle and half of their angle [rad], lowest and highest z [m], (r, 4)."""
+
+    @property
+    def count(self) -> int:
+        """Number of faces."""
+
+    def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
+        """Values at points (p,) from values at the bore's nodes."""
+
+
+def vertex_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
+    """S (n m, nodes) of a bore for an (n, m) film grid, without directions; rows add up to one."""
+    z, along, _ = _along(grid, faces.cuts[1] / grid.reference_length)
+    theta, around = _around(grid, faces.cuts[0])
+    means = kron(around, csr_matrix(along), format="csr")
+    torn = _near_rims(faces, grid)
+    if not torn.any():
+        return _pruned(means @ _values(faces, grid, theta, z))
+    means = diags((~torn).astype(float)) @ means
+    means.eliminate_zeros()
+    used = np.unique(means.indices)
+    places = np.flatnonzero(torn)
+    own = csr_matrix((np.ones(places.size), (places, np.arange(places.size))), shape=(torn.size, places.size))
+    sound = means[:, used] @ _values(faces, grid, theta, z, used)
+    return _pruned(sound + own @ _values(faces, grid, grid.x, grid.z, places))
+
+
+def end_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
+    """Return S (2 n, nodes) of the loads ``int p N dA`` of p = (1 - zeta) / 2 and (1 + zeta) / 2, zeta = 2 z / L.
+
+    Rows follow the n lines of vertices one after the other. They are divided by the integral of p, half the length.
+    """
+    z, _, weight = _along(grid, faces.cuts[1] / grid.reference_length)
+    theta, around = _around(grid, faces.cuts[0])
+    courses = csr_matrix(_end_courses(z, weight))
+    return _pruned(kron(around, courses, format="csr") @ _values(faces, grid, theta, z))
+
+
+def separate_means(
+    grid: FilmGrid, edges: np.ndarray
+) -> tuple[np.ndarray, csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
+    """The means of shapes that are a wave around times a profile along, smooth but for edges (e,) of the profile, m.
+
+    Returns angles (p,) and the means (n, p) around; places (q,), m, and the means (m, q) along; those (2, q) of
+    `end_means`.
+    """
+    z, along, weight = _along(grid, edges / grid.reference_length)
+    theta, around = _around(grid, np.zeros(0))
+    return theta, around, grid.reference_length * z, along, _end_courses(z, weight)
+
+
+def _end_courses(z: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    half = 0.5 * float(weight.sum())
+    return np.asarray(0.5 * np.stack([1.0 - z / half, 1.0 + z / half]) * weight / half)
+
+
+def _values(
+    faces: Faces, grid: FilmGrid, theta: np.ndarray, z: np.ndarray, chosen: np.ndarray | None = None
+) -> csr_matrix:
+    """Values (p, nodes) at points theta x z, scaled z, or at those with the flat numbers ``chosen``."""
+    at = np.arange(theta.size * z.size) if chosen is None else chosen
+    parts = np.array_split(at, ceil(at.size * faces.count / LARGEST_BLOCK))
+    places = grid.reference_length * z
+    return vstack([faces.interpolation(theta[p // z.size], places[p % z.size]) for p in parts], format="csr")
+
+
+def _pruned(matrix: csr_matrix) -> csr_matrix:
+    """Return a matrix without the entries that are round-off."""
+    matrix.data[np.abs(matrix.data) < SMALLEST] = 0.0
+    matrix.eliminate_zeros()
+    return matrix
+
+
+def _near_rims(faces: Faces, grid: FilmGrid) -> np.ndarray:
+    """Vertices (n m,) that share an interval of their interpolation with an edge at which faces end.
+
+    There a bore may be torn. Edges on the ends of the film or beyond do not count.
+    """
+    R, m, reach = grid.reference_length, grid.z.size, STENCIL // 2
+    end = float(grid.z[-1]) * (1.0 - RIM)
+    near = np.clip(np.arange(m) + reach * np.array([[-1], [1]]), 0, m - 1)
+    low, high = np.clip(grid.z[near], -end, end)
+    middle, half, bottom, top = faces.rims.T
+    inner = (bottom / R <= end) & (top / R >= -end)
+    torn = np.zeros(grid.shape, dtype=bool)
+    for k in np.flatnonzero(inner):
+        away = np.abs((grid.x - middle[k] + np.pi) % (2.0 * np.pi) - np.pi)
+        torn |= (away <= half[k] + reach * grid.width_x[0])[:, None] & (bottom[k] / R <= high) & (top[k] / R >= low)
+    return torn.ravel()
+
+
+def _panels(start: float, width: float, cuts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points of an interval and their weights, in units of its width from its start, between ascending cuts."""
+    inside = (cuts - start) / width
+    edges = np.concatenate(([0.0], inside[(inside > TOUCHING) & (inside < 1.0 - TOUCHING)], [1.0]))
+    size = np.diff(edges)[:, None]
+    return (edges[:-1, None] + 0.5 * size * (1.0 + GAUSS)).ravel(), (0.5 * size * WEIGHTS).ravel()
+
+
+def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Polynomials (x, nodes) that are one at a node each and zero at the others."""
+    out = np.ones((x.size, nodes.size))
+    for i, own in enumerate(nodes):
+        for other in np.delete(nodes, i):
+            out[:, i] *= (x - other) / (own - other)
+    return out
+
+
+def _around(grid: FilmGrid, cuts: np.ndarray) -> tuple[np.ndarray, csr_matrix]:
+    """Angles (p,) of the points around the bore, and the means (n, p)."""
+    n, step = grid.x.size, float(grid.width_x[0])
+    angles, values, vertices = [], [], []
+    for i, start in enumerate(grid.x):
+        x, weight = _panels(0.0, step, np.sort((cuts - start) % (2.0 * np.pi)))
+        angles.append(start + step * x)
+        values.append(_lagrange(np.arange(STENCIL) - 1.0, x) * weight[:, None])
+        vertices.append(np.broadcast_to((i - 1 + np.arange(STENCIL)) % n, values[-1].shape))
+    theta = np.concatenate(angles)
+    places = np.concatenate(vertices).ravel(), np.repeat(np.arange(theta.size), STENCIL)
+    return theta, csr_matrix((np.concatenate(values).ravel(), places))
+
+
+def _along(grid: FilmGrid, cuts: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Scaled places (p,) of the points along the bore, the means (m, p) and the points' weights (p,)."""
+    z, area = grid.z, grid.weight_z
+    m, half = z.size, 0.5 * float(area.sum())
+    # slices that have no vertices on the ends reach up to these
+    edges = np.concatenate(([-half], z[1:-1], [half]))
+    on_ends = abs(float(z[-1]) - half) < ROUNDING * half
+    places, weights, values, changes = [], [], [], []
+    for j, width in enumerate(np.diff(edges)):
+        x, weight = _panels(edges[j], width, cuts)
+        near = np.arange(max(0, min(j - 1, m - STENCIL)), m)[:STENCIL]
+        scaled = (z[near] - edges[j]) / width
+        value, change = np.zeros((x.size, m)), np.zeros((near.size - 1, m))
+        value[:, near] = _lagrange(scaled, x)
+        slope = scaled - scaled.mean()
+        change[0, near] = LINEAR * slope / np.linalg.norm(slope)
+        # what vanishes where the pressure is linear
+        change[1:, near] = np.linalg.svd(np.vander(scaled, 2).T)[2][2:]
+        places.append(edges[j] + width * x)
+        weights.append(width * weight)
+        values.append(value)
+        changes.append(np.broadcast_to(change, (x.size, *change.shape)))
+    at, share = np.concatenate(places), np.concatenate(weights)
+    L = _with_moments(z, area, (at, share), np.concatenate(values), np.concatenate(changes), on_ends)
+    means = (L * share[:, None] / area).T
+    if not on_ends:
+        return at, means, share
+    means = np.pad(means, ((0, 0), (1, 1)))
+    means[[0, -1]] = np.eye(means.shape[1])[[0, -1]]
+    return np.concatenate(([-half], at, [half])), means, np.pad(share, 1)
+
+
+def _with_moments(
+    z: np.ndarray,
+    area: np.ndarray,
+    points: tuple[np.ndarray, np.ndarray],
+    L: np.ndarray,
+    changes: np.ndarray,
+    on_ends: bool,
+) -> np.ndarray:
+    """Interpolation (p, m) with the smallest changes that make its integrals the weights, centred on the vertices.
+
+    Parameters
+    ----------
+    z, area : (m,) arrays
+        Vertices and their weights.
+    points : (p,) arrays
+        Places and weights.
+    L : (p, m) array
+        Interpolation.
+    changes : (p, c, m) array
+        Possible additions to it at each point.
+    on_ends : bool
+        The first and the last vertex count for nothing.
+    """
+    at, share = points
+    counts = slice(1, -1) if on_ends else slice(None)
+    moments = np.stack([np.ones((at.size, z.size)), (at[:, None] - z) / np.gradient(z)])
+    lack = np.stack([area, 0.0 * area]) - np.einsum("p,kpm,pm->km", share, moments, L)
+    # a point's change in units that make equal fields equally large
+    root = np.sqrt(share)
+    lack, wanted = lack[:, counts].ravel(), np.einsum("p,kpm,pcm->kmpc", root, moments, changes)[:, counts]
+    matrix = wanted.reshape(lack.size, changes.shape[0] * changes.shape[1])
+    amount = np.linalg.lstsq(matrix, lack, rcond=1e-10)[0].reshape(changes.shape[:2])
+    out: np.ndarray = L + np.einsum("p,pc,pcm->pm", 1.0 / root, amount, changes)
+    return out
+
 
 # Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
 TURNED = 1e-6
@@ -157,7 +390,7 @@ class NodalBore(Bore):
     Attributes
     ----------
     values : csr matrix (n m, nodes)
-        Of `exudyn_ehd.joint.bore.transfer.vertex_means`.
+        Of `exudyn_ehd.joint.bore.shapes.vertex_means`.
     """
 
     shapes: csr_matrix

@@ -20,7 +20,7 @@ from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, FilmOnBore, Newton, NodalEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
-from exudyn_ehd.solid.linear.solvers import sparse_factor
+from exudyn_ehd.solid.linear import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import Status
 

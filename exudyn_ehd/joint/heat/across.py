@@ -26,8 +26,8 @@ from exudyn_ehd.film.heat.across import (
 )
 from exudyn_ehd.film.heat.energy import ViscosityField, film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.joint.heat.heat_balance import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.power import dropped, sheared
+from exudyn_ehd.joint.heat.temperature import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.walls import FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
 

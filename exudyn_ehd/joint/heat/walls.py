@@ -18,12 +18,10 @@ from scipy.linalg import lu_factor, lu_solve
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, Rings, Walls
-from exudyn_ehd.joint.heat.band import BandSolver
-from exudyn_ehd.joint.heat.heat_balance import HeatBalance, PassageData
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of
-from exudyn_ehd.joint.heat.temperature import OilTemperature
+from exudyn_ehd.joint.heat.temperature import BandSolver, HeatBalance, OilTemperature, PassageData
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.solid.linear.solvers import solve_by_products
+from exudyn_ehd.solid.linear import solve_by_products
 
 # Share of the heat to which what the film gives and what the walls take agree.
 AGREED = 1e-13

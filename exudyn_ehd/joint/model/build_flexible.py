@@ -21,11 +21,10 @@ from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, JournalMotion, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
+from exudyn_ehd.solid.bush_modes import bore_modes
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-from exudyn_ehd.solid.journal.description import ElasticJournal
-from exudyn_ehd.solid.journal.modes import journal_modes
+from exudyn_ehd.solid.journal.modes import ElasticJournal, journal_modes
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
-from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.status import InputError, Status
 
 

@@ -5,7 +5,7 @@ The motion (10,) of the rigid surfaces is followed by the bore's coordinates and
     motion = [x, y, ..., omega, w, q_1 .. q_k, dq_1/dt .. dq_k/dt];
 
 the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q, with those of the film's moment
-on a bush that it turns (`exudyn_ehd.solid.modes.static`). The bush resists q outside of this model; only
+on a bush that it turns (`exudyn_ehd.solid.bush_modes`). The bush resists q outside of this model; only
 `evaluate_steady` knows its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
 
 An elastic journal's coordinates follow the bore's: what its surface recedes by opens the gap alike, S = [S_bore,
@@ -40,8 +40,7 @@ from exudyn_ehd.joint.solved_film import (
     SolvedFilm,
 )
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
-from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, traction
-from exudyn_ehd.joint.tangent.spread import complete
+from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, complete, traction
 from exudyn_ehd.status import Status, warn_user
 
 # Travel of the journal's ends by tilt, over the clearance, from which modes that are even along the axis are no model.

@@ -21,7 +21,7 @@ from exudyn_ehd.joint.solved_film import (
     OilFields,
     Scales,
 )
-from exudyn_ehd.joint.tangent.drag import drag_weights, pulls_unevenly
+from exudyn_ehd.joint.tangent.true_gap import drag_weights, pulls_unevenly
 
 _NO_CONTACT = np.zeros(6)
 # Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that

@@ -19,8 +19,8 @@ from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.sensitivity import add_gap
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
+from exudyn_ehd.joint.model.effects import film_parts
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of
-from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
 from exudyn_ehd.joint.plain_film import is_plain, solve_plain
 from exudyn_ehd.joint.seams import Effects

@@ -2,9 +2,7 @@
 
 Module map
 ----------
-bearing  `SphericalBearing`, what a scene writes
-patch    the film grid of a patch of a sphere
+bearing  `SphericalBearing`, what a scene writes; the film grid of a patch of a sphere
 model    loads on the ball and their exact tangent
-steady   prescribed position
-audit    what mattered in its films, and what they leave out
+steady   prescribed position; audit: what mattered in its films, and what they leave out
 """

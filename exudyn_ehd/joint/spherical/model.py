@@ -35,8 +35,8 @@ Where a wall limits the film's gap to H(g), g the true one, sources and T_p carr
 With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`),
 loads take p(q) and the viscosity of every vertex; heat is sum H^3 dq dP.
 
-The pressure comes from the film solver of cylindrical bearings on the grid of `exudyn_ehd.joint.spherical.patch`: with
--N u / c for the storage of a control volume it needs no other input. Second order in both directions.
+The pressure comes from the film solver of cylindrical bearings on the grid of `exudyn_ehd.joint.spherical.bearing`:
+with -N u / c for the storage of a control volume it needs no other input. Second order in both directions.
 """
 
 from __future__ import annotations
@@ -53,8 +53,7 @@ from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
 from exudyn_ehd.joint.solved_film import History, LimiterFields
-from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.patch import COMPONENTS, sphere_patch
+from exudyn_ehd.joint.spherical.bearing import COMPONENTS, SphericalBearing, sphere_patch
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, quotients
 from exudyn_ehd.status import Status
 

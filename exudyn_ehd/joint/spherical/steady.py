@@ -1,15 +1,33 @@
-"""A prescribed position of the ball, without a multibody model."""
+"""A prescribed position of the ball, without a multibody model, and the audit of a ball joint.
+
+The audit says which effects mattered in the films of a ball, and which of them a spherical film leaves out. Rows,
+limits and verdicts are those of `exudyn_ehd.joint.audit`. What a `SphericalBearing` can have (a pressure law, a wall,
+another closure, a finer grid) is switched, and the ball moved to where the other film carries the same load at the same
+velocities. Elasticity, heat, shear thinning, roughness, turbulence and the oil of cavities, which it can't have, are
+judged by their numbers alone: such a row has no remedy but what its advice says.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, cast
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.loads import refined_peak
+from exudyn_ehd.film.surfaces.contact import RegularisedWall
+from exudyn_ehd.joint.audit import effects
+from exudyn_ehd.joint.audit.audit import ROWS, Audit, AuditRow, audit_of
+from exudyn_ehd.joint.audit.case import Case
+from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
+from exudyn_ehd.joint.audit.samples import SMALLEST_GAP_SHARE, TENSION, FilmState, RecordedSteps, Sources, squeeze_share
+from exudyn_ehd.joint.audit.switches import STEEL, TYPICAL_ROUGHNESS
 from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
 from exudyn_ehd.joint.tangent.one_sided import LARGEST_SPREAD
@@ -20,7 +38,144 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
-    from exudyn_ehd.joint.audit.audit import Audit
+
+# Asperities carry from so many roughnesses on; a typical wall begins there, at most at this share of the clearance.
+TOUCHING, THIN = 4.0, 0.1
+# Intervals across a ball's pressure peak from which on its load is within 1 %; four times as many are plainly enough.
+ACROSS = {
+    "grid around": Limit(4.0, "intervals", below=True, nothing=16.0),
+    "grid along": Limit(3.0, "intervals", below=True, nothing=12.0),
+}
+
+
+def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedSteps | None = None) -> Audit:
+    """Audit a ball by its films at motions (n, 11), or at the worst ones of a joint's record.
+
+    Raises
+    ------
+    FilmError
+        If there is no film at any of them.
+    """
+    if record is not None:
+        # a record has place, velocity and angular velocity one behind the other
+        motions = np.insert(record.motion[:, :9], [3, 6], 0.0, axis=1)
+        record = replace(record, motion=motions, leakage=moved_oil(bearing, motions))
+        spin = np.linalg.norm(motions[:, SPIN], axis=1)
+        motions = motions[record.extremes(spin, squeeze_share(ball_sources(motions)))]
+    states = [FilmState(motion) for motion in motions]
+    return audit_of(BallCase(SphericalModel(bearing), states, record), BALL_ROWS)  # type: ignore[arg-type]
+
+
+def ball_sources(motions: np.ndarray) -> Sources:
+    """Sources of Reynolds' equation by motions (n, 11) of a ball."""
+    place, velocity, spin = (motions[None, :, part] for part in (PLACE, VELOCITY, SPIN))
+    return place, velocity, 0.5 * np.linalg.norm(np.cross(place, spin), axis=2)
+
+
+def moved_oil(b: SphericalBearing, motions: np.ndarray) -> np.ndarray:
+    """Flow (n,) that the surfaces of a ball drag along and press aside at motions (n, 11), m3/s."""
+    first, last = b.socket_angles
+    slide, velocity = (np.linalg.norm(motions[:, part], axis=1) for part in (SPIN, VELOCITY))
+    dragged = 0.5 * b.ball_radius * slide * b.radial_clearance * b.ball_radius * (last - first)
+    return np.asarray(dragged + math.pi * b.ball_radius**2 * velocity)
+
+
+class BallCase(Case):
+    """Films of a ball at the audited motions (11,)."""
+
+    model: SphericalModel  # type: ignore[assignment]
+    bearing: SphericalBearing  # type: ignore[assignment]
+    # of some directions the force of a ball knows little
+    axes, entries, tolerance = 3, SIZE, 3e-4
+    surface, steel = "socket", "steel under the peak"
+    omitted: ClassVar[Mapping[str, str]] = {
+        "elasticity": "even steel gives way: a ball's film is one of rigid surfaces, whose peak is too high and whose "
+        "minimum film thickness is too small here.",
+        "roughness": "the film is that of smooth surfaces: take load and friction as estimates where it is so thin.",
+        "heating": "films of balls are isothermal: give the lubricant the viscosity at their temperature.",
+        "shear thinning": "a multigrade oil thins here: give the lubricant its viscosity at this shear rate.",
+        "mass conservation": "cavities keep no oil in a ball's film: where they move or refill, its forces come too "
+        "early.",
+        "turbulence": "beyond the laminar film: friction is too low.",
+    }
+
+    def build(self, bearing: SphericalBearing) -> SphericalModel:  # type: ignore[override]
+        """Model of another ball."""
+        return SphericalModel(bearing)
+
+    def sources(self, motions: np.ndarray) -> Sources:
+        """Sources of Reynolds' equation by motions (n, 11)."""
+        return ball_sources(motions)
+
+    def slide(self, motions: np.ndarray) -> np.ndarray:
+        """Size (n,) of the angular velocity of motions (n, 11), rad/s."""
+        return np.linalg.norm(motions[:, SPIN], axis=1)
+
+    def turns(self, motions: np.ndarray) -> np.ndarray:
+        """Zeros (n,): a ball has no turns to count steps by."""
+        return np.zeros(len(motions))
+
+    def own_numbers(  # type: ignore[override]
+        self, found: SphericalEvaluation
+    ) -> tuple[dict[str, float], Resolution]:
+        """Numbers of a film that rows of balls read, and the resolution of its pressure peak by the grid."""
+        film, b, motion, area = found.film, self.bearing, found.motion, self.model.patch.area
+        assert film is not None
+        R, p, share = b.ball_radius, film.pressure, area / area.sum()
+        i, j = divmod(int(p.argmax()), p.shape[1])
+        half = p.shape[0] // 2
+        around, along = intervals_at_half(np.roll(p[:, j], half - i), half), intervals_at_half(p[i], j)
+        # half-spaces of steel under the peak on the circle of the area at half of it, ball and socket
+        radius = R * math.sqrt(float(area[p >= 0.5 * p.max()].sum()) / math.pi)
+        numbers = {
+            "speed": R * float(np.linalg.norm(motion[SPIN])) + float(np.linalg.norm(motion[VELOCITY])),
+            "minimum_gap": max(found.minimum_gap, SMALLEST_GAP_SHARE * b.radial_clearance),
+            "flow": float(moved_oil(b, motion[None])[0]),
+            "viscosity": b.lubricant.viscosity,
+            "cavitated": float(share[~film.unbroken].sum()),
+            "tension": float(share[p < TENSION].sum()),
+            "compliance": 4.0 * (1.0 - STEEL["poisson_ratio"] ** 2) / STEEL["youngs_modulus"] * radius,
+        }
+        return numbers, Resolution(around, along, narrowing=1.0, growth=1.0, wanted=None)
+
+    def compared(self, found: SphericalEvaluation) -> tuple[float, float, float]:  # type: ignore[override]
+        """Minimum film thickness, m, refined peak pressure, Pa, and loss, W."""
+        assert found.film is not None
+        grid, chi = found.model.grid, found.model.patch.chi
+        peak = refined_peak(found.film.pressure, grid.fixed, grid.x, chi, True)[0]
+        return found.minimum_gap, peak, found.quantities()["power_loss"]
+
+
+def _contact(case: Case) -> Finding:
+    if case.bearing.contact is not None:
+        return effects.contact(case)
+    wall = RegularisedWall(onset=min(TOUCHING * TYPICAL_ROUGHNESS, THIN * case.bearing.radial_clearance))
+    switch, advice = partial(replace, contact=wall), "surfaces touch: contact=RegularisedWall(...)."
+    limit = LIMITS["asperities"]._replace(nothing=None)
+    return judged(case, "contact", *effects.thinnest(case), False, switch, limit=limit, mattering=advice)
+
+
+def _grid(case: Case, effect: str, name: str, seen: str) -> Finding:
+    size, value = getattr(case.bearing, name), min(getattr(found, seen) for found in case.resolutions)
+    return judged(
+        case,
+        effect,
+        f"intervals across the peak at half its height, {name} = {size}",
+        value,
+        None,
+        partial(replace, **{name: 2 * size}),
+        limit=ACROSS[effect],
+        mattering=f"the pressure peak is too narrow for the grid: {name}={2 * size}.",
+    )
+
+
+# Rows of journals that say nothing about a ball, and those of its own.
+_JOURNALS = ("misalignment", "journal elasticity", "Taylor vortices")
+BALL_ROWS: dict[str, AuditRow] = {name: row for name, row in ROWS.items() if name not in _JOURNALS} | {
+    "contact": _contact,
+    "grid around": partial(_grid, effect="grid around", name="n_phi", seen="columns"),
+    "grid along": partial(_grid, effect="grid along", name="n_chi", seen="rows"),
+}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,9 +235,6 @@ class SphericalResult:
 
     def audit(self) -> Audit:
         """Find the effects that matter in this film, and those of them that the film omits; print it for a table."""
-        # imported here: films need none of it
-        from exudyn_ehd.joint.spherical.audit import audit_ball
-
         return audit_ball(self.bearing, self.motion[None])
 
     def plot_pressure(self, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:

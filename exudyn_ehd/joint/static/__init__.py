@@ -3,9 +3,8 @@
 Module map
 ----------
 solve_film          film in any gap
-steady              prescribed position
-thrust              films on the end faces there
-equilibrium         position under a load, stiffness and damping
+steady              prescribed position; films on the end faces there
+equilibrium         position under a load, the steadiest of several; stiffness and damping
 dynamic_stiffness   both at any frequency, for films that remember their oil and between surfaces that yield
 stribeck            friction over speed
 """

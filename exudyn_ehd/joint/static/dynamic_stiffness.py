@@ -38,7 +38,7 @@ from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
-from exudyn_ehd.joint.tangent.line import line_by_motion, true_fills, weigh_fills
+from exudyn_ehd.joint.tangent.true_gap import line_by_motion, true_fills, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, wrench_rows
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.

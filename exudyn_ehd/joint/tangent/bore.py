@@ -25,8 +25,7 @@ from exudyn_ehd.film.sensitivity import gap_stencil, motion_columns, shear_field
 from exudyn_ehd.film.surfaces.contact import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import drag_by_gap
-from exudyn_ehd.joint.tangent.line import shear_of_fills, true_fills, true_line, weigh_fills
+from exudyn_ehd.joint.tangent.true_gap import drag_by_gap, shear_of_fills, true_fills, true_line, weigh_fills
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
     couette_slopes,

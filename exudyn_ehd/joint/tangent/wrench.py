@@ -19,8 +19,10 @@ from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, drag_by_deflection
-from exudyn_ehd.joint.tangent.line import (
+from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
+from exudyn_ehd.joint.tangent.true_gap import (
+    add_drag_by_pose,
+    drag_by_deflection,
     line_by_motion,
     ratio_of,
     shear_of_ends,
@@ -29,7 +31,6 @@ from exudyn_ehd.joint.tangent.line import (
     true_line,
     weigh_fills,
 )
-from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
 
 def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:

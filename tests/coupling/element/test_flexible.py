@@ -8,7 +8,8 @@ import scenes
 from exudyn.advancedUtilities import ItemODE2Coordinates, NumericalJacobian
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling import ConfigureSolver, CreateLubricatedJoint
+from exudyn_ehd.coupling.api import CreateLubricatedJoint
+from exudyn_ehd.coupling.run.newton_limits import ConfigureSolver
 
 BEARING = ehd.JournalBearing(
     journal_radius=0.02,

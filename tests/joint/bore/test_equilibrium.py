@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.film import evaluate_at
+from exudyn_ehd.joint.balance.newton import evaluate_at
 from exudyn_ehd.joint.bore.equilibrium import Newton
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.elements.kinds import boundary_faces

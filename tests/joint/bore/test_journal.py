@@ -191,7 +191,7 @@ def test_modes_of_an_ideal_film_grid_have_the_loads_of_the_pressure():
 @pytest.mark.slow
 def test_against_a_coupled_solution_on_hexahedra():
     """A hollow pin in two bosses: compliance of a mesh on the film's vertices, coupled by a damped fixed point."""
-    from exudyn_ehd.solid.linear.solvers import sparse_factor
+    from exudyn_ehd.solid.linear import sparse_factor
     from exudyn_ehd.solid.mesh import HollowCylinder
     from exudyn_ehd.solid.total_lagrange import TotalLagrange
 

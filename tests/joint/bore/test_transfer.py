@@ -10,11 +10,10 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid, long_bearing_grid
 from exudyn_ehd.film.models import film_grid
-from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore
-from exudyn_ehd.joint.bore.transfer import vertex_means
-from exudyn_ehd.solid.fe_faces import OUTSIDE
-from exudyn_ehd.solid.linear.solvers import held_solution
-from exudyn_ehd.solid.modes.static import bore_modes
+from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore, vertex_means
+from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.fe_bore import OUTSIDE
+from exudyn_ehd.solid.linear import held_solution
 from exudyn_ehd.solid.unrolled import patch
 from tests.solid_pressures import pressure_loads
 from tests.solid_tetrahedra import tetrahedra

@@ -10,7 +10,7 @@ from scipy.optimize import root
 from scipy.special import i0, i1
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.film import settled_history
+from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.build import build_model
 
 R, L, C, SUPPLY, MU, BETA, OMEGA, K_OIL = 0.025, 0.05, 25e-6, 320.0, 0.02, 0.03, 300.0, 0.13

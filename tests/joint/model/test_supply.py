@@ -165,7 +165,7 @@ def test_absent_supply_is_absent(make_bearing, monkeypatch):
     def forbidden(*args, **kwargs):
         raise AssertionError("called without supply")
 
-    monkeypatch.setattr("exudyn_ehd.joint.model.parts.SupplyMap", forbidden)
+    monkeypatch.setattr("exudyn_ehd.joint.model.effects.SupplyMap", forbidden)
     monkeypatch.setattr("exudyn_ehd.bearing.check_supply", forbidden)
     model = build_model(make_bearing(film=GRID))
     evaluation = model.evaluate(MOTION, spin=3.0)

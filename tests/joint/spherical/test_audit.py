@@ -9,8 +9,8 @@ from scipy.optimize import root
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.audit.samples import squeeze_rate, squeeze_share
-from exudyn_ehd.joint.spherical.audit import ball_sources
 from exudyn_ehd.joint.spherical.model import PLACE, SphericalModel
+from exudyn_ehd.joint.spherical.steady import ball_sources
 
 R, C = 0.015, 30e-6
 SOCKETS = ((0.0, 0.5 * math.pi), (0.0, 2.3), (0.7, math.pi - 0.7), (0.3, 2.2))

@@ -173,7 +173,7 @@ def test_equal_shares_call_nothing(monkeypatch):
         raise AssertionError("called for equally rough surfaces")
 
     for name in ("drag_weights", "drag_by_gap", "add_drag_by_pose"):
-        monkeypatch.setattr(f"exudyn_ehd.joint.tangent.drag.{name}", forbidden)
+        monkeypatch.setattr(f"exudyn_ehd.joint.tangent.true_gap.{name}", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.model.loads.drag_weights", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.tangent.wrench.add_drag_by_pose", forbidden)
     model_of(0.5).evaluate(at(0.5)).tangent()

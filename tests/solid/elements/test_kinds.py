@@ -6,10 +6,8 @@ from math import factorial, prod
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.faces import FLAT_TRIANGLE, QUADRILATERAL, TRIANGLE, face_of
-from exudyn_ehd.solid.elements.hex20 import GAUSS8, GAUSS27, HEX20, IRONS14
-from exudyn_ehd.solid.elements.kinds import ELEMENTS
-from exudyn_ehd.solid.elements.tet10 import HAMMER4, TET10, WALKINGTON14
+from exudyn_ehd.solid.elements.element import FLAT_TRIANGLE, QUADRILATERAL, TRIANGLE, face_of
+from exudyn_ehd.solid.elements.kinds import ELEMENTS, GAUSS8, GAUSS27, HAMMER4, HEX20, IRONS14, TET10, WALKINGTON14
 
 ROUNDING = 1e-13  # sums of 20 products of order one
 NAMES = [element.fem for element in ELEMENTS]

@@ -6,9 +6,8 @@ from scipy.integrate import solve_ivp
 from scipy.sparse.linalg import splu
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.journal.description import ElasticJournal, HeldBands, HeldEnds
 from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
-from exudyn_ehd.solid.journal.modes import FINE, GROWTH_INWARDS, _Reduction
+from exudyn_ehd.solid.journal.modes import FINE, GROWTH_INWARDS, ElasticJournal, HeldBands, HeldEnds, _Reduction
 from tests.reference.elastic_rings import bore_displacement, cylinder_yielding
 
 E, NU = 2.1e11, 0.3
@@ -105,7 +104,7 @@ def test_held_pin_bends_like_a_beam(inner):
 )
 def test_against_hexahedra(held, tolerance):
     """A hollow pin under a pressure of all waves, on a structured mesh of 20-node elements held at the same places."""
-    from exudyn_ehd.solid.linear.solvers import sparse_factor
+    from exudyn_ehd.solid.linear import sparse_factor
     from exudyn_ehd.solid.mesh import HollowCylinder
     from exudyn_ehd.solid.total_lagrange import TotalLagrange
     from tests.solid_pressures import pressure_loads

@@ -88,7 +88,7 @@ def square(weight, values):
     ],
 )
 def test_told_error_is_that_of_the_elements_under_films(held, inner, tolerance):
-    """The told error against the elements', over |v| max(|v| / |u|, 0.05) of `exudyn_ehd.solid.modes.films`.
+    """The told error against the elements', over |v| max(|v| / |u|, 0.05) of `exudyn_ehd.solid.pressure_modes`.
 
     The largest error of the films is 0.67 to 1.5 of the told one; with the few modes of the tolerance 0.1, of which
     pairs take off more at once, down to half of it.

@@ -31,10 +31,10 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
+from exudyn_ehd.solid.bush_modes import bore_modes
 from exudyn_ehd.solid.elements.element import Quadrature
-from exudyn_ehd.solid.elements.hex20 import GAUSS27, IRONS14
+from exudyn_ehd.solid.elements.kinds import GAUSS27, IRONS14
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import EHDError
 from tests.benchmarks.accuracy.errors.study import Progress

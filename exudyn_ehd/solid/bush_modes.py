@@ -2,7 +2,7 @@
 
 With the outer surface fixed and small strain, a pressure p on the bore displaces it by ``H K^-1 H^T A p`` (H: radial
 bore displacement of the nodal displacements, A: areas, K: stiffness in the reference configuration). The modes are the
-displacements under the leading pressures of films of the bearing's own length, see `exudyn_ehd.solid.modes.films`.
+displacements under the leading pressures of films of the bearing's own length, see `exudyn_ehd.solid.pressure_modes`.
 
 Pressure works on the modes, and the moment M about the bore's axis that the film's shear has, spread evenly around,
 
@@ -26,11 +26,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from exudyn_ehd.solid import pressure_modes
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.linear.solvers import held_solution
+from exudyn_ehd.solid.linear import held_solution
 from exudyn_ehd.solid.mesh import BushMesh
-from exudyn_ehd.solid.modes import films
-from exudyn_ehd.solid.modes.films import FilmSurface, film_modes, film_points, orthogonal_on
+from exudyn_ehd.solid.pressure_modes import FilmSurface, film_modes, film_points, orthogonal_on
 from exudyn_ehd.solid.unrolled import Surface, directed
 from exudyn_ehd.status import PlausibilityWarning, warn_user
 from exudyn_ehd.storage import cached_arrays
@@ -132,7 +132,14 @@ def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
     """Data that determine the modes, for their digest."""
     material, quadrature = bush.material, bush.quadrature
     assert quadrature is not None
-    described = (films.FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, length)
+    described = (
+        pressure_modes.FORMAT,
+        material.youngs_modulus,
+        material.poisson_ratio,
+        bush.tolerance,
+        bush.tilted,
+        length,
+    )
     surfaces = (mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes)
     arrays = (mesh.nodes, mesh.elements, *surfaces, quadrature.points, quadrature.weights)
     stored = (repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)

@@ -253,14 +253,9 @@ def half_space(tilted: bool) -> np.ndarray:
     return np.sqrt(np.array([whole / size[:, n > most].sum(axis=1) for most in (-1, *BEYOND)]))
 
 
-def axial_orders(tilted: bool) -> list[int]:
-    """Orders of the candidates along z."""
-    return list(range(0, LARGEST_AXIAL + 1, 1 if tilted else 2))
-
-
 def axial_pressures(zeta: np.ndarray, tilted: bool) -> np.ndarray:
     """Profiles (..., a) of the candidates along z."""
-    units = np.eye(LARGEST_AXIAL + 1)[axial_orders(tilted)].T
+    units = np.eye(LARGEST_AXIAL + 1)[:: 1 if tilted else 2].T
     return np.moveaxis(legval(zeta, units), 0, -1) * (1.0 - zeta**2)[..., None]
 
 

@@ -1,6 +1,0 @@
-"""Linear equations of meshes.
-
-Module map
-----------
-solvers   factors of sparse matrices, equations known by products alone
-"""
