@@ -82,7 +82,7 @@ class Yielding:
 
 
 class Sliding(Yielding):
-    """The same ratio by the rate of the sliding alone, U / h: a law of the links that does not know the pressure."""
+    """Ratio of `Yielding` by the sliding alone, U / h: a law of the links that does not know the pressure."""
 
     def bound(self, radius, clearance):
         return SlidingLinks(self, 2.0 * radius / clearance)
@@ -169,7 +169,7 @@ def test_a_closure_is_its_data():
 
 
 def test_density_is_that_of_the_law():
-    """Of the film's own pressures, within the error of the table between them."""
+    """Check the film's own pressures, within the error of the table between them."""
     law = BulkModulus(modulus=1.7e8)
     model = build_model(make(laws={"density_law": law}))
     film = model.evaluate(MOTION).film

@@ -205,7 +205,7 @@ def test_effects_left_out_are_named_where_they_matter(lines, load, options, name
 
 
 def test_effects_left_out_come_with_numbers(lines):
-    """Those of the audit: a steel ring's deflection, a mineral oil's thickening at the peak, the mean heating."""
+    """Sizes are those of the audit: a steel ring's deflection, an oil's thickening at the peak, the mean heating."""
     mbs, joint = scene(12e3)
     ehd.SolveDynamic(mbs, scenes.settings(0.02, 100, tolerance=1e-8))
     peak, thinnest = joint.history.peak_pressure.max(), joint.history.minimum_gap.min()
