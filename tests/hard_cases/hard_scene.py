@@ -115,6 +115,8 @@ _MAY_BE_ABSENT = (
     "contact_torque",
     "bore_displacement",
     "bush_temperature",
+    "wear_depth",
+    "worn_volume",
     "journal_temperature",
     "clearance",
     "axial_position",

@@ -199,6 +199,8 @@ def test_forces_below_newtons_absolute_tolerance_are_told(solve):
         solve(mbs, ehd.ConfigureSolver(settings, **options))
         return joint.history.force
 
-    with pytest.warns(UserWarning, match=r"'pivot': its film carries 9.8e-07 N .* absoluteTolerance=1e-12\)"):
+    with pytest.warns(
+        UserWarning, match=r"'pivot': Newton's absolute tolerance .* 9.8e-07 N, .* absoluteTolerance=1e-12\)"
+    ):
         run()
     run(absoluteTolerance=1e-12)

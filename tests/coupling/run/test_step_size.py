@@ -142,5 +142,5 @@ def test_input():
 
 def test_a_joint_refuses_what_is_of_a_run():
     mbs = scenes.new_system()
-    with pytest.raises(ehd.InputError, match="of a run"):
+    with pytest.raises(ehd.InputError, match="of a whole run"):
         ehd.CreateLubricatedJoint(mbs, name="j", stepControl=CONTROL)
