@@ -179,11 +179,15 @@ def _bearing(closure, bore, **options):
     return ehd.JournalBearing(**(plain | BORES[bore] | options))
 
 
-@pytest.mark.parametrize("bore", ["rigid", "liner"])
 @pytest.mark.parametrize("line_in_cells", [False, True])
-@pytest.mark.parametrize("kind", [ehd.SwiftStieber, ehd.ElrodAdams])
+@pytest.mark.parametrize(
+    ("kind", "bore"), [(ehd.SwiftStieber, "rigid"), (ehd.SwiftStieber, "liner"), (ehd.ElrodAdams, "liner")]
+)
 def test_nothing_carries_oil_into_a_gap(kind, line_in_cells, bore):
-    """Films without wedge and squeeze have any set of full vertices: the tangent is that of the whole film."""
+    """Films without wedge and squeeze have any set of full vertices: the tangent is that of the whole film.
+
+    Between rigid surfaces a film that conserves mass keeps its cavities from step to step.
+    """
     model = build_model(_bearing(kind(line_in_cells=line_in_cells), bore))
     turning = np.array([0.6 * CLEARANCE, 0.1 * CLEARANCE, 0, 0, 0, 0, 0, 0, SPEED, 0])
     flooded = model.initial_history(turning)

@@ -103,7 +103,8 @@ class FilmSolver(FilmAnswers):
         """
         s = self.system
         self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz if self.axial else 0.0, cavity_pressure, None
-        if (self.elements is not None or self.density is not None or self.closure.conserves_mass) and not (
+        follows = self.elements is not None or self.density is not None
+        if (follows or (self.closure.conserves_mass and mass_old is None)) and not (
             self.H_t.any()
             or (vx != 0.0 and np.ptp(self.H, axis=0).any())
             or (self.vz != 0.0 and np.ptp(self.H, axis=1).any())
