@@ -71,7 +71,7 @@ class Periodic:
 
 @dataclass(frozen=True, kw_only=True)
 class MaximumGap:
-    """``inlet`` of classical tables: ambient pressure on the line of maximum gap; for prescribed positions only.
+    """``inlet`` of classical tables: ambient pressure on the line of maximum gap; for `steady` only.
 
     Only for prescribed positions (`steady`): the line is undefined for a concentric journal and jumps with a moving
     one, so that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it lowers the load by 2 % against `Periodic`.

@@ -65,7 +65,8 @@ GROUPS = (
     ),
     Group(
         "Surfaces: shape, roughness, contact, wear",
-        "Arguments `profile`, `roughness`, `asperity`, `contact` and `wear` of `JournalBearing`.",
+        "Arguments `profile`, `roughness`, `asperity`, `contact` and `wear` of `JournalBearing`. `d` is the depth that "
+        "a profile adds to the gap.",
         "Crown EdgeRelief OutOfRound AxialProfile ProfileTable PatirCheng GreenwoodTripp composite_modulus "
         "RegularisedWall ArchardWear",
     ),

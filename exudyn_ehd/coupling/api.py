@@ -49,7 +49,7 @@ class Free:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Held:
-    """``axial`` of a joint: a constraint holds the journal along its axis; ``tilt``: the axes keep their directions.
+    """``axial`` of a joint: a constraint holds the journal along its axis; ``tilt``: journal and bore stay parallel.
 
     Both by one algebraic constraint, which carries what the film does not.
 

@@ -127,7 +127,7 @@ def ReplaceJoints(
     types: Sequence[str] = TYPES,
     **options: Any,
 ) -> dict[int, LubricatedJoint]:
-    """Replace all active joints of a model that leave one rotation free by films; see `ReplaceJoint`.
+    """Put films in the places of all active revolute and cylindrical joints of a model; see `ReplaceJoint`.
 
     Parameters
     ----------

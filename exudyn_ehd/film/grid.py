@@ -314,11 +314,11 @@ def bearing_grid(
 
 @dataclass(frozen=True, kw_only=True)
 class Arc(Checked):
-    """Part of the circle that a bore has, as of a partial bearing or of a fixed pad.
+    """Bore on a part of the circle, a partial bearing or a fixed pad, with given pressures at its two edges.
 
     Film and bore begin at its leading edge, which oil enters with positive spin, and end at its trailing edge. Beside
-    the arc the journal is free. Goes with `FiniteLength` between rigid surfaces of one temperature; as many columns as
-    its share of the circle.
+    the arc the journal is free. Goes with `FiniteLength` between rigid surfaces of one temperature, but not with
+    ``profile``, ``wear`` and ``supply``; as many columns as its share of the circle.
 
     Parameters
     ----------

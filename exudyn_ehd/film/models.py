@@ -148,7 +148,7 @@ def columns_of(film: FilmOption, ratio: float) -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class ShortBearing(_OnVertices):
-    """Ocvirk's short bearing: pressure flow in theta is dropped, so that every column is solved on its own.
+    """Ocvirk's short bearing, for L/D below 0.25: without pressure flow in theta, every column is solved on its own.
 
     Load too high by 19 % already at L/D = 0.25 and eccentricity ratio 0.8; meant for L/D below 0.25 and moderate
     eccentricity, and for comparison with closed forms. Tilt, squeeze and end pressures are included.
@@ -184,7 +184,7 @@ class ShortBearing(_OnVertices):
 
 @dataclass(frozen=True, kw_only=True)
 class LongBearing(Checked):
-    """Long bearing (Sommerfeld): axial flow is dropped, every slice across the axis is a ring of its own.
+    """Long bearing (Sommerfeld): no axial flow, each cross-section on its own; needs axial grooves or `MaximumGap`.
 
     Load too high (Swift-Stieber, p = 0 at the maximum gap): at eccentricity ratios 0.5 / 0.8 / 0.95 by 262 / 111 / 39 %
     at L/D = 1, 81 / 41 / 17 % at 2 and 30 / 17 / 8 % at 4; meant for closed forms and for sealed bearings. Needs

@@ -47,11 +47,11 @@ class FilmPictures(Titled):
         return self._map("temperature", ax, path)
 
     def plot_contact_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of the pressure of asperities or wall, as `plot_pressure`; of a joint's film."""
+        """Unrolled map of the pressure of asperities or wall, as `plot_pressure`; for films of joints only."""
         return self._map("contact_pressure", ax, path)
 
     def plot_wear_depth(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of what was worn off the bore, as `plot_pressure`; of a joint's film."""
+        """Unrolled map of what was worn off the bore, as `plot_pressure`; for films of joints only."""
         return self._map("wear_depth", ax, path)
 
     def plot_bearing(
@@ -93,7 +93,7 @@ class HistoryPictures(Titled):
     def plot_traces(
         self, quantities: Enum | str | Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
     ) -> Figure:
-        """Quantities over time, or over an ``angle``; options as in `pictures.histories.plot_traces`."""
+        """Quantities over time, or over an ``angle``; options: `exudyn_ehd.pictures.histories.plot_traces`."""
         from exudyn_ehd.pictures.histories import plot_traces
 
         return plot_traces(self._history(), quantities, **{"title": self._title(), **options})

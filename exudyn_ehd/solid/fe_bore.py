@@ -219,7 +219,7 @@ class FESurface:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FEBore(FESurface):
-    """Bore of a finite-element housing (ObjectFFRFreducedOrder), whose modes deform under the oil pressure.
+    """Bore of a finite-element housing (ObjectFFRFreducedOrder), which deforms under the oil pressure by its modes.
 
     Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes
     let it.

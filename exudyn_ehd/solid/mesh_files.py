@@ -290,7 +290,7 @@ def mesh_from_file(
     origin: tuple = (0.0, 0.0, 0.0),
     axis: tuple = (0.0, 0.0, 1.0),
 ) -> BushMesh:
-    """Return the bush mesh of a file with 20-node hexahedra or 10-node tetrahedra, of one kind.
+    """Return the bush mesh in a file whose elements are all 20-node hexahedra or all 10-node tetrahedra.
 
     Parameters
     ----------

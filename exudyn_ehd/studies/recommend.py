@@ -108,7 +108,7 @@ def recommend(
     direction: float | None = None,
     speed: float | None = None,
 ) -> Recommendation:
-    """The cheapest film that keeps a quantity within an error, measured on this bearing.
+    """Find the cheapest film model and grid that keep the error of a quantity below a limit, for one bearing.
 
     It takes a second or two for a rigid bearing, longer with heat or a flexible bore.
 

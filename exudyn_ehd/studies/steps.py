@@ -91,7 +91,7 @@ def recommend_steps(
     load: ArrayLike,
     mass: float,
 ) -> StepRecommendation:
-    """The fewest time steps in a period that keep the minimum film thickness within an error.
+    """Find the fewest time steps in a period that keep the error of the minimum film thickness below a limit.
 
     It runs the bearing alone for two periods of the load: seconds for a rigid bearing. What else moves in a mechanism
     has errors of its own, so that no fewer than 90 steps are named.

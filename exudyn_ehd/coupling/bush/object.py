@@ -159,7 +159,7 @@ class FlexibleBush:
         return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
 
     def energy(self, configuration: exu.ConfigurationType = CURRENT) -> tuple[float, float]:
-        """Return strain and kinetic energy [J]; without what a housing that contains the bush has of it."""
+        """Return strain and kinetic energy [J]; kinetic energy that counts as the housing's is left out."""
         u, v = self._motion(configuration)
         kinetic = 0.5 * float(np.einsum("ni,ni->", v, self.solid.scalar_mass @ v))
         return self.solid.energy(u), kinetic - self._contained()[0]

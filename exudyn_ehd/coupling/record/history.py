@@ -288,7 +288,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         )
 
     def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
-        """The steps with ``start <= time <= end``, to rounding: a billionth of the record's length.
+        """The steps with ``start <= time <= end``, each limit widened by a billionth of the record's length.
 
         Parameters
         ----------

@@ -45,7 +45,7 @@ ROUNDING = 1e-9
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Every:
-    """``record`` of a joint: every so many accepted steps are kept, and the worst ones between them.
+    """``record`` of a joint: every n-th accepted step is kept, and the worst ones between them.
 
     Each span of steps keeps its last one and those with the smallest ``minimum_gap``, the largest ``peak_pressure``
     and the largest load across the axis. The record's extremes are those of the run; ``step_count`` says which steps
@@ -75,7 +75,7 @@ class Every:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Period:
-    """``record`` of a joint: a step every so many seconds is kept, and the worst ones between; see `Every`.
+    """``record`` of a joint: one step in every period of time is kept, and the worst ones between them; see `Every`.
 
     Parameters
     ----------

@@ -143,7 +143,7 @@ def SolveThreshold(
 def stability_map(
     make: Callable[[float], exu.MainSystem], values: Sequence[float] | np.ndarray, *, lowest: float, highest: float
 ) -> StabilityMap:
-    """The speed at which a rotor becomes unstable over a parameter, as a clearance or a load.
+    """Find the speed at which a rotor becomes unstable, for every value of a parameter such as a clearance or a load.
 
     Parameters
     ----------

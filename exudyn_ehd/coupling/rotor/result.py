@@ -154,7 +154,7 @@ class RotorResult:
 
     @property
     def modes(self) -> np.ndarray:
-        """(k, N, 2n) complex: what moves in space with each of the eigenvalues."""
+        """(k, N, 2n) complex: mode shapes, the motion of all bodies in space with each of the eigenvalues."""
         return self._modes[1]
 
     @property
@@ -164,7 +164,7 @@ class RotorResult:
 
     @property
     def is_stable(self) -> np.ndarray:
-        """(k,) whether every small motion decays."""
+        """(k,) True where every small motion decays."""
         return self.growth < 0.0
 
     def campbell(self) -> dict[str, np.ndarray]:
@@ -287,7 +287,7 @@ class RotorResult:
         mbs.systemData.SetODE2Coordinates_t(self.rates[k].tolist(), INITIAL)
 
     def plot_campbell(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Campbell diagram: frequencies over the speed, by the sense of their whirl, and what grows."""
+        """Campbell diagram: frequencies over the speed, coloured by the sense of whirl; crosses mark growth."""
         from exudyn_ehd.pictures.rotors import plot_campbell
 
         return plot_campbell(self.campbell(), ax=ax, path=path)

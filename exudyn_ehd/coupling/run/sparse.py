@@ -58,7 +58,7 @@ FILMS_FIRST = 4
 
 @dataclass(frozen=True, kw_only=True)
 class FactorReuse:
-    """Rules by which `SolveDynamicSparse` factorises its Jacobian anew.
+    """Rules that say when `SolveDynamicSparse` computes a new factor of its Jacobian.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def SolveDynamicSparse(
     stepControl: StepControl | None = None,
     threads: int | None = 1,
 ) -> SparseRun:
-    """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
+    """Integrate in time like ``mbs.SolveDynamic``, with a sparse solver of the package: for large meshes.
 
     Newton's method starts at lasting accelerations, as in `exudyn_ehd.SolveDynamic`. User functions of the system take
     part: before and after steps, before residuals, after Newton's method, and what one adds to the Jacobian. In

@@ -96,7 +96,7 @@ class _Transition(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class NgPan(_Transition):
-    """Turbulent film after Ng and Pan, for fast or thin liquids; see the module for the equations.
+    """Turbulent film after Ng and Pan, for fast or thin liquids; equations: `exudyn_ehd.film.reynolds.turbulence`.
 
     When: thin liquids (water, refrigerants, hot turbine oil) at Re = rho U c / mu above some 1000; the audit names it.
     Not with laws of pressure, density or shear, flow factors of roughness, or a film's own heat conduction, which
@@ -135,7 +135,7 @@ class NgPan(_Transition):
 
 @dataclass(frozen=True, kw_only=True)
 class Hirs(_Transition):
-    """Turbulent film by Hirs' bulk flow, for fast or thin liquids; see the module for the equations.
+    """Turbulent film by Hirs' bulk flow, for fast or thin liquids; equations: `exudyn_ehd.film.reynolds.turbulence`.
 
     When: as `NgPan`, with two constants that can be measured on the surfaces at hand.
 

@@ -90,7 +90,9 @@ class AxialGroove(_Area):
 
 @dataclass(frozen=True, kw_only=True)
 class CircumferentialGroove(_Area):
-    """Groove that supplies oil around the bearing, between two lands; their load is within 1 % on the default grid.
+    """Groove that supplies oil around the whole bearing, between two lands.
+
+    On the default grid the load of the lands is within 1 %.
 
     Parameters
     ----------
@@ -122,7 +124,7 @@ class CircumferentialGroove(_Area):
 
 @dataclass(frozen=True, kw_only=True)
 class Hole(_Area):
-    """Round hole that supplies oil, of any diameter; in the journal of at least a column of the film's grid.
+    """Round hole that supplies oil, of any diameter; in the journal at least one column of the grid wide.
 
     It feeds within 1 % of what it does on a fine grid, its pressure well above the film's.
 

@@ -83,7 +83,7 @@ class _Pads(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class TaperLand(_Pads):
-    """Pads of a thrust face that taper to a flat land: ``d = depth (1 - s)`` over the first ``share`` of each pad.
+    """Pads of a thrust face: the recess falls from ``depth`` to 0 over the first ``share`` of each; the rest is flat.
 
     Fixed in the housing, on both faces; pads begin at theta = 0 and follow each other without grooves.
 

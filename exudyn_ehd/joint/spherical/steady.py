@@ -238,7 +238,7 @@ class SphericalResult:
         return audit_ball(self.bearing, self.motion[None])
 
     def plot_pressure(self, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
-        """The pressure on the socket, seen along its axis; colatitudes in degrees outwards. See `FilmPictures`."""
+        """The pressure on the socket, seen along its axis; colatitudes in degrees outwards."""
         # imported here: matplotlib is only needed for pictures
         from exudyn_ehd.pictures.maps import plot_patch
 

@@ -176,7 +176,7 @@ class EquilibriumResult:
 
     @cached_property
     def settled_stiffness(self) -> np.ndarray:
-        """-dF/d(x, y) (2, 2) in N/m between steady films: how far the journal goes when the load changes for good.
+        """Stiffness -dF/d(x, y) (2, 2), N/m, under a load that changes slowly: temperature and oil content follow.
 
         The temperature settles in every position, the cavity's oil too; what has neither has one stiffness. With
         ``thermal`` from central differences of films that are solved when it is first asked for.

@@ -36,7 +36,7 @@ LARGEST_WAVE, NEGLIGIBLE, ROUNDING = 36, 2e-4, 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FEJournal(FESurface):
-    """Journal as a finite-element body (ObjectFFRFreducedOrder), whose modes deform under the oil as it turns.
+    """Journal as a finite-element body (ObjectFFRFreducedOrder), which deforms under the oil by its modes as it turns.
 
     Of any body, also one that is not the same in all directions: its surface turns under the film, which knows the
     radial displacement. The body's mass and its stresses by spin are Exudyn's. Give it the modes that a pressure needs
