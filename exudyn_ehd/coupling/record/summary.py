@@ -27,6 +27,8 @@ from exudyn_ehd.joint.audit.switches import (
 from exudyn_ehd.joint.step_error import enough_steps
 
 LOGGER = logging.getLogger("exudyn_ehd")
+# Rise from which on oil of constant viscosity describes no film, K; with hardly any outflow it grows without bound.
+HOTTEST = 100.0
 
 
 def is_on() -> bool:
@@ -99,7 +101,7 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
         and deflection > LIMITS["elasticity"].value * thinnest,
         f"piezoviscosity: viscosity x {math.exp(min(thickening, 99.0)):.3g}": b.lubricant.pressure_law is None
         and thickening > LIMITS["piezoviscosity"].value,
-        f"heating: {rise:+.3g} K": b.thermal is None
+        f"heating: {rise:+.3g} K" if rise < HOTTEST else f"heating: above +{HOTTEST:g} K": b.thermal is None
         and TYPICAL_TEMPERATURE_COEFFICIENT * rise > LIMITS["heating"].value,
         f"shear thinning: {rate:.3g} 1/s": b.lubricant.shear_law is None
         and rate > LIMITS["shear thinning"].value * TYPICAL_SHEAR_ONSET,
