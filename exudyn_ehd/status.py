@@ -196,7 +196,7 @@ class StrainWarning(UserWarning):
     Examples
     --------
     >>> import warnings
-    >>> warnings.simplefilter("error", ehd.StrainWarning)  # ends a run where it would warn
+    >>> warnings.simplefilter("error", ehd.StrainWarning)  # `steady` raises where it would warn
     """
 
 

@@ -262,8 +262,9 @@ def _check_columns(k: int, area: SupplyArea, radius: float, step: float, around:
         return  # holes of any size feed the nearest vertex
     between = width < step if area.rotating else math.floor(high + EDGE) < math.ceil(low - EDGE)
     if between:
+        lies = "is narrower than the step between" if area.rotating else "lies between"
         raise InputError(
-            f"JournalBearing.supply[{k}]: {area!r} {'is narrower than' if area.rotating else 'lies between'} two "
+            f"JournalBearing.supply[{k}]: {area!r} {lies} two "
             f"columns of the film's grid; n_theta={math.ceil(2.0 * math.pi / width)} would do, or make it wider."
         )
     _require_between(f"JournalBearing.supply[{k}]: the film beside {area!r}", 2.0 * math.pi - width, step)

@@ -129,8 +129,8 @@ class Audit:
     def improved(self, bearing: JournalBearing) -> JournalBearing:
         """The bearing with what is missing switched on, with typical numbers, and what is unneeded switched off.
 
-        Every advice that a description can follow. Effects act on each other: audit the bearing's own film or run
-        again, until nothing is left to change.
+        Every advice that the description can follow; an arc takes neither heat nor surfaces that deflect. Effects act
+        on each other: audit the bearing's own film or run again, until nothing is left to change.
 
         Parameters
         ----------
@@ -154,7 +154,7 @@ class Audit:
             try:
                 bearing = remedy(bearing)
             except InputError:
-                if bearing.turbulence is None:
+                if bearing.turbulence is None and bearing.arc is None:
                     raise
         return bearing
 

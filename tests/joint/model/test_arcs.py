@@ -218,10 +218,23 @@ def test_a_cavity_above_the_pressure_at_an_edge_is_refused():
         )
 
 
+def test_an_audit_improves_what_an_arc_can_have():
+    """Its heat and what deflects are told, and left to the user."""
+    arc = ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0))
+    bearing = bearing_on(arc)
+    film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.9, direction=math.radians(270.0))
+    improved = film.audit().improved(bearing)
+    assert improved.arc == arc
+    assert improved.bush is improved.thermal is None
+    assert improved.lubricant.pressure_law is not None
+
+
 def test_pictures_show_the_arc_alone():
     arc = ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0))
     film = ehd.steady(bearing_on(arc), speed=300.0, eccentricity_ratio=0.7, direction=math.radians(250.0))
     axes = film.plot_pressure().axes[0]
     assert axes.get_xlim() == pytest.approx((210.0, 330.0))
     film.plot_bearing()
+    with pytest.raises(ehd.InputError, match="only films of joints have a contact pressure"):
+        film.plot_contact_pressure()
     assert len(ring_triangles(5, 3, closed=False)) == len(ring_triangles(5, 3)) - 4
