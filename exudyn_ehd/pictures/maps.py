@@ -82,10 +82,9 @@ def field_values(film: FilmRecord, field: MapField) -> np.ndarray:
         If the film has none.
     """
     values = getattr(film, field.name, None)
-    if not hasattr(film, field.name):
-        raise InputError(f"plot_{field.name}: only films of joints have a {field.text}: joint.film(), joint.films.")
     if values is None:
-        raise InputError(f"plot_{field.name}: this film has no {field.text}; {field.absent}")
+        joints = "" if hasattr(film, field.name) else " Films of joints have it: joint.film()."
+        raise InputError(f"plot_{field.name}: this film has no {field.text}; {field.absent}{joints}")
     return np.broadcast_to(np.asarray(values, dtype=float), film.pressure.shape)
 
 
