@@ -57,12 +57,15 @@ oil = ehd.Lubricant(viscosity=0.02)
 size = {"journal_radius": 0.025, "length": 0.025, "radial_clearance": 25e-6}
 plain = {**size, "lubricant": oil}
 bearing = ehd.JournalBearing(**plain)
+faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6)
+faced = ehd.JournalBearing(**plain, thrust=faces)
 """,
     ),
     "film": Setup(
         "a steady film",
         """
 film = ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.5)
+thick = ehd.Lubricant(viscosity=0.1, pressure_law=ehd.BarusPressure(coefficient=2e-8))
 """,
         "bearing",
     ),
@@ -75,14 +78,29 @@ from exudyn.utilities import InertiaCuboid
 
 cube = InertiaCuboid(density=7800.0, sideLengths=[0.1, 0.1, 0.1])
 turning = {"inertia": cube, "gravity": [0, -9.81, 0], "initialAngularVelocity": [0, 0, 200.0]}
+turning["nodeType"] = exu.NodeType.RotationRotationVector
 mbs = exu.SystemContainer().AddSystem()
-ground, shaft = mbs.CreateGround(), mbs.CreateRigidBody(nodeType=exu.NodeType.RotationRotationVector, **turning)
+ground, shaft = mbs.CreateGround(), mbs.CreateRigidBody(**turning)
 sides, centre, z = [ground, shaft], [0, 0, 0], [0, 0, 1]
+ball = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil)
 settings = exu.SimulationSettings()
 settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 10, 1e-3
 settings.timeIntegration.verboseMode = 0
 settings.solution.file.write = False
 ehd.ConfigureSolver(settings)
+
+
+def cable():
+    nodes = [mbs.AddNode(eii.NodePointSlope1(referenceCoordinates=[x, 0, 0, 1, 0, 0])) for x in (0.0, 0.1)]
+    stiff = {"massPerLength": 1.0, "bendingStiffness": 1e3, "axialStiffness": 1e6}
+    return mbs.AddObject(eii.ObjectANCFCable(nodeNumbers=nodes, length=0.1, **stiff))
+
+
+def averaged(points, weights):
+    nodes = [mbs.AddNode(eii.NodePoint(referenceCoordinates=point)) for point in points]
+    body = mbs.AddObject(eii.ObjectGenericODE2(nodeNumbers=nodes, massMatrix=np.eye(3 * len(nodes))))
+    marker = {"meshNodeNumbers": list(range(len(nodes))), "weightingFactors": weights}
+    return mbs.AddMarker(eii.MarkerSuperElementRigid(bodyNumber=body, **marker))
 """,
         "bearing",
         shared=False,
@@ -93,7 +111,7 @@ ehd.ConfigureSolver(settings)
 def joined(film, record=None, **motion):
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.CreateGround()
-    shaft = mbs.CreateRigidBody(nodeType=exu.NodeType.RotationRotationVector, **turning | motion)
+    shaft = mbs.CreateRigidBody(**turning | motion)
     joint = ehd.CreateLubricatedJoint(mbs, "main", [ground, shaft], [0, 0, 0], [0, 0, 1], film, record=record)
     mbs.Assemble()
     return mbs, shaft, joint
@@ -225,6 +243,8 @@ ehd.ReynoldsTemperature(point=(313.0, 0.04), coefficient=-0.03)
 
 ehd.ReynoldsTemperature(point=0.04, coefficient=0.03)
 
+ehd.VogelTemperature(first=(313.0, -0.04), second=(373.0, 0.006))
+
 ehd.VogelTemperature(first=(313.0, 0.04), second=(373.0, 0.06))
 
 ehd.VogelTemperature(first=(313.0, 0.04), second=(373.0, 0.006), pole=320.0)
@@ -347,7 +367,6 @@ ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6, profile=l
 faces = ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.05, clearance=50e-6)
 ehd.JournalBearing(**plain, thrust=faces)
 
-faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6)
 heat = ehd.LumpedThermal(supply_temperature=313.0)
 ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thrust=faces, thermal=heat)
 
@@ -378,6 +397,8 @@ ehd.AxialProfile(positions=(-0.01, 0.0, 0.01), depths=(0.0, 1e-6))
 ehd.AxialProfile(positions=(0.01, 0.0, -0.01), depths=(0.0, 1e-6, 0.0))
 
 ehd.AxialProfile(positions=(-0.01, 0.0, 0.01), depths=(0.0, float("nan"), 0.0))
+
+ehd.AxialProfile(positions=(-0.01, 0.0, 0.01), depths=(0.0, 1e30, 0.0))
 
 ehd.AxialProfile(positions=(-0.01, 0.0, 0.01), depths="flat")
 
@@ -535,11 +556,13 @@ ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing, record=ehd.Fil
 
 ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()))
 
-faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6)
 high = mbs.CreateRigidBody(inertia=cube, initialDisplacement=[0, 0, 1e-4])
-ehd.CreateLubricatedJoint(mbs, "main", [ground, high], centre, z, ehd.JournalBearing(**plain, thrust=faces))
+ehd.CreateLubricatedJoint(mbs, "main", [ground, high], centre, z, faced)
 
-ball = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil)
+ehd.CreateLubricatedSphericalJoint(mbs, "ball", [shaft, shaft], centre, bearing=ball)
+
+ehd.CreateLubricatedSphericalJoint(mbs, "ball", sides, centre, bearing=bearing)
+
 low = mbs.CreateRigidBody(inertia=cube, initialDisplacement=[0, -1e-4, 0])
 ehd.CreateLubricatedSphericalJoint(mbs, "ball", [ground, low], centre, bearing=ball)
 
@@ -558,6 +581,39 @@ ehd.CreateLubricatedJoint(mbs, "main", [ground, node], centre, z, bearing)
 
 node = mbs.AddNode(eii.NodeRigidBodyRxyz())
 ehd.CreateLubricatedJoint(mbs, "main", [ground, node], centre, z, bearing, tilt=ehd.Held())
+
+ehd.CreateLubricatedJoint(mbs, "main", [ground, cable()], [0.2, 0, 0], [1, 0, 0], bearing)
+
+ehd.CreateLubricatedJoint(mbs, "main", [ground, cable()], [0.05, 0, 0], [1, 1, 0], bearing)
+
+ehd.CreateLubricatedJoint(mbs, "main", [ground, cable()], [0.05, 0, 0], [1, 0, 0], bearing, axial=ehd.Held())
+
+ehd.CreateLubricatedJoint(mbs, "main", [cable(), shaft], [0.05, 0, 0], [1, 0, 0], bearing, axial=ehd.Held())
+
+marker = averaged([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [1.0, 1.0, 1.0])
+ehd.CreateLubricatedJoint(mbs, "main", [ground, marker], axis=z, bearing=bearing)
+
+marker = averaged([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [0.25, 0.5, 0.25])
+ehd.CreateLubricatedJoint(mbs, "main", [ground, marker], axis=z, bearing=bearing)
+
+marker = averaged([[0, 0, 0.1], [1, 0, 0.1], [0, 1, 0.1]], [0.25, 0.25, 0.5])
+away = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=ground, localPosition=[0.25, 0.5, 0.0]))
+ehd.CreateLubricatedJoint(mbs, "main", [away, marker], axis=z, bearing=bearing, axial=ehd.Held())
+
+ehd.ReplaceJoint(mbs, exu.ObjectIndex(7), bearing=bearing)
+
+turn = np.array([[1.0, 0, 0, 0], [0, 0.8, -0.6, 0], [0, 0.6, 0.8, 0], [0, 0, 0, 1]])
+ends = [mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=k, localHT=h)) for k, h in zip(sides, (np.eye(4), turn))]
+ehd.ReplaceJoint(mbs, mbs.AddObject(eii.ObjectJointRevoluteZ(markerNumbers=ends)), bearing=bearing)
+
+joint = ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing)
+joint.history
+
+joint = ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing)
+joint.history.plot_orbit()
+
+joint = ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing)
+joint.audit()
 
 ehd.Every(steps=0)
 
@@ -583,6 +639,10 @@ ehd.ReplaceJoint(mbs, weld, bearing=bearing)
 
 slot = mbs.CreateGenericJoint("slot", sides, centre, constrainedAxes=[0, 1, 1, 1, 1, 0])
 ehd.ReplaceJoint(mbs, slot, bearing=bearing)
+
+moved = mbs.CreateGenericJoint("moved", sides, centre, constrainedAxes=[1, 1, 1, 1, 1, 0])
+mbs.SetObjectParameter(moved, "offsetUserFunctionParameters", [1e-3, 0, 0, 0, 0, 0])
+ehd.ReplaceJoint(mbs, moved, bearing=bearing)
 
 still = lambda mbs, t, item, parameters: [0.0] * 6
 moved = mbs.CreateGenericJoint("moved", sides, centre, constrainedAxes=[1, 1, 1, 1, 1, 0], offsetUserFunction=still)
@@ -654,6 +714,10 @@ ehd.SaveState(mbs, "state.npz")
 mbs.Reset()
 joint.film()
 
+mbs.Reset()
+mbs.Assemble()
+joint.film()
+
 mbs.DeleteObject(exu.ObjectIndex(0))
 mbs.Assemble()
 ehd.SolveDynamic(mbs, settings)
@@ -666,10 +730,6 @@ joint.stop_at(pressure=1e3)
 ehd.SolveDynamic(mbs, settings)
 
 mbs, shaft, joint = joined(bearing, initialVelocity=[0, -10.0, 0])
-ehd.SolveDynamic(mbs, settings)
-
-mbs, shaft, joint = joined(bearing, initialDisplacement=[0, -20e-6, 0], initialVelocity=[0, -0.5, 0])
-settings.timeIntegration.adaptiveStep = False
 ehd.SolveDynamic(mbs, settings)
 
 mbs, shaft, joint = joined(bearing, initialVelocity=[0, -0.3, 0])
@@ -690,34 +750,90 @@ heat = ehd.FilmEnergy(supply_temperature=313.15, initial_temperature=705.0)
 mbs, shaft, joint = joined(ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thermal=heat))
 ehd.SolveDynamic(mbs, settings)
 
-thick = ehd.Lubricant(viscosity=0.1, pressure_law=ehd.BarusPressure(coefficient=2e-8))
-mbs, shaft, joint = joined(ehd.JournalBearing(**size, lubricant=thick), initialDisplacement=[0, -23e-6, 0])
+thick = ehd.Lubricant(viscosity=0.02, pressure_law=ehd.BarusPressure(coefficient=2e-8))
+mbs, shaft, joint = joined(ehd.JournalBearing(**size, lubricant=thick), initialDisplacement=[0, -21.3e-6, 0])
+ehd.SolveDynamic(mbs, settings)
+
+thick = ehd.Lubricant(viscosity=0.02, pressure_law=ehd.BarusPressure(coefficient=2e-8))
+mbs, shaft, joint = joined(ehd.JournalBearing(**size, lubricant=thick), initialDisplacement=[0, -22e-6, 0])
+ehd.SolveDynamic(mbs, settings)
+
+settings.timeIntegration.adaptiveStep = False
+mbs, shaft, joint = joined(faced, initialVelocity=[0, 0, -5.0], initialAngularVelocity=[0, 0, 0])
+ehd.SolveDynamic(mbs, settings)
+
+soft = dataclasses.replace(faces, contact=ehd.RegularisedWall(onset=1e-6, pressure=1e5))
+mbs, shaft, joint = joined(ehd.JournalBearing(**plain, thrust=soft), initialVelocity=[0, 0, -12.0])
+ehd.SolveDynamic(mbs, settings)
+
+hard = dataclasses.replace(faces, contact=ehd.RegularisedWall(onset=1e-6))
+mbs, shaft, joint = joined(ehd.JournalBearing(**plain, thrust=hard), initialVelocity=[0, 0, -50.0])
+ehd.SolveDynamic(mbs, settings)
+
+walled = ehd.JournalBearing(**plain, contact=ehd.RegularisedWall(onset=1e-6, pressure=1e5))
+mbs, shaft, joint = joined(walled); mbs.CreateForce(itemNumber=shaft, loadVector=[0, -1e6, 0])
+mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+short = ehd.ImpedanceMap(n_theta=64, n_z=4, n_eccentricity=8, n_direction=17)
+mbs, shaft, joint = joined(ehd.JournalBearing(**plain, film=short), initialAngularVelocity=[2.0, 0, 200.0])
 ehd.SolveDynamic(mbs, settings)
 
 mbs.CreateForce(itemNumber=shaft, loadVector=[0, float("nan"), 0])
 mbs.Assemble()
 ehd.SolveDynamic(mbs, settings)
 
-mbs.CreateForce(itemNumber=shaft, loadVector=[0, -1e7, 0])
-mbs.Assemble()
-ehd.SolveDynamic(mbs, settings)
-
 ehd.ConfigureSolver(settings, absoluteTolerance=10.0)
 ehd.SolveDynamic(mbs, settings)
 
-settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 40, 4e-3
-mbs, shaft, joint = joined(bearing, initialDisplacement=[0, -15e-6, 0])
+settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 100, 4e-3
+mbs, shaft, joint = joined(bearing, initialDisplacement=[0, -10e-6, 0])
 ehd.SolveDynamic(mbs, settings, solverType=exu.DynamicSolverType.RK44)
 
 mbs.SolveDynamic(settings, storeSolver=False)
 
+mbs.CreateGenericJoint(itemNumbers=[exu.ObjectIndex(0), shaft], position=centre, constrainedAxes=[0, 0, 1, 0, 0, 0])
+mbs.Assemble()
+ehd.SolveDynamic(mbs, settings, solverType=exu.DynamicSolverType.RK44)
+
+mbs = exu.SystemContainer().AddSystem(); sides = [mbs.CreateRigidBody(**turning), mbs.CreateGround()]
+joint = ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing); mbs.Assemble()
+joint.place_in_equilibrium(load=(0.0, -100.0))
+
+mbs = exu.SystemContainer().AddSystem(); sides = [mbs.CreateGround(), mbs.CreateRigidBody(**turning)]
+ehd.CreateLubricatedSphericalJoint(mbs, "ball", sides, centre, bearing=ball); mbs.Assemble()
+ehd.SolveDynamic(mbs, settings, until_periodic=ehd.UntilPeriodic(period=2e-4))
+
+short = ehd.ImpedanceMap(n_theta=64, n_z=4, n_eccentricity=8, n_direction=17)
+mbs, shaft, joint = joined(ehd.JournalBearing(**plain, film=short))
+joint.record_films()
+
+joint.record_films()
+ehd.SolveDynamic(mbs, settings)
+joint.animate("orbit.png")
+
+settings.timeIntegration.numberOfSteps = 40
+ehd.SolveDynamic(mbs, settings)
+joint.history.plot_waterfall(speed=np.zeros(3), window=5e-4)
+
+oily = ehd.JournalBearing(**plain, cavitation=ehd.ElrodAdams(), film=ehd.FiniteLength(n_theta=32, n_z=4))
+settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.4, 100
+ehd.SolveDynamic(joined(oily)[0], settings)
+
+contact = mbs.AddGeneralContact(); contact.SetFrictionPairings(np.eye(1))
+contact.SetSearchTreeBox([-1, -1, -1], [1, 1, 1]); mbs.Assemble()
+ehd.SolveDynamicSparse(mbs, settings)
+
+node = {"numberOfODE1Coordinates": 1, "referenceCoordinates": [0], "initialCoordinates": [0]}
+mbs, shaft, joint = joined(bearing, nodeType=exu.NodeType.RotationRxyz); mbs.AddNode(eii.NodeGenericODE1(**node))
+mbs.Assemble(); ehd.SolveDynamicSparse(mbs, settings)
+
+mbs, shaft, joint = joined(bearing, nodeType=exu.NodeType.RotationRxyz)
+body = {"nodeNumbers": [mbs.AddNode(eii.NodePoint())], "forceUserFunction": lambda mbs, t, item, q, q_t: [0.0] * 3}
+mbs.AddObject(eii.ObjectGenericODE2(massMatrix=np.eye(3), **body)); mbs.Assemble(); ehd.SolveDynamicSparse(mbs)
+
 weld = mbs.CreateGenericJoint(itemNumbers=[exu.ObjectIndex(0), shaft], position=centre, constrainedAxes=[1] * 6)
 mbs.SetObjectParameter(weld, "activeConnector", False)
 ehd.SolveDynamic(mbs, settings, solverType=exu.DynamicSolverType.RK44)
-
-for k in range(2):
-    mbs.CreateGenericJoint(itemNumbers=[exu.ObjectIndex(0), shaft], position=centre, constrainedAxes=[0, 0, 1, 0, 0, 0])
-mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
 
 settings.timeIntegration.endTime = 4e-3
 ehd.SolveDynamic(mbs, settings, until_periodic=ehd.UntilPeriodic(period=8e-4, tolerance=1e-6))
@@ -829,6 +945,8 @@ joint.restore_state(dataclasses.replace(joint.state(), name="other"))
 joint.restore_state(dataclasses.replace(joint.state(), bearing="other"))
 
 joint.restore_state(dataclasses.replace(joint.state(), rows=np.zeros((3, 3))))
+
+joint.restore_state(dataclasses.replace(joint.state(), modes=np.ones((3, 3))))
 """,
     ),
     Group(
@@ -839,6 +957,8 @@ joint.restore_state(dataclasses.replace(joint.state(), rows=np.zeros((3, 3))))
 ehd.steady(None, speed=300.0, eccentricity_ratio=0.5)
 
 ehd.steady(bearing, speed=float("inf"), eccentricity_ratio=0.5)
+
+ehd.steady(bearing, speed=1e-200, eccentricity_ratio=0.5)
 
 ehd.steady(bearing, speed=300.0, eccentricity_ratio=1.1)
 
@@ -858,7 +978,6 @@ ehd.steady(bearing, speed=30000.0, eccentricity_ratio=0.99)
 walled = ehd.JournalBearing(**plain, contact=ehd.RegularisedWall(onset=1e-6))
 ehd.steady(walled, speed=300.0, eccentricity_ratio=3.0)
 
-thick = ehd.Lubricant(viscosity=0.1, pressure_law=ehd.BarusPressure(coefficient=2e-8))
 ehd.steady(ehd.JournalBearing(**size, lubricant=thick), speed=300.0, eccentricity_ratio=0.99)
 
 heat = ehd.LumpedThermal(supply_temperature=313.15)
@@ -867,7 +986,7 @@ ehd.steady(warm, speed=300.0, eccentricity_ratio=0.0)
 
 heat = ehd.FilmEnergy(supply_temperature=313.15)
 warm = ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 460"), thermal=heat)
-ehd.steady(warm, speed=30000.0, eccentricity_ratio=0.9)
+ehd.steady(warm, speed=30000.0, eccentricity_ratio=0.01)
 
 heat = ehd.FilmEnergy(supply_temperature=313.15, carry_over=1.0)
 hot = ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thermal=heat)
@@ -882,15 +1001,26 @@ ehd.equilibrium(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), speed=300.0
 turning = ehd.Hole(angle=0.0, diameter=0.005, pressure=1e5, rotating=True)
 ehd.equilibrium(ehd.JournalBearing(**plain, supply=(turning,)), speed=300.0, load=(0.0, -500.0))
 
-faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6)
-held = ehd.JournalBearing(**plain, thrust=faces)
-ehd.equilibrium(held, speed=300.0, load=(0.0, -500.0), axial_position=1e-6, axial_load=50.0)
+ehd.equilibrium(faced, speed=300.0, load=(0.0, -500.0), axial_position=1e-6, axial_load=50.0)
+
+ehd.equilibrium(bearing, speed=300.0, load=(0.0, -1e9))
+
+fed = ehd.JournalBearing(**plain, supply=(ehd.Hole(angle=0.0, diameter=0.006),))
+ehd.equilibrium(fed, speed=300.0, load=(0.0, 0.0))
+
+ehd.equilibrium(faced, speed=300.0, load=(0.0, -500.0), axial_load=1e9)
+
+ehd.steady(faced, speed=300.0, eccentricity_ratio=0.5, axial_position=60e-6)
+
+ehd.stribeck(bearing, load=1e8, speeds=[10.0, 100.0])
 
 ehd.equilibrium(bearing, speed=300.0, load=(0.0, -500.0)).dynamic_stiffness([float("nan")])
 
 ehd.stribeck(bearing, load=500.0, speeds=[0.0, 10.0])
 
 film.plot_fill()
+
+film.audit()["heat"]
 
 ball = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil)
 ehd.steady_spherical(ball, place=(0.0, 0.0, 40e-6))
@@ -912,7 +1042,11 @@ ehd.solve_film(grid, np.full(grid.shape, 1e-5), lubricant=oil, boundary=-1e5)
 
 grid = ehd.slider_grid(length=0.1, width=0.1, n_x=16, n_z=8)
 gap = np.full(grid.shape, 1e-5)
-ehd.solve_film(grid, gap, lubricant=oil, history=gap)
+ehd.solve_film(grid, gap, lubricant=oil, history=gap, step=1e-3)
+
+grid = ehd.slider_grid(length=0.1, width=0.1, n_x=16, n_z=8)
+gap = 1e-6 * (2.0 - np.linspace(0.0, 1.0, grid.shape[0]))[:, None] * np.ones(grid.shape)
+ehd.solve_film(grid, gap, lubricant=thick, surface_speed=(10.0, 0.0))
 
 grid = ehd.slider_grid(length=0.1, width=0.1, n_x=16, n_z=8)
 gap = np.full(grid.shape, 1e-5)
@@ -967,6 +1101,10 @@ ehd.parameter_study(lambda p: 1.0, {"x": [1.0]}, executor=ThreadPoolExecutor(1))
 
 from concurrent.futures import ThreadPoolExecutor
 ehd.parameter_study(lambda p: 1.0, {"x": [1.0]}, executor=ThreadPoolExecutor(1), processes=2)
+
+class Later:
+    submit = lambda self, *arguments: None
+ehd.parameter_study(abs, {"x": [1.0]}, executor=Later())
 
 ehd.parameter_study(lambda p: 1.0, {"x": [1.0]}, processes=2)
 
@@ -1026,6 +1164,18 @@ ehd.SolveEquilibrium(rotor(gravity=[0, -1e9, 0])[0], 300.0)
 ehd.SolveEquilibrium(rotor(ehd.JournalBearing(**plain, squeeze=False))[0], 300.0)
 
 ehd.SolveEquilibrium(mbs, 300.0, rotors=[exu.ObjectIndex(0)])
+
+extra = mbs.CreateRigidBody(inertia=cube)
+mbs.Assemble()
+ehd.SolveEquilibrium(mbs, 300.0, rotors=[extra])
+
+disc = mbs.CreateRigidBody(inertia=cube, create2D=True)
+mbs.Assemble()
+ehd.SolveEquilibrium(mbs, 300.0, rotors=[[body, disc]])
+
+mbs.AddNode(eii.NodeGenericODE1(numberOfODE1Coordinates=1, referenceCoordinates=[0], initialCoordinates=[0]))
+mbs.Assemble()
+ehd.SolveEquilibrium(mbs, 300.0)
 
 ehd.SolveThreshold(mbs, 5000.0, 6000.0)
 
@@ -1140,6 +1290,8 @@ mesh.generatrix(mesh.outer, 0.01)
 
 mesh.line([0, 1])
 
+mesh.bore.interpolation(np.array([0.0]), np.array([0.15]))
+
 ehd.LineLoad(line=mesh.generatrix(mesh.outer, 0.0), force_per_length=(0, 1, 0), history=5.0)
 
 ehd.DeadPressure(surface=mesh.bore, pressure=1e5, distribution=np.ones(3))
@@ -1195,7 +1347,24 @@ ehd.mesh_from_file("far.inp", bore_radius=0.025)
 write("one.inp", "*Node", "1, 0, 0, 0", "*Element, type=C3D10", "1, " + ", ".join(["1"] * 10))
 ehd.mesh_from_file("one.inp", bore_radius=0.025, instance="bush")
 
+element = ["*Node", "1, 0, 0, 0", "*Element, type=C3D10", "1, " + ", ".join(["1"] * 10)]
+write("two.inp", "*Part, name=a", *element, "*End Part", "*Part, name=b", *element, "*End Part")
+ehd.mesh_from_file("two.inp", bore_radius=0.025)
+
+write("seat.inp", "*Node", "1, 0, 0, 0", "*Element, type=C3D10", "1, " + ", ".join(["1"] * 10))
+ehd.mesh_from_file("seat.inp", bore_radius=0.025, held="seat")
+
+write("place.inp", "*Part, name=a", "*End Part", "*Instance, name=bush, part=a", "1, 2", "*End Instance")
+ehd.mesh_from_file("place.inp", bore_radius=0.025)
+
+write("other.inp", "*Node", "1, 0, 0, 0", "*Nset, nset=seat, instance=bush", "1")
+ehd.mesh_from_file("other.inp", bore_radius=0.025)
+
 ehd.mesh_from_fem(FEMinterface(), bore_radius=0.025)
+
+bushed = ehd.JournalBearing(**plain, bush=ehd.ANCFBush(mesh=tube, material=steel))
+joint = ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bushed)
+mbs.Assemble(); joint.place_in_equilibrium(load=(0.0, -100.0))
 
 ehd.FEBore(fem=None)
 
@@ -1213,6 +1382,15 @@ ehd.add_bore_modes(fem, position=centre, axis=[0, 0, 0], radius=0.025, length=0.
 ehd.add_bore_modes(fem, position=centre, axis=z, radius=0.02, length=0.02, fixed_nodes=[0, 1, 2])
 
 ehd.add_bore_modes(fem, position=centre, axis=z, radius=0.025, length=0.05, fixed_nodes=[0, 1, 2])
+
+fem.elements, where = [], {"position": centre, "axis": z, "radius": 0.025, "length": 0.02}
+ehd.add_bore_modes(fem, **where, fixed_nodes=mesh.outer.nodes)
+
+right = [node for node in mesh.bore.nodes if mesh.nodes[node, 0] > 0.0]
+ehd.add_bore_modes(fem, position=centre, axis=z, radius=0.025, length=0.02, fixed_nodes=[0, 1, 2], nodes=right)
+
+some, where = mesh.bore.nodes[::2], {"position": centre, "axis": z, "radius": 0.025, "length": 0.02}
+ehd.add_bore_modes(fem, **where, fixed_nodes=mesh.outer.nodes, nodes=some)
 
 ehd.add_bore_modes(fem, position=centre, axis=z, radius=0.025, length=0.02, fixed_nodes=[0])
 

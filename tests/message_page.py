@@ -8,6 +8,7 @@ import ast
 import contextlib
 import functools
 import io
+import itertools
 import logging
 import math
 import os
@@ -27,9 +28,11 @@ PAGE = PACKAGE / "MESSAGES.md"
 COMMAND = "python -m tests.message_page"
 # Errors that a user reads, and the calls that tell a user something without one.
 ERRORS = {"InputError", "FilmError", "RunError", "EHDError", "KeyError", "AttributeError", "KeyboardInterrupt"}
-CALLS = {"warn_user", "warnings.warn", "summary.LOGGER.info"}
-# Passes on the text of its callers.
-PASSED_ON = {"status.warn_user"}
+CALLS = {"warn_user", "warnings.warn", "summary.LOGGER.info", "self._at"}
+# Calls whose text is the second argument.
+TEXT_SECOND = {"summary.LOGGER.info", "self._at"}
+# Pass on the texts of their callers.
+PASSED_ON = {"status.warn_user", "coupling.element.failures._at"}
 
 
 class Site(NamedTuple):
@@ -90,7 +93,7 @@ def sites():
         ]
         for node in ast.walk(tree):
             if is_message(node) and not any(node.lineno in lines for lines in skipped):
-                text = template(node.args[-1 if ast.unparse(node.func).endswith("info") else 0]) if node.args else ""
+                text = template(node.args[ast.unparse(node.func) in TEXT_SECOND]) if node.args else ""
                 found.append(Site(name, node.lineno, node.end_lineno, "" if text == "..." else text))
     return found
 
@@ -145,7 +148,8 @@ def listening():
 
     def keep_place(self, *args):
         init(self, *args)
-        made.append((str(self), site_of([next(stack(sys._getframe(1)))])))
+        # the maker, and who has asked it for an error of this text
+        made.append((str(self), site_of(itertools.islice(stack(sys._getframe(1)), 2))))
 
     level = log.level
     log.setLevel(logging.INFO)
@@ -194,7 +198,7 @@ def raised(code, setup):
 
 def anywhere(text):
     """A message without what depends on the machine: folders, places in memory and in Exudyn's files."""
-    text = text.replace(os.getcwd() + os.sep, "")
+    text = re.sub(r" in \d+ steps", " in ... steps", text.replace(os.getcwd() + os.sep, ""))
     return re.sub(r" at 0x\w+", " at 0x...", re.sub(r"\[Python file [^]]*\]", "[Python file ...]", text))
 
 
