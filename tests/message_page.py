@@ -250,8 +250,8 @@ def group_text(group):
         for own, code, told in results()
         if own is group and told
     ]
-    told = f"{group.text} Names: {SETUPS[group.setup].title}.".strip()
-    return [f"## {group.title}", wrapped(told), table(["message", "code that raises it"], rows)]
+    text = f"{group.text} The code begins with the names of [{SETUPS[group.setup].title}](#names-in-the-code)."
+    return [f"## {group.title}", wrapped(text), table(["message", "code that raises it"], rows)]
 
 
 HEAD = f"""# All messages, with code that raises them
@@ -274,10 +274,14 @@ def page():
     texts = [HEAD, "\n".join(f"- [{title}](#{anchor(title)})" for title in titles)]
     texts += ["## Names in the code", NAMES]
     for setup in SETUPS.values():
-        texts += [f"{setup.title[0].upper()}{setup.title[1:]}:", f"```python\n{setup.code.strip()}\n```"]
+        title = f"{setup.title[0].upper()}{setup.title[1:]}"
+        texts += [f"{title}, after {SETUPS[setup.after].title}:" if setup.after else f"{title}:"]
+        texts += [f"```python\n{setup.code.strip()}\n```"]
     for group in GROUPS:
         texts += group_text(group)
-    rest = sorted({escaped(site.text) for site in without_example() if len(site.text.replace("...", "").split()) > 3})
+    # without the name of what says it, which is a value
+    rest = {re.sub(r"^\.\.\.:? ", "", escaped(site.text)) for site in without_example()}
+    rest = sorted(text for text in rest if len(text.replace("...", "").split()) > 3)
     texts += [f"## {LEFT}", REST, "\n".join(f"- {text}" for text in rest)]
     return "\n\n".join(text.strip("\n") for text in texts) + "\n"
 
@@ -296,7 +300,7 @@ def is_same(line, other):
 # Printed numbers have three digits or more; compilers and libraries of linear algebra change the last.
 ROUNDING = 0.02
 LEFT = "Messages without an example"
-NAMES = wrapped("The code of a section uses the names of one of these blocks, which it names, and of those above.")
+NAMES = "Every section says with the names of which of these blocks its code begins."
 REST = wrapped(
     'The texts of all other messages, with "..." for values. Most need a long run, a broken file, or a package that is '
     "not installed."
