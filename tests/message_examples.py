@@ -586,6 +586,9 @@ ehd.CreateLubricatedJoint(mbs, "main", [ground, cable()], [0.2, 0, 0], [1, 0, 0]
 
 ehd.CreateLubricatedJoint(mbs, "main", [ground, cable()], [0.05, 0, 0], [1, 1, 0], bearing)
 
+node = mbs.AddNode(eii.NodePointSlope23(referenceCoordinates=[0, 0, 0, 0, 1, 0, 0, 0, 1]))
+ehd.CreateLubricatedJoint(mbs, "main", [ground, node], [0.05, 0, 0], [1, 0, 0], bearing)
+
 ehd.CreateLubricatedJoint(mbs, "main", [ground, cable()], [0.05, 0, 0], [1, 0, 0], bearing, axial=ehd.Held())
 
 ehd.CreateLubricatedJoint(mbs, "main", [cable(), shaft], [0.05, 0, 0], [1, 0, 0], bearing, axial=ehd.Held())
@@ -772,6 +775,10 @@ ehd.SolveDynamic(mbs, settings)
 
 walled = ehd.JournalBearing(**plain, contact=ehd.RegularisedWall(onset=1e-6, pressure=1e5))
 mbs, shaft, joint = joined(walled); mbs.CreateForce(itemNumber=shaft, loadVector=[0, -1e6, 0])
+mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+mbs, up = exu.SystemContainer().AddSystem(), {"inertia": cube, "initialVelocity": [0, 0, -2.0]}
+ehd.CreateLubricatedSphericalJoint(mbs, "ball", [mbs.CreateGround(), mbs.CreateRigidBody(**up)], centre, bearing=ball)
 mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
 
 short = ehd.ImpedanceMap(n_theta=64, n_z=4, n_eccentricity=8, n_direction=17)
@@ -1168,6 +1175,10 @@ ehd.SolveEquilibrium(mbs, 300.0, rotors=[exu.ObjectIndex(0)])
 extra = mbs.CreateRigidBody(inertia=cube)
 mbs.Assemble()
 ehd.SolveEquilibrium(mbs, 300.0, rotors=[extra])
+
+other = mbs.CreateRigidBody(inertia=cube, gravity=[0, -9.81, 0])
+ehd.CreateLubricatedJoint(mbs, "third", [body, other], centre, z, bearing); mbs.Assemble()
+ehd.SolveEquilibrium(mbs, 300.0, rotors=[[body, other]])
 
 disc = mbs.CreateRigidBody(inertia=cube, create2D=True)
 mbs.Assemble()

@@ -293,12 +293,14 @@ def is_same(line, other):
     """Return whether two lines of the page differ in no more than round-off of numbers, which machines differ in."""
     numbers = [list(map(float, NUMBER.findall(text))) for text in (line, other)]
     pairs = zip(*numbers, strict=True) if len(numbers[0]) == len(numbers[1]) else [(0.0, 1.0)]
-    close = all(math.isclose(*pair, rel_tol=ROUNDING) for pair in pairs)
+    close = all(math.isclose(*pair, rel_tol=ROUNDING, abs_tol=ZERO) for pair in pairs)
     return close and NUMBER.sub("", line) == NUMBER.sub("", other)
 
 
 # Printed numbers have three digits or more; compilers and libraries of linear algebra change the last.
 ROUNDING = 0.02
+# Motions that are zero but for round-off, in clearances and radians.
+ZERO = 1e-11
 LEFT = "Messages without an example"
 NAMES = "Every section says with the names of which of these blocks its code begins."
 REST = wrapped(
