@@ -139,7 +139,8 @@ GROUPS = (
     ),
     Group(
         "Errors and warnings",
-        "Every message with its cause: [all messages](coupling/README.md#all-messages).",
+        "Every message with its cause: [all messages](coupling/README.md#all-messages); with code that raises it: "
+        "[messages](MESSAGES.md).",
         "EHDError InputError FilmError RunError PlausibilityWarning GridWarning ThinFilmWarning OverloadWarning "
         "HotFilmWarning StarvationWarning StrainWarning RingingWarning MemoryWarning",
     ),
