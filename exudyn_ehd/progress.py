@@ -29,7 +29,8 @@ def show_progress(on: bool | None = True) -> None:
     Parameters
     ----------
     on : bool or None, default True
-        True: also in pipes and files; False: never; None, as at the start: on a terminal and in notebooks.
+        True: always, also in pipes and files. False: never. None, the state at the start: on a terminal and in
+        notebooks.
 
     Raises
     ------

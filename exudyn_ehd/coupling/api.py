@@ -51,9 +51,10 @@ class Free:
 class Held:
     """``axial`` of a joint: a constraint holds the journal along its axis; ``tilt``: journal and bore stay parallel.
 
-    Both by one algebraic constraint, which carries what the film does not.
+    One algebraic constraint does either or both and carries the axial force or the tilting moment that the film does
+    not.
 
-    For implicit and static solvers; Exudyn's explicit ones stop at once and name the constraint object
+    For implicit and static solvers only: Exudyn's explicit solvers stop at once and name the constraint object
     (``constraintNumber`` of the joint).
 
     Examples
@@ -137,9 +138,9 @@ def CreateLubricatedJoint(
 ) -> LubricatedJoint | dict[str, object]:
     """Create an oil-filled revolute (or, axially free, cylindrical) joint between two bodies.
 
-    Arguments that ``mbs.CreateRevoluteJoint`` also has mean the same, so that one call replaces the other; joint frame
-    and both bodies' joint points are taken from the reference configuration. The film is an ObjectGenericODE2 without
-    mass on the nodes of the two bodies, with its exact Jacobian.
+    Arguments that ``mbs.CreateRevoluteJoint`` also has mean the same, so that one call replaces the other. The joint
+    frame and the joint points of both bodies are taken from the reference configuration. In Exudyn the film is an
+    ObjectGenericODE2 without mass on the nodes of the two bodies, with its exact Jacobian.
 
     Parameters
     ----------
@@ -152,42 +153,45 @@ def CreateLubricatedJoint(
         geometrically exact beams and cables, mass points, Mass1D, RotationalMass1D), a node (NodeIndex: of rigid
         bodies, beams, cables, points) or a rigid marker (MarkerIndex: on any of these, on a link of a kinematic tree,
         on a superelement).
-        Beams are joined where ``position`` lies along the element. A cable turns with its slope; it has no roll:
-        spatial ones take joints along the cable, without spin of their own, and across it, for motion in the plane
-        normal to the axis. A mass point never turns, as a slider in its guide, which takes the moments of the film.
+        A beam is joined at the point of the element where ``position`` lies. A cable element does not rotate about its
+        own axis: a spatial one takes a joint along the cable, without spin of its own, or a joint across it, for motion
+        in the plane normal to the joint's axis. A mass point does not rotate, like a slider in its guide: moments of
+        the film on it have no effect.
     position : (3,) [m], default ()
-        Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
-        ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
+        Point of the bearing's axis in its mid-plane, in the reference configuration: global, or in the housing's frame
+        with ``useGlobalFrame=False``. A marker sets it: then give []. With two markers each sets the point of its own
+        side.
     axis : (3,), default ()
-        Joint axis z, global or in the frame of the housing item; may be [] if ``rotationMatrixAxes`` is given. It is
-        that of bore and journal: tilted axes do not misalign a shaft, bearings off a line do (two markers, see
-        ``position``).
+        Joint axis z: global, or in the housing's frame with ``useGlobalFrame=False``; may be [] if
+        ``rotationMatrixAxes`` is given. Bore and journal both have this axis in the reference configuration, so that a
+        tilted axis is no misalignment. To misalign a shaft, offset its bearings by two markers each, see ``position``.
     bearing : JournalBearing, default None
         Required: geometry, lubricant, film and effects.
     rotationMatrixAxes : (3, 3) or None, default None
-        Joint frame as in ``mbs.CreateGenericJoint``: columns x, y, z = axis, global or in the housing's frame. By
-        default x is the local x of the housing item, projected normal to the axis (its local y, if x is parallel to
-        the axis). Every angle of the film counts from x about z.
+        Joint frame as in ``mbs.CreateGenericJoint``: columns x, y, z = axis, global or in the housing's frame. None: x
+        is the local x of the housing item, projected normal to the axis (its local y, if x is parallel to the axis).
+        All angles of the film are measured from x about z.
     axial : Free or Held, default Free()
-        Whether the journal may slide along the axis; with ``bearing.thrust`` films on its end faces hold a free one.
+        Free: the journal may slide along the axis; with ``bearing.thrust`` the films on its end faces carry axial load.
+        Held: a constraint stops it.
     tilt : Free or Held, default Free()
-        Free: the film alone carries tilting moments, by its length. Held: journal and bore stay parallel and a
-        constraint carries them, where one joint of a model stands for a shaft's several bearings.
+        Free: the film alone carries tilting moments, by its length. Held: a constraint keeps journal and bore parallel
+        and carries these moments, for one joint that stands for several bearings of a shaft.
     stepControl : StepControl or None, default None
-        Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are
-        halved.
+        Lets Exudyn halve steps in which the gap changes by too much. None: steps are halved only if the film can't be
+        evaluated or Newton's method does not converge.
     bushGravity : (3,) [m/s^2] or None, default None
-        By default the housing's mass, inertia and weight contain those of the bush, so that a model weighs the same
-        with every kind of bush. Give this for a housing that does not contain its `ANCFBush` (a beam, a cable, a
-        mesh). The bush's mass then counts in addition to the housing's, and this global gravity acts on it.
+        None: the housing's mass, inertia and weight contain those of the bush, so that a model weighs the same with
+        every kind of bush. For a housing that does not contain its `ANCFBush` (a beam, a cable, a mesh) give the global
+        acceleration of gravity: the bush's mass then counts in addition to the housing's and has this weight.
     useGlobalFrame : bool, default True
         See position, axis, rotationMatrixAxes.
     show : bool, default True
         Draw the bearing in Exudyn's renderer: a ring of the housing, and the film of the last accepted step in the
         colours of its pressure, its thickness enlarged.
     axisRadius, axisLength : float, default 0.1, 0.4
-        Arguments of ``mbs.CreateRevoluteJoint``, so that its calls can be taken over; without effect: the film is drawn
-        in the bearing's own size.
+        Arguments of ``mbs.CreateRevoluteJoint``, m, accepted so that its calls can be taken over. They have no effect:
+        the film is drawn in the bearing's own size.
     color : (4,), default (-1.0, -1.0, -1.0, -1.0)
         Colour of the film element's nodes, RGBA; Exudyn's default for -1.
     bodyNumbers : sequence of two or None, default None
@@ -195,8 +199,7 @@ def CreateLubricatedJoint(
     returnDict : bool, default False
         Return a dictionary of numbers in place of the handle.
     record : File, Every, Period or None, default None
-        Accepted steps that `LubricatedJoint.history` keeps, and their place: all of them or some, in a file or in
-        memory; None: all, in memory.
+        Accepted steps that `LubricatedJoint.history` keeps, all or some, in memory or in a file. None: all, in memory.
 
     Returns
     -------
@@ -206,9 +209,9 @@ def CreateLubricatedJoint(
     Raises
     ------
     InputError
-        Before anything runs: wrong or identical items, position or axis that can't be meant, a planar body with an
-        axis other than z, the two axes not parallel within the clearance or the journal outside the bore in the initial
-        configuration, an assembled system.
+        Before anything runs, for: wrong or identical items; a position or axis that can't be meant; a planar body with
+        an axis other than z; an initial configuration with the two axes not parallel within the clearance or the
+        journal outside the bore; an assembled system.
 
     Examples
     --------

@@ -101,16 +101,19 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     ) -> EquilibriumResult:
         """Let the next run start where the film carries a steady load, with the film in its steady state.
 
-        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing except for
-        its spin. Temperature, oil content and modal bush start settled. For a body in one film; rotors in several start
-        from `SolveEquilibrium`, and loads that depend on the place settle in a static solve (`SolveStatic`).
+        For a body in one film; call it after Assemble. The journal's node is moved across the axis to the equilibrium
+        and its velocity across the axis is set to that of the housing; tilt and spin stay. Temperature, oil content and
+        modal bush start in their steady state. For rotors in several films use `SolveEquilibrium`, for loads that
+        depend on the place `SolveStatic`.
 
         Parameters
         ----------
         load : (2,) [N]
-            Force on the journal in the joint's x and y that the film has to carry: what acts on its body, with inertia.
+            Force on the journal along x and y of the joint frame that the film has to carry: all forces on its body,
+            with inertia forces.
         speed : float or None, default None
-            Relative spin, rad/s; by default that of the initial state.
+            Spin of the journal against the housing about z, rad/s, for which the equilibrium is computed; it does not
+            change the bodies' velocities. None: that of the initial state.
 
         Returns
         -------
@@ -119,7 +122,8 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         Raises
         ------
         InputError
-            For a joint that does not turn, without a system assembled, or a journal that is not a rigid body.
+            For a joint without spin, with a nodal bush, or whose journal is not a rigid body; for a system that is not
+            assembled.
         FilmError
             If no equilibrium was found.
         """
@@ -132,14 +136,14 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         """Find the effects that mattered in the accepted steps, omitted ones that would have, and those without effect.
 
         The films at the worst recorded states (minimum film thickness, highest pressure, loss, speed, tilt, squeeze)
-        are evaluated again, on a model of their own: the joint is not touched. Recorded quantities are taken from the
-        record. Those that need fields (cavitated share, grid, heat of a field) are computed with a flexible bore in
-        equilibrium with the film.
+        are evaluated again in a separate model: the joint does not change. Recorded quantities are taken from the
+        record. Quantities that need a field (cavitated share, grid, heat of a field) are computed with a flexible bore
+        in equilibrium with the film.
 
         Parameters
         ----------
         liner : ElasticLiner or None, default None
-            Liner whose elasticity is assessed, for bearings without one.
+            Liner whose elasticity is assessed if the bearing has none.
         measure_time : bool, default False
             Measure the share of computing time of each active effect.
 
@@ -171,19 +175,19 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         Parameters
         ----------
         quantity : Quantity, exudyn.OutputVariableType or str
-            What to record. Of the film, by its name in `JointHistory` too; vectors are in the joint frame, loads act on
-            the journal. Or what Exudyn's joints give, as of one with the markers [housing, journal], of film and
-            constraint together: ForceLocal, TorqueLocal, DisplacementLocal, VelocityLocal, Rotation (Tait-Bryan
-            angles), AngularVelocityLocal in the housing's joint frame, Force, Torque, Displacement, AngularVelocity
-            global, Position and Velocity of the housing's joint point, HomogeneousTransformation,
-            HomogeneousTransformationLocal. Loads are then those that the journal hands on to the housing, torques are
-            about the bearing's centre.
+            A quantity of the film, by its name in `JointHistory` or as a `Quantity`: vectors are in the joint frame,
+            loads act on the journal. Or an output of Exudyn's joints, as of one with the markers [housing, journal],
+            film, end faces and constraint together: in the housing's joint frame ForceLocal, TorqueLocal,
+            DisplacementLocal, VelocityLocal, Rotation (Tait-Bryan angles), AngularVelocityLocal,
+            HomogeneousTransformationLocal; global Force, Torque, Displacement, AngularVelocity, and Position, Velocity,
+            HomogeneousTransformation of the housing's joint point. Forces and torques of these outputs act from the
+            journal on the housing, torques about the bearing's centre.
         fileName : str, default ""
             File to write to, as in Exudyn's sensors.
         name : str, default ""
             Name of the sensor; by default joint and quantity.
         writeToFile : bool or None, default None
-            By default whether a file name is given; the values are stored in the sensor in any case.
+            Write the file; None: if a file name is given. The sensor stores its values in any case.
 
         Returns
         -------
@@ -195,8 +199,8 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     def film(self) -> FilmFields:
         """The film at the last accepted state: pressure, gap, fill and temperature on the grid.
 
-        Available at any time after Assemble, also within a run. With an `ImpedanceMap`, which holds no pressure, the
-        film behind the map is solved.
+        It can be called at any time after Assemble, also within a run. An `ImpedanceMap` holds no pressure: there the
+        film on the map's grid is solved once.
 
         Raises
         ------
@@ -222,16 +226,21 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     def record_films(self, *, period: float = 0.0, frames: int = 400) -> None:
         """Keep the film at regular instants of the runs that follow, for `films`, `animate` and `export_vtk`.
 
-        Without this call nothing is kept. A film takes some 5 arrays of the grid's size, that is 0.05 MB on the default
-        grid, and with a bush the displacements of its mesh.
+        Call it before the run; without it no films are kept. A film takes some 5 arrays of the grid's size, 0.05 MB on
+        the default grid, and with a bush the displacements of its mesh.
 
         Parameters
         ----------
         period : float, default 0.0
             Time between two films, s; 0 keeps every accepted step.
         frames : int, default 400
-            Most films that are kept; when they are full, every second one is dropped and the period doubled, so that
-            memory is bounded and the films span the whole run.
+            Largest number of films, at least 2. When it is reached, every second film is dropped and the period
+            doubled: memory is bounded, and the films span the whole run.
+
+        Raises
+        ------
+        InputError
+            With an `ImpedanceMap`, which holds no pressure.
         """
         if isinstance(self.element.model, ImpedanceModel):
             raise InputError(
@@ -244,7 +253,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     def films(self) -> tuple[FilmFields, ...]:
         """Films kept since `record_films`, the last one at the last accepted state; empty without it.
 
-        Without the last one where the system's state was changed since its run.
+        If the system's state was changed after its run, the film at the last accepted state is missing.
         """
         recorder = self.element.steps.recorder
         if recorder is None or not self.mbs.systemIsConsistent:
@@ -264,7 +273,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
             Ending in ``.gif``, or in ``.mp4`` where the program ffmpeg is installed.
         frames_per_second : int, default 15
         largest_count : int, default 150
-            Most frames; of more films an even selection is shown. A frame takes about 0.2 s.
+            Largest number of frames; of more films an even selection is shown. Drawing a frame takes about 0.2 s.
 
         Raises
         ------
@@ -284,8 +293,8 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     def export_vtk(self, path: str | pathlib.Path, *, magnification: float = 1.0) -> list[pathlib.Path]:
         """Write the film on the bore, and the bush with its stress, for ParaView; needs the package meshio.
 
-        With films kept by `record_films` a time series, else the film at the last accepted state; see
-        `exudyn_ehd.pictures.vtk.export_films`.
+        Films kept by `record_films` make a time series; without them the film at the last accepted state is written.
+        See `exudyn_ehd.pictures.vtk.export_films`.
 
         Parameters
         ----------
@@ -297,7 +306,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         Returns
         -------
         list of Path
-            What was written, the file to open first.
+            Written files, first the one to open.
         """
         from exudyn_ehd.pictures.vtk import export_films
 

@@ -42,9 +42,9 @@ def ReplaceJoint(
 ) -> LubricatedJoint:
     """Replace a revolute or cylindrical joint of a model by a film; before Assemble.
 
-    The joint is switched off and hidden (``activeConnector=False``), so that every number of the model stays valid. The
-    film holds the journal along the axis (`Held`) if the joint did. Explicit solvers of Exudyn refuse systems with
-    constraints, also inactive ones.
+    The joint stays in the model, switched off and hidden (``activeConnector=False``), so that every number of the model
+    stays valid. The film holds the journal along the axis (`Held`) if the joint did. Use implicit solvers: Exudyn's
+    explicit ones do not accept systems with constraints, not even inactive ones.
 
     Parameters
     ----------
@@ -56,12 +56,12 @@ def ReplaceJoint(
     bearing : JournalBearing
         Geometry, lubricant, film and effects.
     name : str, default ""
-        Name of the film; by default that of the joint, with "film of" before it.
+        Name of the film; by default "film of" and the name of the joint.
     journal : int, default 1
-        Index of the joint's marker on the journal, 0 or 1; the other is on the housing.
+        Position of the journal's marker in the joint, 0 or 1; the other marker is on the housing.
     options
-        Further arguments of `CreateLubricatedJoint`: axial, tilt, stepControl, bushGravity, show, record. A short film
-        that takes the place of a joint which alone carried a tilting moment wants ``tilt=Held()``.
+        Further arguments of `CreateLubricatedJoint`: axial, tilt, stepControl, bushGravity, show, record. Give
+        ``tilt=Held()`` if the joint was the only one that carried a tilting moment: a short film carries little of it.
 
     Returns
     -------
@@ -70,8 +70,8 @@ def ReplaceJoint(
     Raises
     ------
     InputError
-        For an object that is no such joint, that does not leave one rotation free and hold the journal across it, that
-        has an offset function or is read by a sensor, and as `CreateLubricatedJoint`.
+        For an object that is no such joint; a joint that does not leave one rotation free and hold the journal across
+        it, that has an offset function or that a sensor reads; and as `CreateLubricatedJoint`.
 
     Examples
     --------
@@ -134,21 +134,22 @@ def ReplaceJoints(
     mbs : exudyn.MainSystem
         The system, before Assemble.
     bearing : JournalBearing or function
-        One bearing for all joints, or a function of the joint's object number; None of it leaves that joint as it is.
+        One bearing for all joints, or a function that gets a joint's object number and returns its bearing, or None to
+        leave that joint as it is.
     types : sequence of str, default ("JointRevoluteZ", "JointGeneric", "JointRevolute2D")
-        Exudyn's object types that count.
+        Types of Exudyn's objects that are replaced.
     options
         As for `ReplaceJoint`.
 
     Returns
     -------
     dict
-        Films by the object numbers of the joints that they replace.
+        The `LubricatedJoint` of each replaced joint, by the joint's object number.
 
     Raises
     ------
     InputError
-        For types that it does not know, a system without such joints, and as `ReplaceJoint`.
+        For unknown types, a system without such joints, and as `ReplaceJoint`.
 
     Examples
     --------
@@ -188,15 +189,14 @@ def ReplaceJoints(
 def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
     """Give a finite-element body (ObjectFFRFreducedOrder) its exact Jacobian, for faster runs; before Assemble.
 
-    Exudyn differentiates the body numerically, which with many modes takes most of a step: at every Jacobian, two
-    evaluations of all its forces for each coordinate. Here an ObjectGenericODE2 beside it has the same equations with
-    their exact derivatives, and the body keeps all else: markers, sensors, loads, drawing. The body's matrices are read
-    anew by every run. Bodies of an `FEBore` or `FEJournal` come to it by themselves.
+    Exudyn differentiates the body numerically: every Jacobian costs two evaluations of all its forces for each
+    coordinate, which with many modes is most of the time of a step. This adds an ObjectGenericODE2 that has the same
+    equations with exact derivatives. The body keeps its markers, sensors, loads and drawing. Its matrices are read
+    again at the start of every run. Bodies of an `FEBore` or `FEJournal` get this without a call.
 
-    Exudyn's own equations lack a term on nodes of Tait-Bryan angles (``NodeType.RotationRxyz``): the angular
-    acceleration at constant rates of the angles. It is zero while only one of the angles changes, as in a planar
-    mechanism; a tumbling body of Exudyn does not keep its angular momentum, where this one does. On the other types
-    of nodes both agree to rounding.
+    Results differ from Exudyn's on nodes of Tait-Bryan angles (``NodeType.RotationRxyz``), and only if more than one
+    angle changes: Exudyn's equations lack the angular acceleration at constant rates of the angles, and its tumbling
+    body does not keep its angular momentum; this one does. On the other types of nodes both agree to round-off.
 
     Parameters
     ----------
@@ -207,12 +207,12 @@ def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
     Returns
     -------
     exudyn.ObjectIndex
-        The object with the equations.
+        The new object, which has the equations.
 
     Raises
     ------
     InputError
-        For another object, one whose equations are user functions or replaced already, and an assembled system.
+        For another object; a body whose equations are user functions or already replaced; an assembled system.
 
     Examples
     --------

@@ -249,7 +249,7 @@ class LubricatedSphericalJoint(Joint):
     def audit(self) -> Audit:
         """Find the effects that mattered in the accepted steps, and those of them that a ball's film omits; print it.
 
-        The films at the worst recorded steps are evaluated again, on a model of their own: the joint is not touched.
+        The films at the worst recorded steps are evaluated again in a separate model: the joint does not change.
         See `exudyn_ehd.joint.spherical.steady`.
 
         Raises
@@ -307,11 +307,12 @@ def CreateLubricatedSphericalJoint(
 ) -> LubricatedSphericalJoint:
     """Create an oil-filled spherical joint between two bodies.
 
-    Arguments that ``mbs.CreateSphericalJoint`` also has mean the same, so that one call replaces the other; a film
-    holds the ball in three directions where the socket reaches beyond its equator (`SphericalBearing`). It is an
-    ObjectGenericODE2 without mass on the nodes of the two bodies, with its exact Jacobian. Implicit, explicit and
-    static solvers, `SolveDynamic`, `SaveState` and restarts take it like a `CreateLubricatedJoint`; a `StepControl` of
-    the run too; `UntilPeriodic` does not.
+    Arguments that ``mbs.CreateSphericalJoint`` also has mean the same, so that one call replaces the other. The film
+    holds the ball in all three directions only if the socket reaches beyond the ball's equator (`SphericalBearing`). In
+    Exudyn it is an ObjectGenericODE2 without mass on the nodes of the two bodies, with its exact Jacobian.
+
+    It works as a `CreateLubricatedJoint` does with implicit, explicit and static solvers, `SolveDynamic`, `SaveState`,
+    restarts and a `StepControl` of the run. `UntilPeriodic` does not accept it.
 
     Parameters
     ----------
@@ -327,15 +328,16 @@ def CreateLubricatedSphericalJoint(
     bearing : SphericalBearing, default None
         Required: dimensions, lubricant, cavitation and contact.
     axis : (3,), default (0.0, 0.0, 1.0)
-        The socket's axis, from which its colatitudes count: into a cup.
+        The socket's axis, global or in the socket's frame, from which its colatitudes are measured. It points from the
+        centre into the cup, to its deepest point.
     rotationMatrixAxes : (3, 3) or None, default None
-        The socket's frame, its third column in place of ``axis``.
+        Frame of the joint, global or in the socket's frame; its third column takes the place of ``axis``.
     stepControl : StepControl or None, default None
-        Lets Exudyn halve steps in which the gap changes by too much.
+        Lets Exudyn halve steps in which the gap changes by too much; None as for `CreateLubricatedJoint`.
     useGlobalFrame : bool, default True
         See position, axis, rotationMatrixAxes.
     show : bool, default True
-        Draw the socket in Exudyn's renderer, in the colours of its pressure.
+        Draw the socket in Exudyn's renderer, in the colours of the film's pressure.
     color : (4,), default (-1.0, -1.0, -1.0, -1.0)
         Colour of the film element's nodes, RGBA; Exudyn's default for -1.
 
@@ -346,8 +348,8 @@ def CreateLubricatedSphericalJoint(
     Raises
     ------
     InputError
-        Before anything runs: wrong or identical items, a position or axis that can't be meant, a ball that is not
-        inside the socket in the initial configuration, an assembled system.
+        Before anything runs, for: wrong or identical items; a position or axis that can't be meant; a ball that is not
+        inside the socket in the initial configuration; an assembled system.
 
     Examples
     --------

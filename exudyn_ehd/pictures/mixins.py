@@ -31,7 +31,12 @@ class FilmPictures(Titled):
     """
 
     def plot_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of the pressure, with the boundary of the unbroken film and the housing's supply areas."""
+        """Unrolled map of the pressure, with the boundary of the unbroken film and the housing's supply areas.
+
+        The angle from x about z [degrees] runs to the right, z [mm] upwards. It draws into ``ax``, a matplotlib Axes,
+        or a figure of its own, writes it to ``path`` if given, and returns the figure. An `InputError` says so if the
+        film has no such field.
+        """
         return self._map("pressure", ax, path)
 
     def plot_gap(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
@@ -57,7 +62,11 @@ class FilmPictures(Titled):
     def plot_bearing(
         self, *, camera: tuple[float, float] | None = None, ax: Axes | None = None, path: Target = None
     ) -> Figure:
-        """The bearing in space: pressure, journal, load on the bush; ``camera`` is elevation and azimuth, degrees."""
+        """The bearing in space: pressure, journal, load on the bush; ``camera`` is elevation and azimuth, degrees.
+
+        At azimuth -90 y is upright and x to the right; by default the pressure is in view. ``ax`` (with three axes)
+        and ``path`` as for `plot_pressure`.
+        """
         from exudyn_ehd.pictures.bush import plot_bearing
 
         return plot_bearing(self._film(), camera=camera, title=self._title(), ax=ax, path=path)
@@ -79,13 +88,21 @@ class HistoryPictures(Titled):
     """
 
     def plot_orbit(self, *, ends: bool = False, text: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
-        """Orbit of the journal in the clearance circle, with ``ends`` also at both ends; ``text`` is for a legend."""
+        """Orbit of the journal in the clearance circle, with ``ends`` also at both ends; ``text`` is for a legend.
+
+        x to the right, y upwards, joint frame. It draws into ``ax``, a matplotlib Axes, or a figure of its own, writes
+        it to ``path`` if given, and returns the figure.
+        """
         from exudyn_ehd.pictures.histories import plot_orbit
 
         return plot_orbit(self._history(), ends=ends, text=text, title=self._title(), ax=ax, path=path)
 
     def plot_load(self, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
-        """Polar diagram of the load of the journal on the bush, in the housing's joint frame."""
+        """Polar diagram of the load of the journal on the bush, in the housing's joint frame.
+
+        The load is the opposite of ``history.force``, its angle from x about z. ``text`` is for a legend, ``ax`` must
+        be polar; else as `plot_orbit`.
+        """
         from exudyn_ehd.pictures.histories import plot_load
 
         return plot_load(self._history(), text=text, title=self._title(), ax=ax, path=path)
@@ -93,7 +110,12 @@ class HistoryPictures(Titled):
     def plot_traces(
         self, quantities: Enum | str | Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
     ) -> Figure:
-        """Quantities over time, or over an ``angle``; options: `exudyn_ehd.pictures.histories.plot_traces`."""
+        """Quantities over time, or over an ``angle``; options: `exudyn_ehd.pictures.histories.plot_traces`.
+
+        ``quantities`` are names of scalars in `JointHistory`, one panel each. Options: ``angle`` (n,) [rad], e.g.
+        ``speed * history.time``, and its name ``angle_text``; ``text`` for a legend; ``title``; ``ax``, one Axes for
+        each panel; ``path``.
+        """
         from exudyn_ehd.pictures.histories import plot_traces
 
         return plot_traces(self._history(), quantities, **{"title": self._title(), **options})
@@ -107,7 +129,12 @@ class HistoryPictures(Titled):
         ax: Axes | None = None,
         path: Target = None,
     ) -> Figure:
-        """Short-time spectra, of ``window`` seconds each, over the time or over a ``speed`` (n,) in rad/s."""
+        """Short-time spectra, of ``window`` seconds each, over the time or over a ``speed`` (n,) in rad/s.
+
+        For whirl and run-ups. Colours are amplitudes of a scalar in `JointHistory`, or of x of the ``eccentricity``;
+        lines are the speed, by default the journal's spin, and half of it. ``speed`` has a value for each row and must
+        not turn back. ``window`` is by default a twentieth of the history. ``ax`` and ``path`` as for `plot_orbit`.
+        """
         from exudyn_ehd.pictures.histories import plot_waterfall
 
         return plot_waterfall(

@@ -36,6 +36,9 @@ _MOTION_UNITS = ("m", "m", "rad", "rad", "m/s", "m/s", "rad/s", "rad/s", "rad/s"
 class Quantity(enum.Enum):
     """Names of quantities that a sensor can record; their values are the names in `JointHistory`.
 
+    An alternative to the names as text, for `LubricatedJoint.AddSensor` and the plot methods. Units and signs:
+    `JointHistory`.
+
     Examples
     --------
     After the example of `CreateLubricatedJoint`:
@@ -123,21 +126,23 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     time : (n,) [s]
         Time at the end of the step. In a static solve Exudyn's load parameter.
     motion : (n, 10) [m, rad, m/s, rad/s]
-        Motion of the journal against the housing: x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w. The journal's axis is
-        at x + bx z, y + by z, in m and rad; x_t to by_t, m/s and rad/s, are the rates of these four as the film takes
-        them (`exudyn_ehd.joint.step_rates`); omega, rad/s, is the spin about z, w, m/s, the velocity along z.
+        Motion of the journal against the housing: x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w. At height z the
+        journal's axis is at (x + bx z, y + by z): x and y in m, the slopes bx and by in rad. x_t to by_t, m/s and
+        rad/s, are the rates of these four that the film takes (`exudyn_ehd.joint.step_rates`); omega, rad/s, is the
+        spin about z, w, m/s, the velocity along z.
     eccentricity : (n, 2) [m]
-        Journal axis in the mid-plane. Along x and y, the first two of ``motion``.
+        Position of the journal's axis in the mid-plane. Along x and y from the bore's axis, the first two of
+        ``motion``.
     eccentricity_ratio : (n,) [-]
         Distance of the journal axis from the bore's in the mid-plane, over the radial clearance. From 0; 1
         where rigid, round surfaces touch.
     largest_eccentricity_ratio : (n,) [-]
-        The same ratio at the end of the bearing where it is larger. From 0, as ``eccentricity_ratio``.
+        The larger of the eccentricity ratios at the two ends of the bearing. From 0, as ``eccentricity_ratio``.
     force : (n, 3) [N]
         Force of film and contact. On the journal, along x, y, z; without the films on the end faces.
     moment : (n, 3) [N m]
         Moment of film and contact. On the journal, about the frame's origin, along x, y, z; without the films on the
-        end faces. Its z part is ``friction_torque`` and what ``force`` does about the origin.
+        end faces. Its z part is the sum of ``friction_torque`` and the moment of ``force`` about the origin.
     minimum_gap : (n,) [m]
         Minimum film thickness over the whole bearing, its edges included. Above 0; in contact,
         the distance of the surfaces as if nothing were flattened, which may be below 0.
@@ -181,7 +186,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     journal_temperature : (n,) [K]
         Mean temperature of the journal's surface. As ``bush_temperature``.
     clearance : (n,) [m]
-        Radial clearance that warm walls leave. Smaller than cold where the journal grows more; nan as
+        Radial clearance with the thermal growth of the walls. Below the cold one where the journal grows more; nan as
         ``bush_temperature``.
     axial_position : (n,) [m]
         Place of the journal along the axis between the faces of ``thrust``. Along z, 0 in the middle; nan without
@@ -215,7 +220,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
 
     Notes
     -----
-    The history of a joint makes each of its arrays when it is asked for, and keeps it; that of a `File` reads it then.
+    An array is made when it is first used, and kept; that of a `File` is read at that moment.
 
     Examples
     --------
@@ -272,7 +277,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
 
     @property
     def is_thinned(self) -> bool:
-        """Return whether accepted steps are missing between the rows."""
+        """Return whether accepted steps are missing between the rows, as with `Every` and `Period`."""
         return has_gaps(self.step_count)
 
     def __repr__(self) -> str:
@@ -293,7 +298,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         Parameters
         ----------
         start, end : float, default -inf, inf
-            s.
+            First and last time, s.
 
         Returns
         -------
@@ -364,8 +369,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         Parameters
         ----------
         period : float or None, default None
-            Duration of a cycle, s, counted from the first row; for journals that swing. By default revolutions of the
-            journal against the housing are counted.
+            Duration of a cycle, s, from the first row on, for journals that swing. None: rows are whole turns of the
+            journal against the housing.
 
         Returns
         -------
@@ -375,7 +380,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         Raises
         ------
         InputError
-            If there is no whole revolution or period, and of a thinned record (`Every`, `Period`).
+            If there is no whole revolution or period, or if the record is thinned (`Every`, `Period`).
         """
         if self.is_thinned:
             raise InputError(

@@ -37,16 +37,16 @@ NAME = "{name}"
 class File:
     """``record`` of a joint: accepted steps go to a file, and memory holds the last ones only.
 
-    A step takes 0.5 KB on disk. `load_history` reads the file, during a run and after a kill as well. A history of it
-    reads each of its arrays when it is asked for: 8 bytes a step and number. A new record of the joint replaces the
-    file.
+    A step takes 0.5 KB on disk. `load_history` reads the file, also during a run and after a run was killed. A history
+    reads an array from the file when the array is first used, 8 bytes of memory per step and component. A new record of
+    the joint replaces the file: to keep it, name another path or `JointHistory.save` it before the next run.
 
     Parameters
     ----------
     path : path
-        Of a file of its own for each joint; "{name}" in it stands for the joint's name.
+        Path of the file, one for each joint; "{name}" in it stands for the joint's name.
     every : Every, Period or None, default None
-        Keep some of the steps; None: all of them.
+        Rule by which some of the steps are kept; None: all of them.
 
     Examples
     --------

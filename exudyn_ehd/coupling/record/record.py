@@ -191,8 +191,8 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     ----------
     path : path
     start, end : float, default -inf, inf
-        s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` no others are read. Without
-        both the history of a `File` reads each of its arrays when it is asked for.
+        First and last time, s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` only
+        these steps are read; without ``start`` and ``end`` each array is read when it is first used.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     FileNotFoundError
         If there is no such file.
     InputError
-        If it holds something else, or the start lies after the end.
+        If the file holds something else, or ``start`` lies after ``end``.
 
     Examples
     --------

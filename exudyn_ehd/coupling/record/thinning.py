@@ -47,16 +47,17 @@ ROUNDING = 1e-9
 class Every:
     """``record`` of a joint: every n-th accepted step is kept, and the worst ones between them.
 
-    Each span of steps keeps its last one and those with the smallest ``minimum_gap``, the largest ``peak_pressure``
-    and the largest load across the axis. The record's extremes are those of the run; ``step_count`` says which steps
-    they are. A span takes up to four rows, 1.9 KB. `LubricatedJoint.audit`, `JointHistory.revolutions` and
-    `UntilPeriodic` need all steps and do not accept such a record. Means over the record are means of its rows. Errors
-    of steps begin anew after a restart.
+    Of each n successive steps the record keeps the last one and those with the smallest ``minimum_gap``, the largest
+    ``peak_pressure`` and the largest load across the axis: up to four rows, 1.9 KB. So extremes over the record are
+    those of the run, but means over its rows are not means of the run. ``step_count`` says which steps the rows are.
+
+    `LubricatedJoint.audit`, `JointHistory.revolutions` and `UntilPeriodic` need all steps and do not accept such a
+    record. After a restart the estimate ``step_error`` starts again.
 
     Parameters
     ----------
     steps : int
-        2 or more.
+        The number n of steps of which up to four are kept, 2 or more.
 
     Examples
     --------
@@ -80,7 +81,7 @@ class Period:
     Parameters
     ----------
     seconds : float
-        Spans end at the multiples of this, s.
+        Duration of a period, s; periods end at the multiples of it.
 
     Examples
     --------

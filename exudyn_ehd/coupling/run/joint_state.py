@@ -38,17 +38,18 @@ class JointState:
     ----------
     name : str
     bearing : str
-        Digest of the bearing's description: a state is for the bearing that it came from.
+        Digest of the bearing's description, by which a joint with another bearing rejects the state.
     time : float
         Time of the last accepted step, s.
     memory : History or None
-        Oil content, wear, temperature and deflection at that time; None if the film remembers nothing.
+        Oil content, wear, temperature and deflection at that time; None if the film has no memory.
     rows : (n, k) array
         The record of accepted steps up to that time.
     begin : StepStart or None
-        Start of the next step, if its rates follow the positions.
+        Data of the next step's start from which the film takes its rates (`exudyn_ehd.joint.step_rates`); None where it
+        takes the velocities.
     modes : (p, k) array or None
-        Displacements and stiffness of the bore's modes, whose coordinates are part of the state.
+        Displacements and stiffness of the bore's modes, by which a joint with other modes rejects the state.
 
     Examples
     --------
@@ -100,14 +101,16 @@ class Joint:
 
         `exudyn_ehd/API.md` and `JointHistory` describe the arrays with their units and signs.
 
-        The last row is the end of the last run, during a run the start of the current step. Behind Exudyn's own
-        ``mbs.SolveDynamic`` read it before the system's state is changed (a linearisation, Assemble): it is completed
-        at this moment. A run that starts at the end of the record goes on with it, e.g. after ``SolveDynamic(...,
-        updateInitialValues=True)``; any other starts a new one, also a run at that time from the old initial values. A
-        last state without a film is left out, and a warning says why.
+        The last row is the end of the last run; during a run, the start of the current step. A run that starts at the
+        end of the record continues the record, e.g. after ``SolveDynamic(..., updateInitialValues=True)``. Any other
+        run starts a new one, also a run at that time from the old initial values. A last state without a film is
+        omitted, and a warning says why.
 
-        What the film remembers follows the state, not the record: see `forget`. Before Assemble it is empty, and a
-        warning says so; behind it, before a run, it holds the initial state.
+        After Exudyn's own ``mbs.SolveDynamic`` read the history before you change the system's state (by a
+        linearisation or Assemble): its last row is computed only then.
+
+        A new record does not reset wear, oil content and temperature of the film: see `forget`. Before Assemble the
+        history is empty, and a warning says so; after it, before a run, it holds the initial state.
         """
         history = self._recorded()
         if not history.time.size and not np.isfinite(self.element.steps.began):
@@ -158,28 +161,31 @@ class Joint:
     def forget(self) -> None:
         """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.
 
-        Without it what a film remembers follows the state: a run that starts where the last one has ended goes on with
-        the film of its end, at whatever time and with static solves in between; a run that starts where the last one
-        has started has the film of its start. At any other state the film of the last end goes on, with a
-        `MemoryWarning`.
+        Without this call the film of the next run (oil content, wear, temperature) depends on the state at which that
+        run starts:
+
+        - where the last run has ended: the film of its end, at whatever time and with static solves in between;
+        - where the last run has started: the film of its start;
+        - at any other state: the film of the last end, with a `MemoryWarning`.
         """
         self.element.steps.forget()
 
     def stop_at(self, *, force: float = math.inf, pressure: float = HIGHEST_PEAK) -> None:
         """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.
 
-        Without it runs end where the film is none: pressures beyond 3 GPa, which neither oil nor steel bears
-        (`SolveDynamic` and `SolveDynamicSparse` try smaller steps first), rigid surfaces pressed through each other by
-        more than the clearance, forces that alternate at many times what they move and carry. Steps with more than
-        1 GPa on the projected area, or with more than 3 GPa where you allow them, give an `OverloadWarning`.
+        Use it to end a run early at loads that your machine can't have. Without it a run ends at: a pressure beyond 3
+        GPa, which neither oil nor steel bears (`SolveDynamic` and `SolveDynamicSparse` first try smaller steps); rigid
+        surfaces pressed through each other by more than the clearance; a force that alternates from step to step with
+        many times its mean. Accepted steps with a mean pressure above 1 GPa, or with a peak above 3 GPa where you allow
+        it, give an `OverloadWarning`. Mean pressures are force over projected area.
 
         Parameters
         ----------
         force : float, default inf
-            Largest force of film and contact, N.
+            Largest allowed force of film and contact, N.
         pressure : float, default 3e9
-            Largest peak pressure of the film, and mean pressure of film and contact on the projected area, Pa;
-            `math.inf` allows any.
+            Largest allowed pressure, Pa, for the film's peak and for the mean pressure of film and contact; `math.inf`
+            allows any.
         """
         for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
             if value != math.inf:
@@ -190,7 +196,7 @@ class Joint:
     def restore_state(self, state: JointState) -> None:
         """Let the next run go on with the memory of a state, and with its record if it starts at its time.
 
-        `SolveDynamic` does it with ``restart``.
+        ``SolveDynamic(restart=...)`` does this for all joints.
 
         Raises
         ------

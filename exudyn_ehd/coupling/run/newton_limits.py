@@ -294,23 +294,25 @@ def ConfigureSolver(
 ) -> exu.SimulationSettings:
     """Set the tolerances, Newton's method and the spectral radius that lubricated joints need; all else stays.
 
-    - Newton's relative tolerance 1e-6 in place of 1e-8: a film's force is the result of a solve of its own and carries
-      rounding noise of about 1e-10, so that residuals can't always fall by eight orders.
-    - Newton's absolute tolerance 1e-8 in place of 1e-10, where it is tighter: next to a wall of 1e11 N/m the rounding
-      of a position alone makes 1e-9 N, so that a journal at rest on it would never pass and be refused.
-    - Newton's tolerance relative to its first residual only (``adaptInitialResidual`` off): where a first iterate
-      lands deep in a contact, its residual is millions of times the step's forces, and a tolerance relative to it
-      accepts any state on the way back.
-    - Full Newton: the Jacobian of the film is exact and cheap (one tangent from the factor the force has left), and
-      saves film evaluations. Set ``useModifiedNewton=True`` for models with large flexible bodies, where a new
-      factorisation costs more than several film evaluations.
-    - Spectral radius of generalized alpha 0.6, where Exudyn's 0.9 is still set: stiff films make every step that was
-      halved an alternation of forces, which at 0.9 outlasts the next disturbance. A gudgeon pin at 3000 rpm, peak of
-      208 MPa, 360 steps a turn: 820 rows with halved steps and 3.5 % too high a peak at 0.9, 361 rows and 0.02 % at
-      0.6. What is resolved hardly feels it: a vibration of 80 steps per period loses 2e-5 of its amplitude per period
-      (2e-7 at 0.9, 2e-4 at 0.3); for the growth of a whirl over thousands of turns name a radius of 0.9. A run with
-      a larger one warns: velocities of journals then alternate from step to step, and growth may be wrong.
-    - The step size control stays on (Exudyn's default): a film that can't be evaluated asks for a smaller step.
+    Time integration and static solver get the same values:
+
+    - Newton's relative tolerance: 1e-6 in place of Exudyn's 1e-8. A film's force is itself the result of an iteration
+      and carries relative noise of about 1e-10, so that residuals can't always fall by eight orders of magnitude.
+    - Newton's absolute tolerance: at least 1e-8 N; Exudyn has 1e-10. On a contact wall of 1e11 N/m the round-off of a
+      position alone makes 1e-9 N, so that a journal at rest on it would never converge.
+    - ``adaptInitialResidual`` off: the tolerance is relative to the first residual only. An iterate deep in a contact
+      has a residual of millions of times the step's forces; a tolerance relative to that accepts a wrong state.
+    - Full Newton: the Jacobian of the film is exact and cheap, and saves film evaluations. Set
+      ``useModifiedNewton=True`` for models with large flexible bodies, where a new factorisation costs more than
+      several film evaluations.
+    - Spectral radius of generalized alpha: 0.6, where Exudyn's 0.9 is still set. After a halved step the force of a
+      stiff film alternates from step to step; at 0.9 this lasts until the next disturbance. Example: a gudgeon pin at
+      3000 rpm with a peak pressure of 208 MPa and 360 steps a turn. At 0.9 halved steps make 820 rows instead of 361,
+      and the peak pressure is 3.5 % too high; at 0.6 no step is halved, and the error is 0.02 %. Motions that the steps
+      resolve are hardly damped: a vibration of 80 steps per period loses 2e-5 of its amplitude per period (2e-7 at 0.9,
+      2e-4 at 0.3). For the growth of a whirl over thousands of turns set 0.9. A run above 0.9 warns: velocities of
+      journals then alternate from step to step, and the growth may be wrong.
+    - ``adaptiveStep`` on, as by default: Exudyn repeats a step with half its size if a film can't be evaluated.
 
     Parameters
     ----------
@@ -319,12 +321,13 @@ def ConfigureSolver(
     relativeTolerance : float, default 1e-6
         Newton's relative tolerance.
     absoluteTolerance : float or None, default None
-        Newton's absolute tolerance, N. None: 1e-8, and a larger one that is set already stays. Films that carry less
-        than 1e-5 N want 1e-6 of their load.
+        Newton's absolute tolerance, N. None: 1e-8, or the value already set if that is larger. For films that carry
+        less than 1e-5 N give 1e-6 of their load.
     useModifiedNewton : bool, default False
-        Keep the Jacobian over several steps.
+        True: keep the Jacobian over several steps.
     spectralRadius : float or None, default None
-        Of generalized alpha, 0 to 1. None: 0.6 in place of Exudyn's default 0.9; one that is set already stays.
+        Spectral radius of generalized alpha, 0 to 1; smaller damps more. None: 0.6 if Exudyn's default 0.9 is set; any
+        other value stays.
 
     Returns
     -------
@@ -334,7 +337,8 @@ def ConfigureSolver(
     Raises
     ------
     InputError
-        For what are no settings of Exudyn, tolerances that are not positive, or a spectral radius beyond 0 to 1.
+        For an object that is no SimulationSettings, tolerances that are not positive, or a spectral radius outside 0 to
+        1.
 
     Examples
     --------

@@ -39,17 +39,18 @@ SAME = 1e-9
 class UntilPeriodic:
     """End a run as soon as the orbits of all joints repeat themselves: ``SolveDynamic(..., until_periodic=...)``.
 
-    ``endTime`` of the settings says how long the run may take, at least three periods; the steps are those of the
-    settings, best a whole number in a period.
+    ``endTime`` of the settings limits the run; leave room for at least three periods. Choose the step size so that a
+    period is a whole number of steps. If the orbits have not closed by then, `SolveDynamic` raises a `RunError`.
 
     Parameters
     ----------
     period : float
         Period of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
     tolerance : float, default 0.01
-        Largest difference of the last cycle from the one before, and from the limit of the changes from cycle to
-        cycle. Distances of the journal's axis at both ends, and of the journal between its thrust faces, count over
-        the radial clearance. The film's temperature counts over its rise since the start of the run.
+        Largest difference of the last cycle from the cycle before it, and largest estimated difference from the limit
+        that the cycles approach; 1e-6 to 0.5. Differences of the journal's axis at both ends of the bearing, and of the
+        journal's place between its thrust faces, are over the radial clearance. Differences of the film's mean
+        temperature are over its rise since the start of the run, at least 1 K.
 
     Examples
     --------
@@ -78,13 +79,13 @@ class LastCycle:
     Attributes
     ----------
     start, end : float
-        s.
+        First and last instant of the cycle, s.
     cycles : int
-        Cycles that the run has taken, this one included.
+        Number of cycles of the run, this one included.
     changes : (cycles - 1,) array
-        Largest change of a joint from each cycle to the next, in the measure of `UntilPeriodic`.
+        Largest change of all joints from each cycle to the next, measured as ``tolerance`` of `UntilPeriodic`.
     left : float
-        Estimated distance of the last cycle from the limit, in that measure.
+        Estimated difference of the last cycle from the limit that the cycles approach, measured alike.
     histories : dict
         `JointHistory` of this cycle by the names of the joints.
 

@@ -41,15 +41,16 @@ class SystemState:
     Attributes
     ----------
     time : float
-        s.
+        Time of the state, s.
     coordinates : tuple of 5 arrays
         As Exudyn's ``systemData.GetSystemState``: ODE2 coordinates and velocities, ODE1, algebraic and data
         coordinates.
     accelerations : (n,) array
-        Of the ODE2 coordinates.
+        Second time derivatives of the ODE2 coordinates.
     algorithmic : (n,) array or None
-        Algorithmic accelerations of an implicit integrator.
+        Algorithmic accelerations of an implicit integrator; None for other solvers.
     joints : tuple of JointState
+        One for each lubricated joint, in the order in which they were created.
 
     Examples
     --------

@@ -98,48 +98,51 @@ def SolveDynamic(
 ) -> bool | LastCycle:
     """Integrate in time as ``mbs.SolveDynamic``, with fewer Newton iterations, clearer errors and restarts.
 
-    Exudyn starts Newton's method of a step at zero accelerations, away from the solution by some 0.3 h^2 a: more than a
-    film is thick in a crank drive at steps of a degree. Here it starts at the accelerations that last (`StartGuess`):
-    the same solution with two to four times fewer iterations, without halved steps and without the errors that they
-    leave in the forces.
+    Newton's method of a step starts at the accelerations of the steps before (`StartGuess`). The solution is the same,
+    with two to four times fewer iterations, and without halved steps and the errors in the forces that these leave.
+    Exudyn starts at zero accelerations, some 0.3 h^2 a away from the solution (step h, acceleration a): in a crank
+    drive at steps of a degree, more than the film thickness.
 
-    A film that can't be evaluated ends a run with an Exudyn error whose cause is this package's; here it is the
-    package's error itself. A run that ends because Newton's method does not converge is explained by the last accepted
-    state of every joint. Either way ``joint.history`` holds all accepted steps, and `SaveState` stores the last one.
+    If a film can't be evaluated, the run ends with this package's error, which names the joint and the remedy, instead
+    of an Exudyn error with this one as its cause. If Newton's method does not converge, the error describes the last
+    accepted state of every joint. Either way ``joint.history`` holds all accepted steps, and `SaveState` stores the
+    last one.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
     simulationSettings : exudyn.SimulationSettings
     restart : SystemState, path or None, default None
-        From `SystemState.of` or `SaveState`: the run goes on from there. ``startTime`` of the settings is set;
-        ``endTime`` and ``numberOfSteps`` are those of the rest. With the same step size and full Newton it repeats what
-        the run would have done without the stop, to rounding: films with their memory, Exudyn's algorithmic
-        accelerations and the histories.
+        Result or file of `SaveState`: the run goes on from this state. The system must be assembled, and of the same
+        build: coordinates, joints, bearings. ``startTime`` of the settings is set to the state's time; ``endTime`` must
+        be later, and ``numberOfSteps`` divides the time between them. With the same step size and full Newton, results
+        equal those of a run without the stop, to round-off: motions, films with their memory, and histories.
     stepControl : StepControl or None, default None
-        ``StepControl(error=0.02)``: steps chosen by the error that they make in the films.
+        ``StepControl(error=0.02)``: steps are chosen by the error that they make in the films. None: steps of the
+        settings.
     until_periodic : UntilPeriodic or None, default None
-        Ends the run as soon as the orbits of all joints have closed.
+        Ends the run as soon as the orbits of all joints repeat themselves. None: the run ends at ``endTime``.
     threads : int or None, default 1
-        Threads on which the films of all joints are evaluated side by side, with the same bits; None: one for each core
-        of the process. Worth it from two joints on fine grids on, see coupling/README.md.
+        Number of threads that evaluate the films of all joints in parallel; results are bit-identical to those of one
+        thread. None: one for each core of the process. It pays from two joints on fine grids on, see
+        coupling/README.md.
     **options
-        As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; the solver is stored whatever storeSolver is.
+        As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; storeSolver is always True.
 
     Returns
     -------
     bool or LastCycle
-        As ``mbs.SolveDynamic``; with ``until_periodic`` the cycle that has closed.
+        True after success, as ``mbs.SolveDynamic``; with ``until_periodic`` the last cycle.
 
     Raises
     ------
     FilmError
         If a film could not be evaluated, or if the steps of an explicit solver are too large for it.
     RunError
-        If the solver ended otherwise without success, or the orbits have not closed by the end of the run.
+        If the solver failed for another reason, or if the orbits have not closed by ``endTime``.
     InputError
-        If the restart belongs to another system, the step control is none of a run, or a run that shall become periodic
-        has no joints or no time for three periods.
+        If the restart belongs to another system; if the step control has no ``error``, the solver is explicit or
+        ``adaptiveStep`` is off; if a run with ``until_periodic`` has no joints or no time for three periods.
 
     Examples
     --------
@@ -190,6 +193,9 @@ def SolveDynamic(
 
 def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings, **options: object) -> bool:
     """Find a static equilibrium as ``mbs.SolveStatic``, with clearer errors; see `SolveDynamic`.
+
+    A film without relative speed, a journal's spin and its place along the axis have no stiffness of their own: give
+    speeds by initial velocities, and hold what is free by supports, springs or constraints.
 
     Parameters
     ----------
@@ -247,14 +253,14 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     Parameters
     ----------
     mbs : exudyn.MainSystem
-        After a run, successful or not.
+        The system after a run, successful or not.
     path : path
-        Ending in ``.npz``.
+        File to write, ending in ``.npz``.
 
     Returns
     -------
     SystemState
-        Stored state.
+        The stored state, for ``SolveDynamic(restart=...)`` in this process; another one reads the file.
 
     Raises
     ------

@@ -63,12 +63,13 @@ class FactorReuse:
     Parameters
     ----------
     contractivity : float, default 0.5
-        Refactor if the contraction rate of the residual in an iteration exceeds this.
+        Refactor if the contraction rate of an iteration, its residual over the one before, exceeds this.
     maximum_iterations : int, default 10
-        Refactor after so many iterations of one step.
+        Refactor after this number of iterations of one step with the same factor.
     worth : int, default 40
-        Number of iterations that cost as much as a factor. Refactor at the start of a step when the iterations beyond
-        those of the factor's first step add up to this. It is a count, not a time, so that runs repeat exactly.
+        Number of iterations that cost as much as a new factor. Steps with an old factor take more iterations than its
+        first step did: refactor when the additional iterations of all steps since add up to this number. It is a count,
+        not a time, so that runs repeat exactly.
 
     Examples
     --------
@@ -138,19 +139,22 @@ def SolveDynamicSparse(
 ) -> SparseRun:
     """Integrate in time like ``mbs.SolveDynamic``, with a sparse solver of the package: for large meshes.
 
-    Newton's method starts at lasting accelerations, as in `exudyn_ehd.SolveDynamic`. User functions of the system take
-    part: before and after steps, before residuals, after Newton's method, and what one adds to the Jacobian. In
-    ``mbs.sys['dynamicSolver'].it`` they find ``newtonStepsCount`` and ``newtonJacobiCount`` of the run;
-    ``newtonSteps`` stays 0, since Exudyn's step control, which would read it, judges by the cost of full Newton.
+    Newton's method starts at the accelerations of the steps before, as in `exudyn_ehd.SolveDynamic`. User functions of
+    the system are called: before and after steps, before residuals, after Newton's method, and for terms of the
+    Jacobian. In ``mbs.sys['dynamicSolver'].it`` they find ``newtonStepsCount`` and ``newtonJacobiCount`` of the run;
+    ``newtonSteps`` stays 0, since Exudyn's step control reads it and would judge it by the cost of full Newton.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
         Assembled if it is not.
     simulationSettings : exudyn.SimulationSettings or None, default None
-        Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``.
+        Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``. None: Exudyn's
+        defaults; use `ConfigureSolver`.
     reuse : FactorReuse or None, default None
+        Rules for new factors; None: ``FactorReuse()``.
     stepControl : StepControl or None, default None
+        As in `SolveDynamic`.
     threads : int or None, default 1
         As in `SolveDynamic`.
 
@@ -161,8 +165,8 @@ def SolveDynamicSparse(
     Raises
     ------
     InputError
-        The model holds coordinates that this solver can't update or constraints that it does not know, or the settings
-        ask for what it does not offer; the message names it.
+        If the model has coordinates that this solver can't update or constraints that it does not know, or if the
+        settings ask for something that it does not offer; the message names it.
     FilmError, RunError
         As `SolveDynamic`; ``joint.history`` holds all accepted steps.
 

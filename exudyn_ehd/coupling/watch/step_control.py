@@ -26,30 +26,31 @@ LARGEST_GAP_CHANGE = 0.25
 class StepControl:
     """Step control of a run: limit the change of the gap in a step, or choose steps by the error that they make.
 
-    **Of a joint** (``CreateLubricatedJoint(stepControl=StepControl(largest_gap_change=0.1))``): Newton may well
-    converge for a step in which the journal falls from the centre onto its contact, or crosses the contact's range at
-    once: the motion is then wrong, without a sign. With a step control such a step is answered like a film that can't
-    be evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves it, and doubles
-    it again after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest step size every step is
-    accepted. Explicit and static solvers are not touched.
+    **Of a joint** (``CreateLubricatedJoint(stepControl=StepControl(largest_gap_change=0.1))``): for journals that fall
+    onto a contact. Newton's method may converge for a step in which the journal falls from the centre onto its contact,
+    or crosses the contact's range at once: the motion is then wrong, without a sign. With the control Exudyn halves a
+    step in which the gap changes by more than the limit, and doubles the step again after some good ones
+    (``adaptiveStep...`` of its settings). Newton's iterates count too, so that accepted steps end well below the limit.
+    At Exudyn's smallest step size every step is accepted. Explicit and static solvers ignore the control.
 
     **Of a run** (``SolveDynamic(mbs, simulationSettings, stepControl=StepControl(error=0.02))``, `SolveDynamicSparse`
-    alike): steps grow and shrink so that the estimated error of the gaps of all joints, ``history.step_error``, stays
-    near ``error``; steps that miss far more are refused. ``numberOfSteps`` of the settings then stands for a usual
-    step: the first one is an eighth of it, the largest four of it. Loads that are user functions may jump
-    anywhere: their functions are called again at earlier times within such a step, so they must depend on time alone.
-    A pulse is found if it lasts a sixteenth of a step. Impacts and loads that are set from step to step leave no trace
-    where they come and go within one step: let the shortest knock last five steps. Steps end at the times at which
-    solution file and sensors are written (``writePeriod``).
+    alike): for loads in bursts. Steps grow and shrink so that the estimated error of the gaps of all joints,
+    ``history.step_error``, stays near ``error``; a step with a far larger error is repeated with a smaller size.
+    ``numberOfSteps`` of the settings still counts: it gives a usual step, of which the first one is an eighth and the
+    largest is four times. Steps also end at the times at which solution file and sensors are written (``writePeriod``).
+
+    Write user functions of loads that depend on time alone: they are called again at earlier times within a step, to
+    find jumps. A pulse is found if it lasts a sixteenth of its step. Impacts, and loads that are set from step to step,
+    are not seen if they come and go within one step: let the shortest one last five steps.
 
     Parameters
     ----------
     largest_gap_change : float, default 0.25
-        Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the
-        step (or of the contact's range, if that is larger), and the same of the end faces; 0.01 to 1. Of a joint.
+        Of a joint: largest change of the minimum gap of the rigid surfaces in a step, over that gap at the start of the
+        step (or over the contact's range, if that is larger); the same for the end faces; 0.01 to 1.
     error : float or None, default None
-        Error of the gap to aim at, as a share of the minimum film thickness; 1e-4 to 0.5. Of a run. The gaps of end
-        faces do not count: their films have no estimate.
+        Of a run: error of the gap to aim at, over the minimum film thickness; 1e-4 to 0.5. The gaps of end faces do not
+        count: their films have no estimate.
 
     Examples
     --------

@@ -127,10 +127,10 @@ class Audit:
         return "\n".join([*lines, *([""] if advice else []), *advice, *([""] if changes else []), *changes])
 
     def improved(self, bearing: JournalBearing) -> JournalBearing:
-        """The bearing with what is missing switched on, with typical numbers, and what is unneeded switched off.
+        """The bearing with missing effects switched on, with typical numbers, and unneeded ones switched off.
 
-        Every advice that the description can follow; an arc takes neither heat nor surfaces that deflect. Effects act
-        on each other: audit the bearing's own film or run again, until nothing is left to change.
+        Follows every advice that the bearing's description allows; with an arc, heat and surfaces that deflect stay
+        off. Effects change each other: audit the new bearing's film or run again, until nothing is left to change.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class Audit:
         Raises
         ------
         InputError
-            If its film model, closure or thrust faces do not go with what is missing.
+            If a missing effect is not supported by the bearing's film model, closure or thrust faces.
         """
         remedies = [finding.remedy for finding in self.findings if finding.remedy is not None]
         if remedies and isinstance(bearing.film, ImpedanceMap):

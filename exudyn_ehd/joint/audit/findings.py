@@ -100,25 +100,25 @@ class Finding:
     effect, indicator : str
         Name of the effect, and meaning of ``value``.
     value, threshold : float
-        The indicator at the worst state, and its limit from which on the effect matters.
+        The indicator at the worst state, and the limit beyond which the effect matters.
     below : bool
-        The effect matters below the threshold, not above.
+        True: the effect matters below the threshold; False: above it.
     on : bool or None
-        True if the bearing has the effect; None for an assumption or a number that can't be switched.
+        True: the bearing has the effect; False: it has not; None: an assumption or a number that can't be switched.
     matters : bool
-        The effect changes something by more than 3 %; where no change was computed or no film was found, ``value``
-        beyond ``threshold``.
+        The effect changes minimum film thickness, peak pressure or power loss at the same load by 3 % or more. Where no
+        change was computed or no film was found: ``value`` is beyond ``threshold``.
     unneeded : bool
-        It takes time although it does not matter; never where no film was found without it.
+        The effect takes computing time although it does not matter; never if no film was found without it.
     advice : str
         Remedy; empty if none is needed.
     change : Change or None
-        Change by switching the effect, computed at the audited states; not ``found`` if no film then carries the same
-        load. None if ``value`` alone shows that the effect is negligible, or if the films can't be compared.
+        Largest change of the audited films by switching the effect on or off; not ``found`` if no film then carries the
+        same load. None if ``value`` alone shows that the effect is negligible, or if the films can't be compared.
     remedy : function or None
         Function that applies ``advice`` to a bearing.
     time_share : float or None
-        Share of the time of a film evaluation with tangent that the effect takes, 0 to 1; None if not measured.
+        Time of the effect over that of a film evaluation with its tangent, 0 to 1; None if not measured.
 
     Examples
     --------

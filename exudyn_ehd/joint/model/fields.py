@@ -16,31 +16,30 @@ class FilmFields(JointFilm, FilmPictures):
     Attributes
     ----------
     time : float
-        s.
+        Time of the film, s.
     theta, z : (n,), (m,) arrays
-        Grid, rad and m.
+        Angles from x about z, rad, and places along the axis from the mid-plane, m, of the grid.
     pressure, gap : (n, m) arrays
-        Pa (gauge), m.
+        Film pressure above ambient, Pa, and film thickness, m.
     unbroken : (n, m) bool array
         True where the film is not cavitated.
     fill : (n, m) array or None
-        Film fraction; None for closures that do not conserve mass.
+        Film fraction: oil over gap; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
-        K; None for an isothermal bearing.
+        Temperature of the film, K; one number with `LumpedThermal`, None for an isothermal bearing.
     walls : Walls or None
-        Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
-        the film has one temperature across it.
+        Temperatures of bush and journal, and the radial clearance that they leave; None unless a wall conducts or the
+        film has two temperatures across it.
     bore_displacement : (n, m) array or None
         Deflection of a flexible bore or a liner, m, positive outward; None for a rigid one.
     contact_pressure : (n, m) array or None
         Pressure of asperities or wall, Pa; None without contact.
     wear_depth : (n, m) array or None
-        Worn off the bore up to this instant, m; None without wear.
+        Depth worn off the bore up to this instant, m; None without wear.
     force, moment : (3,) arrays
-        On the journal, moment about the joint origin.
+        Force [N] and moment [N m] on the journal, the moment about the frame's origin.
     motion : (10,) array
-        Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates
-        follow.
+        Motion of the journal, as in `JointHistory`; with a flexible bore its coordinates and rates follow.
     bearing : JournalBearing
     bush_displacement : (k, 3) array or None
         Displacements of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
