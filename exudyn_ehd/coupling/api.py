@@ -164,7 +164,7 @@ def CreateLubricatedJoint(
     axis : (3,), default ()
         Joint axis z: global, or in the housing's frame with ``useGlobalFrame=False``; may be [] if
         ``rotationMatrixAxes`` is given. Bore and journal both have this axis in the reference configuration, so that a
-        tilted axis is no misalignment. To misalign a shaft, offset its bearings by two markers each, see ``position``.
+        tilted axis is no misalignment. To misalign a shaft, offset its bearings: give two markers, see ``position``.
     bearing : JournalBearing, default None
         Required: geometry, lubricant, film and effects.
     rotationMatrixAxes : (3, 3) or None, default None

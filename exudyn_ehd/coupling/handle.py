@@ -44,11 +44,11 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     mbs : exudyn.MainSystem
         The system it belongs to.
     bearing : object
-        Bearing as given by the user.
+        The `JournalBearing` as given.
     objectNumber : exudyn.ObjectIndex
         The film element.
     constraintNumber : exudyn.ObjectIndex or None
-        The constraint of what is `Held`.
+        The constraint of a joint with `Held`; None without.
     element : FilmElement
         The film between the two frames.
     display : FilmDisplay

@@ -194,9 +194,9 @@ def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
     equations with exact derivatives. The body keeps its markers, sensors, loads and drawing. Its matrices are read
     again at the start of every run. Bodies of an `FEBore` or `FEJournal` get this without a call.
 
-    Results differ from Exudyn's on nodes of Tait-Bryan angles (``NodeType.RotationRxyz``), and only if more than one
-    angle changes: Exudyn's equations lack the angular acceleration at constant rates of the angles, and its tumbling
-    body does not keep its angular momentum; this one does. On the other types of nodes both agree to round-off.
+    Results differ from Exudyn's on nodes of Tait-Bryan angles (``NodeType.RotationRxyz``) if more than one angle
+    changes. Exudyn's equations lack the angular acceleration at constant rates of the angles: a tumbling body does not
+    keep its angular momentum. With this replacement it does. On the other types of nodes both agree to round-off.
 
     Parameters
     ----------

@@ -116,9 +116,10 @@ class SphericalHistory(FilmSteps):
     place : (n, 3) [m]
         Centre of the ball. From the socket's centre, along x, y, z.
     velocity : (n, 3) [m/s]
-        Velocity of the ball's centre. As seen from the socket, as the film takes it (`exudyn_ehd.joint.step_rates`).
+        Velocity of the ball's centre. Against the socket, along x, y, z; the rate that the film takes
+        (`exudyn_ehd.joint.step_rates`).
     angular_velocity : (n, 3) [rad/s]
-        Angular velocity of the ball. As seen from the socket, as the film takes it.
+        Angular velocity of the ball. Against the socket, about x, y, z, as the film takes it.
     force : (n, 3) [N]
         Force of film and contact. On the ball, along x, y, z.
     torque : (n, 3) [N m]

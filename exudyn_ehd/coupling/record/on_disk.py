@@ -63,12 +63,12 @@ class File:
         require_type("File.every", self.every, Every, Period, type(None))
 
     def of(self, name: str) -> pathlib.Path:
-        """The path of a joint.
+        """Path of the file of a joint.
 
         Parameters
         ----------
         name : str
-            Of the joint; characters that part folders become ``_``.
+            Name of the joint; characters that separate folders become ``_``.
 
         Returns
         -------

@@ -103,9 +103,9 @@ class SparseRun:
     products : int
         Products with the tangents of films on nodal bushes.
     seconds, seconds_jacobian, seconds_solve : float
-        Wall clock of the run, of Jacobians with factorisations, of back substitutions.
+        Wall-clock time of the run, of Jacobians with factorisations, and of back substitutions, s.
     factor_bytes : int
-        Memory of the last factor.
+        Memory of the last factor, bytes.
     """
 
     success: bool = False

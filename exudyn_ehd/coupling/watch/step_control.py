@@ -36,8 +36,9 @@ class StepControl:
     **Of a run** (``SolveDynamic(mbs, simulationSettings, stepControl=StepControl(error=0.02))``, `SolveDynamicSparse`
     alike): for loads in bursts. Steps grow and shrink so that the estimated error of the gaps of all joints,
     ``history.step_error``, stays near ``error``; a step with a far larger error is repeated with a smaller size.
-    ``numberOfSteps`` of the settings still counts: it gives a usual step, of which the first one is an eighth and the
-    largest is four times. Steps also end at the times at which solution file and sensors are written (``writePeriod``).
+    ``numberOfSteps`` of the settings still counts: it gives a reference step, the run's duration over it. The first
+    step is an eighth of that, the largest is four times as long. Steps also end at the times at which solution file and
+    sensors are written (``writePeriod``).
 
     Write user functions of loads that depend on time alone: they are called again at earlier times within a step, to
     find jumps. A pulse is found if it lasts a sixteenth of its step. Impacts, and loads that are set from step to step,

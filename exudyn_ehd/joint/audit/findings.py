@@ -106,8 +106,8 @@ class Finding:
     on : bool or None
         True: the bearing has the effect; False: it has not; None: an assumption or a number that can't be switched.
     matters : bool
-        The effect changes minimum film thickness, peak pressure or power loss at the same load by 3 % or more. Where no
-        change was computed or no film was found: ``value`` is beyond ``threshold``.
+        The effect changes minimum film thickness, peak pressure or power loss at the same load by more than 3 %. Where
+        no change was computed or no film was found: ``value`` is beyond ``threshold``.
     unneeded : bool
         The effect takes computing time although it does not matter; never if no film was found without it.
     advice : str
