@@ -74,6 +74,8 @@ _ADVICE = {
 class EHDError(Exception):
     """Base class of all errors of this package.
 
+    ``except ehd.EHDError`` catches `InputError`, `FilmError` and `RunError`.
+
     Examples
     --------
     >>> try:
@@ -113,6 +115,8 @@ class FilmError(EHDError, RuntimeError):
 class RunError(EHDError, RuntimeError):
     """A solver of Exudyn failed although every film could be evaluated; the message tells the state of every joint.
 
+    Raised by the package's own solver calls such as `SolveDynamic`.
+
     Examples
     --------
     >>> issubclass(ehd.RunError, ehd.EHDError)
@@ -122,6 +126,8 @@ class RunError(EHDError, RuntimeError):
 
 class MemoryWarning(UserWarning):
     """A run starts at a new state, but the film of a joint keeps oil content, wear and heat of its last run.
+
+    Call ``joint.forget()`` before a run whose film is to start anew.
 
     Examples
     --------
@@ -133,6 +139,9 @@ class MemoryWarning(UserWarning):
 class RingingWarning(UserWarning):
     """Time steps are too large: forces of a joint alternate, or its mesh turns too far in one step.
 
+    Forces and pressures of such a run come from the time integration: take more steps or a smaller spectral radius. It
+    also warns of a spectral radius above 0.9, with which alternating velocities hardly fade.
+
     Examples
     --------
     >>> import warnings
@@ -142,6 +151,9 @@ class RingingWarning(UserWarning):
 
 class StarvationWarning(UserWarning):
     """The film of a joint has lost its oil through the ends, and nothing brings it back.
+
+    With `ElrodAdams`, if neither a supply nor an end is above the cavity pressure: give one of them a pressure, or take
+    `SwiftStieber` for a bearing that stays flooded.
 
     Examples
     --------
@@ -153,6 +165,9 @@ class StarvationWarning(UserWarning):
 class ThinFilmWarning(UserWarning):
     """The film of a joint is thinner than good surfaces are rough, and the bearing models no contact.
 
+    The limit is 0.2 um, or 5 % of the radial clearance if that is less. Give the bearing a contact (`GreenwoodTripp`,
+    `RegularisedWall`), or check load, clearance and viscosity.
+
     Examples
     --------
     >>> import warnings
@@ -162,6 +177,8 @@ class ThinFilmWarning(UserWarning):
 
 class GridWarning(UserWarning):
     """The grid of a film does not resolve its pressure peak.
+
+    The peak pressure may be wrong by more than some 5 %; the message names a grid that resolves it.
 
     Examples
     --------
@@ -173,6 +190,9 @@ class GridWarning(UserWarning):
 class OverloadWarning(UserWarning):
     """A film has a pressure that neither oil nor steel bears; most likely a step of the time integration was wrong.
 
+    The limits are a peak pressure of 3 GPa, and 1 GPa for the force of film and contact on the projected area 2 R L. In
+    `steady` the eccentricity is too large, or a unit is wrong.
+
     Examples
     --------
     >>> import warnings
@@ -182,6 +202,8 @@ class OverloadWarning(UserWarning):
 
 class HotFilmWarning(UserWarning):
     """A film is hotter than mineral oils bear for long.
+
+    Above 150 degrees Celsius. Above 700 K it is a `FilmError`: no oil is a liquid there.
 
     Examples
     --------
@@ -193,6 +215,8 @@ class HotFilmWarning(UserWarning):
 class StrainWarning(UserWarning):
     """A `ModalBush`, which is linear, strains by more than 1 %.
 
+    Its displacement is wrong by one to two times the strain: take an `ANCFBush`, with `NeoHooke` for large strain.
+
     Examples
     --------
     >>> import warnings
@@ -202,6 +226,8 @@ class StrainWarning(UserWarning):
 
 class PlausibilityWarning(UserWarning):
     """An argument has a size that bearings do not have; most likely it is in another unit.
+
+    The message gives the usual range. The run continues with the value as given.
 
     Examples
     --------

@@ -272,9 +272,9 @@ def bearing_grid(
     radius, length : float
         R and L in m.
     n_theta, n_z : int
-        Vertices in theta, intervals in z.
+        Vertices around, intervals along z: the grid has n_theta x (n_z + 1) vertices.
     stretch : float, default 0.75
-        Axial stretching a in [0, 1); 0 is uniform.
+        Axial stretching a in [0, 1): 0 is uniform, larger values refine the ends.
     start_angle : float, default 0.0
         theta of the first column, rad.
     open_ring : bool, default False

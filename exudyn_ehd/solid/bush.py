@@ -24,10 +24,10 @@ class Rayleigh(Checked):
     Parameters
     ----------
     mass_rate : float, default 0.0
-        [1/s], acts on the absolute velocity: it brakes rigid motion too.
+        Factor of the mass [1/s]. It acts on the absolute velocity, so it brakes rigid motion too.
     stiffness_time : float, default 0.0
-        [s]; taken as the Kelvin-Voigt law of `TotalLagrange`, which equals stiffness_time K in the small and does no
-        work in a rigid motion.
+        Factor of the stiffness [s]: a mode of the angular frequency w has the damping ratio stiffness_time w / 2. At
+        large strain it is the Kelvin-Voigt law, which does no work in a rigid motion.
 
     Examples
     --------
@@ -74,7 +74,8 @@ class _Solid:
 class ANCFBush(_Solid):
     """A bush as a finite-element mesh whose nodes all move in the run (ANCF): any strain, slowest.
 
-    Any strain and rotation in a joint; `steady` and `equilibrium` take its static equilibrium.
+    For soft bushes, or where the bush's own inertia counts; otherwise `ModalBush` is far faster. In a joint it moves
+    with its mass; `steady` and `equilibrium` use its static equilibrium.
 
     Parameters
     ----------
@@ -86,8 +87,9 @@ class ANCFBush(_Solid):
         Of hexahedra (`exudyn_ehd.solid.elements.kinds`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
         speed; of tetrahedra (`exudyn_ehd.solid.elements.kinds`) `HAMMER4` by default, `WALKINGTON14` for the reference.
     damping : Rayleigh or None, default None
+        Material damping; None: undamped.
     parallel : bool, default False
-        Loops over elements on numba's threads.
+        True runs the loops over elements on numba's threads.
 
     Examples
     --------
@@ -122,30 +124,35 @@ class ANCFBush(_Solid):
 class ModalBush(_Solid):
     """A linear elastic bush, reduced to modes of its bore; outer surface fixed to the housing.
 
-    Its mass and weight are the housing's: weight and acceleration do not bend the bush itself. At 1 g its
-    bore would move by up to 0.1 nm in steel, 1.2 nm in a polymer of 3 GPa and 0.3 um in rubber of 10 MPa (20 mm thick
-    around a bore of 60 mm, held outside; it grows with the acceleration, and with the square of the thickness): take
-    `ANCFBush` where that is no small share of the film.
+    The usual choice for steel, bronze and polymers, at strains below 1 %; `ANCFBush` for larger ones.
+
+    It follows the oil pressure without inertia: its mass and weight belong to the housing's body, and acceleration does
+    not deform the bush. This omits, at 1 g, a bore deflection of up to 0.1 nm in steel, 1.2 nm in a polymer of
+    3 GPa and 0.3 um in rubber of 10 MPa (20 mm thick around a bore of 60 mm, held outside; it grows with the
+    acceleration and the square of the thickness). Take `ANCFBush` where that is a large share of the film thickness.
 
     Parameters
     ----------
     mesh : HollowCylinder or BushMesh
-        Bush frame = joint frame. Build it fine: two or more radial layers; the modes cost the same in a run.
+        Mesh in the bush frame, which is the joint frame. Take two or more radial layers: a finer mesh takes longer to
+        reduce, but not to run.
     material : SaintVenantKirchhoff
         Its density is not used.
     tolerance : float, default 0.07
-        Largest error of the bore's displacement on the film's own length under sampled films of all directions, in the
-        root mean square over the surface, over that displacement; of a bush that moves as a whole over what it deforms
-        locally (see `solid.pressure_modes`); 2e-3 to 0.2. The sampled films have an eccentricity ratio of 0.9, on
-        bores that are tilted, wavy or crowned too. At 0.07, of 150 random bushes on meshes of 12 to 24 around (held
-        outside, on half of it, on a foot of 1.1 rad or at an end, 1 to 3 times as long as the film, walls of 0.15 to 1
-        radius, 3e9 to 2e11 Pa, aligned and tilted) peak pressure and minimum film thickness are within 0.9 % of the
-        nodal bush's (33 to 128 modes aligned, 57 to 164 tilted). The largest error under 600 random films with ratios
-        of 0.5 to 0.93 is 0.67 to 1.5 of the error that `BoreModes.error` tells, for 9 bushes. Under films on round
-        bores it is at most 1.1 of it at 0.9, 1.4 at 0.93 and 1.9 at 0.95; aligned at most 1.2 at 0.95.
+        Largest relative error of the bore deflection, 2e-3 to 0.2: smaller takes more modes. At 0.07 peak pressure and
+        minimum film thickness differ by at most 0.9 % from those of the unreduced mesh, with 33 to 128 modes (57 to
+        164 for tilted journals). Measured on 150 random bushes: 12 to 24 elements around; held outside, on half of it,
+        on a foot of 1.1 rad or at an end; 1 to 3 times as long as the film; walls of 0.15 to 1 radius; 3e9 to 2e11 Pa.
+
+        The error is the root mean square over the film's length divided by that of the deflection; for a bush that
+        moves as a whole, by that of its local deformation (`exudyn_ehd.solid.pressure_modes`). It holds for sampled
+        films of all directions at an eccentricity ratio of 0.9, on tilted, wavy and crowned bores too. Under other
+        films it can be larger than the one that ``BoreModes.error`` gives: up to 1.5 times under 600 random films at
+        ratios of 0.5 to 0.93 (9 bushes); on round bores up to 1.1 times at 0.9, 1.4 at 0.93 and 1.9 at 0.95 (aligned:
+        1.2 at 0.95).
     tilted : bool, default True
-        False leaves out the modes that are odd in z: for journals that stay parallel, others are warned of. A bush
-        that is not symmetric about its mid-plane gets them all the same.
+        False omits the modes that are odd in z, for journals that stay parallel to the bore; a warning tells if one
+        tilts. A bush that is not symmetric about its mid-plane gets these modes in any case.
     quadrature : Quadrature or None, default None
         Quadrature of the stiffness, as in `ANCFBush`.
 

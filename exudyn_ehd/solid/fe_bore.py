@@ -221,23 +221,23 @@ class FESurface:
 class FEBore(FESurface):
     """Bore of a finite-element housing (ObjectFFRFreducedOrder), which deforms under the oil pressure by its modes.
 
-    Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes
-    let it.
+    First give the body the modes that an oil pressure excites (`add_bore_modes`). Without them the bore deflects by the
+    body's other modes only, and is too stiff.
 
     Parameters
     ----------
     fem : FEMinterface
-        The mesh that the body was made of, with its elements.
+        The mesh that the reduced body was made of, with its elements.
     nodes : sequence of int or None, default None
-        Mesh nodes on the bore; by default those on the cylinder around the joint's axis.
+        Numbers of the mesh nodes on the bore; by default those on the cylinder around the joint's axis.
     radius_tolerance : float, default 0.02
-        Largest relative difference of a node's radius from the bearing's bore radius.
+        Largest difference of a node's radius from the bearing's bore radius, divided by that radius.
     settled : bool, default True
-        Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
-        where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
+        True: if the body's modes start at zero, they start in equilibrium with the film of the initial configuration,
+        the body's frame held. False: the bore starts undeformed and oscillates at first.
     exact_jacobian : bool, default True
-        The joint gives the body its exact Jacobian (`ReplaceReducedBody`); False leaves the body to Exudyn and its
-        differences.
+        True: the joint replaces Exudyn's body by one with its exact Jacobian (`ReplaceReducedBody`). False: the body
+        stays Exudyn's, whose Jacobian comes from finite differences.
 
     Examples
     --------
@@ -339,11 +339,11 @@ class BoreModesReport:
     added, total : int
         Modes added, and modes now in the basis.
     error_before, error : float
-        Error of the bore's shape under sampled films, with the basis before and now. The shape is the radial
-        displacement without its rigid motion. The error is relative to the local part of the shape
-        (`exudyn_ehd.solid.pressure_modes`). A slender eye becomes oval by far more than the film thickness. Relative to
-        the whole shape every error would look small, while the film depends on the local deformation. Films of larger
-        eccentricity ratios than the sampled 0.9 exceed the error as in `ModalBush`.
+        Error of the bore's shape under sampled films, with the basis before and now, as a share (0.07 is 7 %) of the
+        local part of the shape (`exudyn_ehd.solid.pressure_modes`). The shape is the radial displacement without its
+        rigid motion. Why the local part: a slender eye becomes oval by far more than the film thickness, so that every
+        error would look small relative to the whole. Films of larger eccentricity ratios than the sampled 0.9 may
+        exceed the error by the factors in `ModalBush`.
 
     Examples
     --------
@@ -374,9 +374,9 @@ def add_bore_modes(
 ) -> BoreModesReport:
     """Add modes to a finite-element body (``FEMinterface``): deflections of its bore under an oil film.
 
-    The modes are the static displacements under smooth pressures on the bore, as many as `ModalBush` would take, with
-    ``fixed_nodes`` held; they are orthogonal in energy to the modes that are there. Call it after the modes of the
-    interfaces (``ComputeHurtyCraigBamptonModes``) and before the ObjectFFRFreducedOrder is made.
+    Call it after the modes of the interfaces (``ComputeHurtyCraigBamptonModes``) and before the ObjectFFRFreducedOrder
+    is made. The new modes are the static displacements under smooth pressures on the bore, with ``fixed_nodes`` held,
+    as many as `ModalBush` would take; they are orthogonal in energy to the modes that the body has.
 
     Parameters
     ----------
@@ -387,11 +387,12 @@ def add_bore_modes(
     radius, length : float
         Radius and length of the bore under the film [m].
     fixed_nodes : sequence of int
-        Mesh nodes held: those of the first interface, which carries the body's frame.
+        Numbers of the mesh nodes that are held: those of the first interface, which carries the body's frame.
     tolerance : float, default 0.07
-        As in `ModalBush`, but of the bore's shape: see `BoreModesReport`.
+        Largest relative error of the bore's shape, as in `ModalBush`; defined in `BoreModesReport`.
     tilted : bool, default True
-        As in `ModalBush`, but odd modes come with False too where the body is not symmetric about the bore's mid-plane.
+        False omits the modes that are odd along the axis, as in `ModalBush`. A body that is not symmetric about the
+        bore's mid-plane gets them in any case.
     radius_tolerance : float, default 0.02
         As in `FEBore`.
     nodes : sequence of int or None, default None
@@ -404,7 +405,7 @@ def add_bore_modes(
     Raises
     ------
     InputError
-        No bore there, a body that isn't held, or a tolerance that takes more waves than the search allows.
+        No bore there, a body that is not held, or a tolerance that is too small for the search.
 
     Examples
     --------

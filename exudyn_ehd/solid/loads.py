@@ -32,11 +32,11 @@ class LineLoad:
     Parameters
     ----------
     line : Line
-        For example ``mesh.generatrix(mesh.outer, pi / 2)``.
+        For example ``mesh.generatrix(mesh.outer, pi / 2)``, the line at the angle 90 degrees.
     force_per_length : three numbers
-        [N/m] per reference length, global frame.
+        Force per undeformed length [N/m], global frame.
     history : function of time or None, default None
-        Factor on the force.
+        Factor on the force over the time [s]; None: 1.
 
     Examples
     --------
@@ -70,12 +70,13 @@ class SurfaceLoad:
     Parameters
     ----------
     surface : Surface
+        For example ``mesh.end_high``.
     traction : three numbers
-        [N/m^2] per reference area, global frame.
+        Force per undeformed area [N/m^2], global frame.
     distribution : ndarray, shape (k,) or None, default None
-        Factor at every node of the surface, interpolated between them; without it the traction is uniform.
+        Factor at every node of the surface (``surface.nodes``), interpolated between them; None: uniform traction.
     history : function of time or None, default None
-        Factor on the force.
+        Factor on the force over the time [s]; None: 1.
 
     Examples
     --------
@@ -134,12 +135,13 @@ class DeadPressure(_SurfacePressure):
     Parameters
     ----------
     surface : Surface
+        For example ``mesh.bore``.
     pressure : float
-        [Pa]; positive pushes onto the solid.
+        Pressure [Pa]; positive pushes onto the solid.
     distribution : ndarray, shape (k,) or None, default None
-        Factor at every node of the surface, interpolated between them.
+        Factor at every node of the surface (``surface.nodes``), interpolated between them; None: uniform pressure.
     history : function of time or None, default None
-        Factor on the pressure.
+        Factor on the pressure over the time [s]; None: 1.
 
     Examples
     --------
@@ -203,9 +205,9 @@ class Gravity:
     Parameters
     ----------
     acceleration : three numbers
-        [m/s^2], global frame.
+        Acceleration of gravity [m/s^2], global frame: (0, -9.81, 0) where y points up.
     history : function of time or None, default None
-        Factor on it.
+        Factor on the acceleration over the time [s]; None: 1.
 
     Examples
     --------

@@ -41,9 +41,9 @@ class BushMesh:
     Parameters
     ----------
     nodes : ndarray, shape (n, 3)
-        Reference positions [m], bush frame.
+        Undeformed positions [m], bush frame: z = bush axis, z = 0 on the bearing's mid-plane.
     elements : ndarray of int, shape (m, a)
-        Connectivity, a = 20 in the order of the Abaqus element C3D20, a = 10 in that of C3D10.
+        Node numbers from 0, a = 20 in the order of the Abaqus element C3D20, a = 10 in that of C3D10.
     bore, outer, end_low, end_high : Surface
         Inner cylinder, outer surface, and the end faces at the smallest and largest z.
 
@@ -65,7 +65,7 @@ class BushMesh:
 
     @property
     def element(self) -> Element:
-        """Kind of the elements."""
+        """Kind of the elements: 20-node hexahedra or 10-node tetrahedra."""
         return element_of(self.elements)
 
     @cached_property
@@ -128,10 +128,10 @@ class HollowCylinder(Checked):
     Parameters
     ----------
     inner_radius, thickness, length : float
-        [m]
+        Radius of the bore, thickness of the wall, length along z [m]; the mesh reaches from z = -length/2 to length/2.
     axial, radial, circumferential : int, default 4, 2, 40
-        Elements in each direction. One radial layer is 2 % too stiff for a bore pressure cos(4 theta), three give 1 %
-        up to cos(5 theta) with 40 elements around.
+        Numbers of elements. With one radial layer the bore is 2 % too stiff under a pressure cos(4 theta); with three
+        layers and 40 elements around the error is 1 % up to cos(5 theta).
 
     Examples
     --------

@@ -297,17 +297,18 @@ def mesh_from_file(
     path : path
         An Abaqus input file (``.inp``: ``*Node``, ``*Element`` of a type C3D20 or C3D10, ``*Nset``, ``*Part``,
         ``*Instance`` with its translation and rotation), or any format with these elements that meshio reads
-        (``pip install 'exudyn-ehd[mesh]'``). Elements on surfaces and lines are passed over.
+        (``pip install 'exudyn-ehd[mesh]'``). Elements on surfaces and lines are ignored.
     held : str, or as in `mesh_from_arrays`, or None, default None
-        A string names a node set of the file; ``"instance.set"`` one of an instance's part where the assembly has a set
-        of that name, too.
+        Where the housing holds the bush. A string names a node set of the file; where assembly and part both have a set
+        of this name, ``"instance.set"`` is the part's.
     instance : str or None, default None
         Which instance of an Abaqus assembly (without instances: which part) is the bush, if several have solid
         elements.
     scale : float, default 1.0
         Metres per unit of the file: 1e-3 for millimetres.
     bore_radius : float
-        As in `mesh_from_arrays`, in metres after scaling; it also says what comes back.
+        Radius of the bore in metres, after scaling, as in `mesh_from_arrays`, where the surfaces of the result are
+        explained.
     origin, axis : three numbers, default (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
         As in `mesh_from_arrays`, in metres after scaling, in the frame of the assembly.
 
@@ -318,7 +319,7 @@ def mesh_from_file(
     Raises
     ------
     InputError
-        No such file, set or instance, several instances, other or mixed elements, or what `mesh_from_arrays` refuses.
+        No such file, set or instance, several instances, other or mixed elements, and as `mesh_from_arrays`.
 
     Examples
     --------

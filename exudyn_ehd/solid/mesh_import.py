@@ -24,9 +24,9 @@ class OnCylinder(Checked):
     Parameters
     ----------
     radius : float
-        [m]
+        Radius of the cylinder [m].
     tolerance : float, default 0.005
-        On a node's radius, over the radius.
+        Largest distance of a node from the cylinder, divided by its radius.
 
     Examples
     --------
@@ -53,9 +53,9 @@ class OnPlane:
     Parameters
     ----------
     point, normal : three numbers
-        A point of the plane [m] and its normal, bush frame.
+        A point of the plane [m] and its normal (of any length), bush frame.
     tolerance : float, default 1e-5
-        Distance from the plane [m].
+        Largest distance of a node from the plane [m].
 
     Examples
     --------
@@ -102,7 +102,7 @@ def mesh_from_fem(
     fem : FEMinterface
         Exudyn's, with Hex20 elements (Abaqus C3D20 order) or Tet10 elements (C3D10) only.
     bore_radius : float
-        As in `mesh_from_arrays`, which also says what comes back and what is refused.
+        Radius of the bore [m], as in `mesh_from_arrays`, where the surfaces of the result are explained.
     held : nodes, `OnCylinder`, `OnPlane`, function or None, default None
         As in `mesh_from_arrays`.
     origin, axis : three numbers, default (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
@@ -157,14 +157,14 @@ def mesh_from_arrays(
     elements : ndarray of int, shape (m, 20) or (m, 10)
         Hexahedra in the node order of Abaqus C3D20 or tetrahedra in that of C3D10 (VTK's, not Gmsh's), zero-based.
     bore_radius : float
-        Radius [m] of the bore; its corners must lie within 1 % of the radius.
+        Radius [m] of the bore; faces whose corners are within 1 % of it belong to the bore.
     held : nodes, `OnCylinder`, `OnPlane`, function or None, default None
-        Where the housing holds the bush: the faces all of whose nodes are among these (numbers, or flags of the user's
-        nodes), or have the function of positions (n, 3) in the bush frame [m] true. By default every face that belongs
-        neither to the bore nor to the ends.
+        Where the housing holds the bush: the faces all of whose nodes are selected. Give node numbers, one flag (bool)
+        per node, or a function that takes positions (n, 3) in the bush frame [m] and returns flags (n,). By default
+        every boundary face that belongs neither to the bore nor to the ends.
     origin, axis : three numbers, default (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-        A point on the bearing's mid-plane and axis, and the axis direction, user's frame. The mesh comes back in the
-        bush frame; with the default axis its x and y are the user's.
+        Point where the bush's axis crosses the bearing's mid-plane [m], and direction of the axis, both in the user's
+        frame. The result is in the bush frame: this origin, z = axis; with the default axis x and y are the user's.
 
     Returns
     -------
@@ -175,8 +175,8 @@ def mesh_from_arrays(
     Warns
     -----
     UserWarning
-        If held faces reach the bore (a chamfer, a groove, an oil hole), whose edge is then clamped; or if faces are
-        left free of which the corners are held only.
+        If held faces reach the bore (a chamfer, a groove, an oil hole), so that the bore's edge is clamped; or if faces
+        stay free because only their corner nodes are selected.
 
     Raises
     ------

@@ -28,17 +28,17 @@ from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 class SaintVenantKirchhoff(Checked):
     """Material of a bush or pin, such as steel: isotropic, linear in the Green-Lagrange strain.
 
-    For small strain at any rotation: steel, bronze, polymers. It softens under compression, has no stiffness left at
-    half its length or so, and lets elements turn inside out: soft bushes take `NeoHooke`.
+    For small strain at any rotation: steel, bronze, polymers. Not for strong compression: it softens, has lost its
+    stiffness at about half the length, and lets elements turn inside out. Take `NeoHooke` for soft bushes.
 
     Parameters
     ----------
     youngs_modulus : float
-        [Pa]
+        Young's modulus [Pa].
     poisson_ratio : float
-        In (-1, 0.5); the element locks above about 0.49.
+        Poisson's ratio, between -1 and 0.5; elements become too stiff (lock) above about 0.49.
     density : float
-        [kg/m^3], reference configuration.
+        Density of the undeformed material [kg/m^3].
 
     Examples
     --------
@@ -87,13 +87,13 @@ class NeoHooke(SaintVenantKirchhoff):
     """Isotropic material of a soft bush: compressible Neo-Hooke, for large strain.
 
     Energy per volume ``mu/2 (tr(F^T F) - 3) - mu ln J + lam/2 (ln J)^2`` with J = det F: infinite where an element
-    would turn inside out; in the small that of `SaintVenantKirchhoff`. J. Bonet and R. D. Wood, Nonlinear Continuum
+    would turn inside out; at small strain that of `SaintVenantKirchhoff`. J. Bonet and R. D. Wood, Nonlinear Continuum
     Mechanics for Finite Element Analysis, 2nd ed., 2008, section 6.4.3.
 
     Parameters
     ----------
     youngs_modulus, poisson_ratio, density
-        As in `SaintVenantKirchhoff`, of small strain.
+        As in `SaintVenantKirchhoff`, for small strain.
 
     Examples
     --------

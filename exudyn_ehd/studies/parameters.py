@@ -52,15 +52,15 @@ class StudyTable(Table):
     Attributes
     ----------
     columns : dict of (n,) arrays
-        Parameters, results, ``seconds`` (wall time of the row), by name; nan where a row failed.
+        {name: column} of parameters, results and ``seconds`` (wall time of the row); nan where a row failed.
     parameters : tuple of str
-        Which columns are parameters.
+        Names of the columns that are parameters.
     shape : tuple of int
         Number of values of every parameter.
     errors : tuple of str
-        Why a row failed; empty for one that did not.
+        One text per row: why it failed, empty if it did not.
     units : dict
-        Units by name, of columns whose unit the package does not know.
+        {name: unit} of the columns whose unit was given to `parameter_study`.
 
     Examples
     --------
@@ -175,16 +175,16 @@ class StudyTable(Table):
 class EquilibriumPoint:
     """A function for `parameter_study`: equilibrium of a bearing under a load, with parameters replaced by name.
 
-    Parameters that it knows: the bearing's ``journal_radius``, ``length``, ``radial_clearance``; ``viscosity`` of its
-    lubricant; ``speed``; ``load`` (its size; the direction stays).
+    Names that the study may vary: the bearing's ``journal_radius``, ``length``, ``radial_clearance`` (m);
+    ``viscosity`` of its lubricant (Pa s); ``speed`` (rad/s); ``load`` (its size, N; the direction stays).
 
     Parameters
     ----------
     bearing : JournalBearing
     speed : float
-        Relative spin, rad/s.
+        Spin of the journal against the housing, rad/s.
     load : (float, float)
-        Force on the journal, N.
+        External force (x, y) on the journal, joint frame, N.
 
     Examples
     --------
@@ -275,36 +275,38 @@ def parameter_study(
     Parameters
     ----------
     function : callable
-        Gets a dict of parameters and returns a number or a dict of numbers. It builds its own model. For other
-        processes it must be importable: a function or an instance of a class defined at the top of a module.
+        Takes a dict {name: number} of one combination and returns a number or a dict {name: number} of results. It
+        builds its own model. To run in other processes it must be importable: a function, or an instance of a class,
+        that is defined at the top of a module.
     parameters : dict
-        Name: sequence of numbers.
+        {name: sequence of numbers}, SI units.
     processes : int, default 1
         Number of processes on this machine.
     executor : Executor or None, default None
-        Of `concurrent.futures`, or one that follows it; it stays open. More than 512 rows go to it in parts.
+        An executor of processes, from `concurrent.futures` or with its interface, in place of ``processes``; it stays
+        open. More than 512 rows go to it in parts.
     mpi, hosts : not supported any more, default False, ()
         An `InputError` names the executor that takes their place.
     file : path or None, default None
-        Keeps finished rows, each as soon as it is there. A second call reads them and computes the rest: what was
-        interrupted, what failed, what was added to the lists. A change of the function itself, or of the bearing and
-        other things that it holds, is noticed; one of what it calls is not: delete the file then.
+        File for finished rows, each written at once. A second call reads them and computes the rest: interrupted,
+        failed and added rows. It raises `InputError` if the function or what it holds, such as its bearing, has
+        changed. It does not notice a change of other functions that it calls: delete the file then.
     units : dict or None, default None
-        Units of parameters and results by name, for print and CSV; common names have theirs.
+        {name: unit} of parameters and results, for print and CSV; common names have one already.
     show_progress : bool or None, default None
-        Whether to print a line for every finished row; by default on a terminal and in notebooks (`show_progress`).
+        True prints a line for every finished row; None: on a terminal and in notebooks (`show_progress`).
 
     Returns
     -------
     StudyTable
-        A row that fails does not end the study: it holds nan and says why in ``errors``. A process that dies takes the
-        rows along that its executor has not finished; with ``file`` the next call computes them.
+        A row that fails does not end the study: it holds nan, and ``errors`` says why. If a process dies, the rows that
+        its executor has not finished fail too; with ``file`` the next call computes them.
 
     Raises
     ------
     InputError
-        For parameters that are no lists of numbers, functions that can't be sent to other processes, processes beside
-        an executor, executors of threads, files of another function.
+        For parameters that are no lists of numbers, functions that can't be sent to other processes, ``processes``
+        together with an executor, executors of threads, files of another function.
     EHDError
         If every row failed.
 

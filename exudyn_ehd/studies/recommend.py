@@ -57,20 +57,20 @@ class Recommendation:
     Attributes
     ----------
     found : bool
-        False: nothing can be said of such a bearing, or no film on the ladder keeps the error; ``reason`` says which.
+        False: the bearing is outside the limits of `recommend`, or no film keeps the error; ``reason`` says which.
     film : FilmOption or None
-        For ``JournalBearing(film=...)``.
+        Film for ``JournalBearing(film=...)``.
     options : dict
-        All fields of `JournalBearing` that the setting replaces: ``film``, and ``cavitation`` where the rupture line is
-        to lie elsewhere, inside the cells or on the vertices.
+        Fields of `JournalBearing` to replace, as in the example: ``film``, and ``cavitation`` where the rupture line
+        has to move into the cells or onto the vertices.
     error : float
-        Bound of the quantity's error, relative.
+        Upper bound of the quantity's relative error (0.01 is 1 %).
     seconds : float
-        Processor time per evaluation with tangent, measured here.
+        Processor time of one evaluation with tangent on this machine, s.
     evidence : tuple of str
-        The measurements that it rests on.
+        Measured errors, a line for each eccentricity ratio.
     reason : str
-        What was looked for and why this setting, or why none.
+        The request and the setting found, or why there is none.
 
     Examples
     --------
@@ -110,31 +110,32 @@ def recommend(
 ) -> Recommendation:
     """Find the cheapest film model and grid that keep the error of a quantity below a limit, for one bearing.
 
-    It takes a second or two for a rigid bearing, longer with heat or a flexible bore.
+    It compares films on a ladder of grids with a finer one at the given eccentricity ratios: a second or two for a
+    rigid bearing, longer with heat or a flexible bore.
 
     Parameters
     ----------
     bearing : JournalBearing
-        Any but those with an `ANCFBush` or ``inlet=MaximumGap()``; L/D 0.25 to 2. Its own film does not count.
+        L/D from 0.25 to 2; no `ANCFBush`, ``inlet=MaximumGap()`` or arc. The film given in it does not matter.
     error : float, default 0.01
-        Relative.
+        Largest relative error of the quantity, above 0 and below 1 (0.01 is 1 %).
     quantity : str, default "load"
         "load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "supply flow",
         "stiffness", "damping" or "critical mass".
     eccentricity_ratio : float or (lowest, highest), default None
-        Required: where the bearing works, 0.1 to 0.95; the worst of a range counts.
+        Required: eccentricity ratio at which the bearing works, 0.1 to 0.95; in a range the largest error counts.
     tilt_ratio : float, default 0.0
-        Share of the mid-plane's minimum film thickness that the tilt takes at one end, 0 to 0.7.
+        Share of the mid-plane's minimum film thickness by which the tilt reduces it at one end, 0 to 0.7.
     direction : float or None, default None
-        Of the eccentricity, rad; without it all around, which matters for supplied and other uneven bearings. All
-        around in any case with supply areas that turn with the journal.
+        Angle of the eccentricity from x towards y, rad; None: the largest error over all directions counts. It matters
+        for bearings with supply areas or profiles. Supply areas that turn with the journal meet all directions.
     speed : float or None, default None
-        rad/s; not needed for plain bearings, whose relative errors do not depend on it.
+        Spin, rad/s. Only plain bearings do without: their relative errors do not depend on it.
 
     Returns
     -------
     Recommendation
-        ``found=False`` where nothing can be said; it never guesses.
+        ``found=False`` with a reason for bearings outside these limits, or if no film keeps the error.
 
     Raises
     ------

@@ -57,12 +57,13 @@ class StepRecommendation:
     found : bool
         False: no number of steps that was tried keeps the error, or the film fails; ``reason`` says which.
     steps : int
-        Steps in a period; for ``timeIntegration.numberOfSteps`` times the number of periods.
+        Steps in one period. Set ``timeIntegration.numberOfSteps`` to this number times the number of periods.
     error : float
-        Bound of the error of the minimum film thickness, relative to its smallest value in the period.
+        Upper bound of the error of the minimum film thickness, divided by its smallest value in the period.
     evidence : tuple of str
-        The runs that it rests on.
+        Change of the minimum film thickness from each number of steps to its double.
     reason : str
+        The request and the steps found, or why there are none.
 
     Examples
     --------
@@ -93,24 +94,24 @@ def recommend_steps(
 ) -> StepRecommendation:
     """Find the fewest time steps in a period that keep the error of the minimum film thickness below a limit.
 
-    It runs the bearing alone for two periods of the load: seconds for a rigid bearing. What else moves in a mechanism
-    has errors of its own, so that no fewer than 90 steps are named.
+    It runs the bearing alone for two periods of the load with more and more steps: seconds for a rigid bearing. The
+    answer is at least 90 steps, because the other parts of a mechanism have time-step errors of their own.
 
     Parameters
     ----------
     bearing : JournalBearing
-        Any that moves in a plane; with an `ANCFBush` it takes minutes.
+        Any whose journal moves without tilt or axial motion; with an `ANCFBush` it takes minutes.
     error : float, default 0.01
-        Error of the minimum film thickness, relative to its smallest value in the period.
+        Largest error of the minimum film thickness at any instant, divided by its smallest value in the period.
     speed : float or (n,) array
-        Spin of the journal in the housing, rad/s; of a pin that swings at the instants of the load.
+        Spin of the journal in the housing, rad/s: one number, or for a pin that swings one at each row of the load.
     period : float
-        Period of the load, s: a turn of a crank, two of a four-stroke engine.
+        Period of the load, s: one turn of a crank, two turns for a four-stroke engine.
     load : (n, 2) array
-        Force on the journal at n equal intervals of a period, in the housing's frame, N, n >= 8: of a run with an ideal
-        joint, say.
+        External force (x, y) on the journal in the housing's frame, N, at n >= 8 equal intervals of a period, the
+        first at its start; for example from a run with an ideal joint.
     mass : float
-        Mass of the lighter of the two bodies, kg.
+        Mass that moves in the film, kg: that of the lighter of the two bodies.
 
     Returns
     -------

@@ -37,7 +37,7 @@ class Support:
     nodes : ndarray of int
         Mesh node numbers, for example ``mesh.end_low.nodes`` or ``mesh.generatrix(...).nodes``.
     directions : three bools, default (True, True, True)
-        True for those of x, y, z that are held.
+        True for each of the global x, y, z in which they are held.
 
     Examples
     --------
@@ -54,11 +54,17 @@ class Support:
 class FreeOuter:
     """``outer`` of a bush: its outer surface is free.
 
-    Where such a bush spins, Exudyn's integrator loses angular momentum with the square of the angle per step, on
-    absolute coordinates that a turn takes around: of a ring of any wall 3.1 % in the first turn at 20 steps a turn,
-    0.82 % at 40, 0.21 % at 80, and 0.25, 0.035 and 0.005 % in every turn behind it (spectral radius 0.6). Motion and
-    strains are nonsense below 15 steps a turn, with a spectral radius of 0.8 below 40, of 0.9 below 80, of 1 still at
-    120: elements turn inside out, which ends the run. A joint on such a mesh warns.
+    If such a bush spins, take 40 or more steps a turn and a spectral radius of 0.6. Its nodes have absolute
+    coordinates, on which Exudyn's integrator loses angular momentum with the square of the angle per step. A ring of
+    any wall loses:
+
+    - 20 steps a turn: 3.1 % in the first turn, 0.25 % in each later one;
+    - 40 steps a turn: 0.82 %, then 0.035 %;
+    - 80 steps a turn: 0.21 %, then 0.005 %.
+
+    With fewer than 15 steps a turn motion and strains are useless, and elements turn inside out, which ends the run.
+    At a spectral radius of 0.8 this limit is 40 steps, at 0.9 it is 80, at 1 even 120 steps are too few. A joint on
+    such a mesh warns.
 
     Examples
     --------
@@ -84,8 +90,8 @@ class CarriedOuter:
     ----------
     itemNumber : exudyn.ObjectIndex, NodeIndex or MarkerIndex
         The body, its node or a rigid marker on it, as in ``CreateLubricatedJoint.itemNumbers``: rigid and planar
-        bodies, beams and cables, links of kinematic trees, finite-element bodies. Its own mass and inertia stay
-        untouched: the bush adds its own, and weighs by a `Gravity` among its loads. With a Lie group node
+        bodies, beams and cables, links of kinematic trees, finite-element bodies. The body keeps its own mass and
+        inertia and the bush adds its own; for the bush's weight give a `Gravity` among its loads. With a Lie group node
         (RotationRotationVector) use full Newton: Exudyn 1.13.6 was seen to end at a wrong attitude, without a message,
         when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
 
@@ -109,11 +115,12 @@ class FlexibleBush:
     mesh : BushMesh
         Bush frame; surfaces and lines for loads, supports and films.
     solid : TotalLagrange
-        On the mesh at its place in the model; its displacements are global.
+        Solid of the mesh at its place in the model; its displacements are in the global frame.
     objectNumber : exudyn.ObjectIndex
     nodeNumbers : ndarray of int, shape (n,)
-        Exudyn's node of every mesh node; -1 where it is slaved to the carrier.
+        Number of Exudyn's node for every mesh node; -1 where the mesh node moves with the carrier.
     equations : BushEquations
+        Equations of motion, for internal use.
 
     Examples
     --------
@@ -155,7 +162,7 @@ class FlexibleBush:
 
     @property
     def stress(self) -> StressRecovery:
-        """Stress recovery for `displacements`."""
+        """Object that computes stresses from `displacements`."""
         return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
 
     def energy(self, configuration: exu.ConfigurationType = CURRENT) -> tuple[float, float]:
@@ -167,7 +174,7 @@ class FlexibleBush:
     def momentum(self, configuration: exu.ConfigurationType = CURRENT) -> tuple[np.ndarray, np.ndarray]:
         """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s].
 
-        Without what a housing that contains the bush has of it.
+        Without the part that counts as the housing's, where the housing's mass contains the bush.
         """
         u, v = self._motion(configuration)
         flow, (_, linear, angular) = self.solid.scalar_mass @ v, self._contained()
@@ -198,23 +205,28 @@ def CreateFlexibleBush(
 ) -> FlexibleBush:
     """Add a flexible bush to a model.
 
+    For bushes under loads of your own, without an oil film; a bearing gets its bush by ``JournalBearing(bush=...)``.
+
     Parameters
     ----------
     mbs : exudyn.MainSystem
     name : str, default ""
         Name of the object.
     bush : ANCFBush
+        Mesh, material and damping.
     outer : FreeOuter, FixedOuter or CarriedOuter
         Support of the outer surface.
     position : three numbers, default (0.0, 0.0, 0.0)
-        Global reference position of the bush frame [m].
+        Position of the bush frame's origin in the reference configuration, global frame [m].
     rotationMatrix : ndarray, shape (3, 3) or None, default None
-        Bush frame to global frame; identity by default.
+        Rotation from the bush frame to the global frame (global vector = matrix @ bush vector); identity by default.
     supports : sequence of Support, default ()
+        Nodes that can't move.
     loads : sequence of LineLoad, SurfaceLoad, DeadPressure, FollowerPressure or Gravity, default ()
-        Vectors are global.
+        Loads; their vectors are in the global frame.
     initialVelocity, initialAngularVelocity : three numbers, default (0.0, 0.0, 0.0)
-        Rigid initial motion [m/s], [rad/s], global, about ``position``. A carried bush takes the carrier's instead.
+        Rigid initial motion: velocity of ``position`` [m/s] and angular velocity [rad/s], global frame. A carried bush
+        takes its carrier's motion instead.
     show : bool, default True
         Draw the bush in Exudyn's renderer.
     color : (4,), default (0.6, 0.6, 0.7, 1.0)
@@ -227,8 +239,8 @@ def CreateFlexibleBush(
     Raises
     ------
     InputError
-        For what is no bush, outer surface, rotation matrix or vector; ground as carrier; supports of nodes that the
-        mesh does not have or that a carrier holds; a ``mass_rate`` of damping on a carried bush.
+        For arguments of the wrong kind; ground as carrier; supports of nodes that the mesh does not have or that a
+        carrier holds; a ``mass_rate`` of damping on a carried bush.
 
     Examples
     --------

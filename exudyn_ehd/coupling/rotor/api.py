@@ -32,29 +32,32 @@ def SolveEquilibrium(
 ) -> RotorResult:
     """Equilibrium of spinning rotors in all of their films at given speeds, linearised with all that the system holds.
 
-    All bodies rest but for the given spins; films, springs and constraints carry the static loads. The equations stand
-    in `exudyn_ehd.coupling.rotor.system`. The system's states stay as they are.
+    All bodies rest but for the given spins; films, springs and constraints carry the static loads. The system's states
+    are not changed. The equations are in `exudyn_ehd.coupling.rotor.system`.
 
-    Rotors are made of rigid bodies (any 3D node), also of several with fixed joints or springs between them, and of
-    ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes, their
-    unbalance is left to `RotorResult.unbalance_response`. Loads with user functions count as they are at the start
-    time. Bearings have rigid surfaces and films whose K and C hold at any frequency: no `ElrodAdams`, heat, wear,
-    liners, flexible bushes. Films on end faces take part, in all but the result's values of single films. A film
-    without load ruptures on the side that opens: at the exact centre K and C are those a little off it, half to two
-    thirds of an unbroken film's (`exudyn_ehd.joint.model.centre`).
+    - Rotors: rigid bodies (any 3D node), one or several with fixed joints or springs between them, and
+      ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes;
+      unbalance comes in by `RotorResult.unbalance_response`.
+    - Loads with user functions have their value at the start time.
+    - Bearings: rigid surfaces and films whose K and C do not depend on the frequency, so no `ElrodAdams`, heat, wear,
+      liners or flexible bushes. Films on end faces take part, but the result's values of single films omit them.
+    - A film without load: at the exact centre K and C are those a little off it, half to two thirds of an unbroken
+      film's, since it ruptures on the side that opens (`exudyn_ehd.joint.model.centre`).
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
         Assembled, with lubricated joints whose journals spin.
     speeds : float or (k,) array
-        Speeds of the first rotor about its joint's z axis, rad/s, not 0. Each is looked for from the one before.
+        Speeds of the first rotor about its joint's z axis, rad/s, not 0. The search for each equilibrium starts from
+        the one before, so give them in order.
     rotors : sequence or None, default None
-        One entry for every rotor: a body or node, to which all is added that turns with it through beams, fixed joints
-        and springs that hold all rotations; or a sequence of all of its bodies and nodes. The first one is driven at
-        the constant speed, the others may twist against it. By default those of all journals.
+        One entry for every rotor. Either one of its bodies or nodes, to which all is added that turns with it through
+        beams, fixed joints and springs that hold all rotations; or a sequence of all of its bodies and nodes. In each
+        rotor the first one is driven at the constant speed, the others may twist against it. By default the rotors of
+        all journals.
     ratios : (r,) sequence or None, default None
-        Speeds of the rotors over that of the first; 1 by default.
+        Speed of each rotor divided by that of the first one, negative for the opposite sense; 1 by default.
 
     Returns
     -------
@@ -66,8 +69,8 @@ def SolveEquilibrium(
         For what the theory does not hold for: rotors that are not the same in all directions, bodies that nothing
         holds, other kinds of films or bodies.
     FilmError
-        If no equilibrium was found at a speed, or one at the exact centre of a bearing whose supply areas at the cavity
-        pressure leave its film no stiffness and damping there.
+        If no equilibrium was found at a speed; or if one is at the exact centre of a bearing with supply areas at the
+        cavity pressure, where stiffness and damping are not defined.
 
     Examples
     --------
@@ -100,8 +103,8 @@ def SolveThreshold(
 ) -> RotorResult | None:
     """The lowest speed between two at which rotors in their films become unstable.
 
-    The largest real part of the eigenvalues changes its sign there, to 1e-9 of the speed; it is looked for between 16
-    speeds, so that ranges of instability narrower than their distance may be missed.
+    At the threshold the largest real part of the eigenvalues changes its sign; the speed is exact to 1e-9 of it. The
+    search looks at 16 speeds first: a range of instability narrower than their distance may be missed.
 
     Parameters
     ----------
@@ -115,7 +118,7 @@ def SolveThreshold(
     Returns
     -------
     RotorResult or None
-        At the threshold alone; None if the rotor is stable up to ``highest``.
+        Result at the one speed of the threshold, ``speeds[0]``; None if the rotor is stable up to ``highest``.
 
     Raises
     ------
@@ -148,8 +151,9 @@ def stability_map(
     Parameters
     ----------
     make : function
-        Makes the assembled system for a value.
+        ``make(value)`` returns a new, assembled system (``mbs``) with this value of the parameter.
     values : (k,) sequence
+        Values of the parameter, in its own unit.
     lowest, highest : float
         Speeds between which thresholds are looked for, rad/s, as in `SolveThreshold`.
 

@@ -66,26 +66,28 @@ class RotorResult:
     joints : tuple of str
         Names of the films' joints.
     motion : (k, j, 10) array
-        x, y (m) and slopes bx, by (rad) of the journals in the joints' frames, then rates, relative spin and axial
-        velocity, as in `JointHistory`.
+        x, y (m) and slopes bx, by (rad) of the journals in the joints' frames, then their four rates, relative spin
+        (rad/s) and axial velocity (m/s), as in `JointHistory`.
     wrench : (k, j, 6) array
         Force (N) and moment (N m) of the films on the journals, joint frame.
     eccentricity_ratio, attitude_angle, minimum_gap, peak_pressure, power_loss : (k, j) arrays
-        e/c; angle from the load on the journal to its eccentricity in the sense of rotation, rad; m; Pa; W.
+        Of every film: e/c; angle from the load on the journal to its eccentricity in the sense of rotation, rad;
+        minimum film thickness, m; peak pressure, Pa; power loss, W.
     stiffness, damping : (k, j, 4, 4) arrays
-        K and C of every film in its joint's frame: minus the change of F_x, F_y (N), M_y, -M_x (N m) by x, y (m), bx,
-        by (rad), and by their rates.
+        K and C of every film in its joint's frame: minus the derivative of (F_x, F_y, M_y, -M_x) on the journal, N and
+        N m, with respect to (x, y, bx, by), m and rad, and to their rates.
     mass_matrix, damping_matrix, stiffness_matrix : (k, n, n) arrays
         M, D, K of small motions of the whole system, ``M y_tt + D y_t + K y = 0``, with gyroscopic terms in D. The
         motion of all bodies in space is ``directions @ y``; spins of the driven nodes are held, constraints kept.
     directions : (k, N, n) array
-        Displacements (m) and rotations (rad) in space of all nodes of rigid bodies, and other coordinates.
+        Map from y to displacements (m) and rotations (rad) in space of all nodes of rigid bodies, and to other
+        coordinates.
     film_directions : (k, j, 2, N) array
-        x and y of the journals in their joints by these displacements.
+        Map from these displacements to x and y of the journals in their joints.
     coordinates, rates : (k, c) arrays
         The states in Exudyn's coordinates.
     residual : (k,) array
-        Largest unbalanced force over the films' loads.
+        Largest unbalanced force divided by the films' loads.
     evaluations : (k,) array
         Films solved for each speed.
     clearances : (j,) array
@@ -149,7 +151,7 @@ class RotorResult:
 
     @property
     def eigenvalues(self) -> np.ndarray:
-        """(k, 2n) complex, 1/s: growth rate + i frequency, sorted by frequency."""
+        """(k, 2n) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency."""
         return self._modes[0]
 
     @property
@@ -159,7 +161,7 @@ class RotorResult:
 
     @property
     def growth(self) -> np.ndarray:
-        """(k,) largest real part of the eigenvalues, 1/s: of the motion that decays least, or grows most."""
+        """(k,) largest real part of the eigenvalues, 1/s; positive: unstable, small motions grow."""
         return self.eigenvalues.real.max(axis=1)
 
     @property
@@ -173,10 +175,11 @@ class RotorResult:
         Returns
         -------
         dict
-            ``speed`` (k,) rad/s; then (k, m) arrays of the vibrations at each speed by rising frequency, filled up with
-            nan: ``frequency`` rad/s; ``growth`` 1/s; ``damping_ratio`` -growth / abs(eigenvalue); ``log_decrement``
-            -2 pi growth / frequency; ``whirl`` from 1 (circles in the sense of the spin) by 0 (lines, torsion) to -1
-            (against it), of all nodes that spin.
+            ``speed`` (k,), rad/s; then (k, m) arrays with one row per speed and one vibration per column, sorted by
+            frequency, nan in empty places. ``frequency``, rad/s; ``growth``, 1/s, positive: unstable;
+            ``damping_ratio`` = -growth / abs(eigenvalue); ``log_decrement`` = -2 pi growth / frequency; ``whirl``, the
+            sense of the orbits of all nodes that spin: 1 circles in the sense of the spin, 0 straight lines or
+            torsion, -1 circles against the spin.
         """
         values, k = self.eigenvalues, self.speeds.size
         count = (values.imag > 0.0).sum(axis=1)
@@ -208,15 +211,15 @@ class RotorResult:
     def unbalance_response(self, unbalance: Mapping[Index, complex]) -> UnbalanceResponse:
         """Steady whirl of the rotor under unbalance, by the linear equations about each equilibrium.
 
-        The force of an unbalance U = mass x distance is U Omega^2 and turns with the rotor; displacements are those of
-        ``(K - Omega^2 M + i Omega D) y = f``. They hold while they are small beside the films, and at speeds at which
-        the equilibrium is stable: at others (``is_stable``) the rotor whirls away from them.
+        The force of an unbalance U = mass x distance is U Omega^2 and turns with the rotor; displacements solve
+        ``(K - Omega^2 M + i Omega D) y = f``. They are valid while they are small against the film thickness, and only
+        at speeds at which the equilibrium is stable (``is_stable``): at others the rotor whirls away.
 
         Parameters
         ----------
         unbalance : dict
-            U in kg m by the number of the body or node of one rotor that it is on; complex to say where it is: its
-            angle counts in the sense of rotation.
+            Body or node number: U in kg m (1e-6 for 1 g mm); all on one rotor. A complex U gives the angle at which
+            it sits, counted in the sense of rotation: 1j is 90 degrees ahead of 1.
 
         Returns
         -------
@@ -293,7 +296,7 @@ class RotorResult:
         return plot_campbell(self.campbell(), ax=ax, path=path)
 
     def plot_stability(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Logarithmic decrements of the vibrations over the speed; below zero the rotor is unstable."""
+        """Plot the logarithmic decrements of the vibrations over the speed; below zero the rotor is unstable."""
         from exudyn_ehd.pictures.rotors import plot_stability
 
         return plot_stability(self.campbell(), ax=ax, path=path)
@@ -319,7 +322,7 @@ class UnbalanceResponse:
     speeds, spin : (k,) arrays
         Speeds of the first rotor and of the rotor with the unbalance, rad/s.
     is_stable : (k,) array
-        Whether the equilibrium is.
+        True where the equilibrium is stable.
     joints : tuple of str
     films : (k, j, 2) array
         Complex amplitudes of x and y of the journals, joint frame, time factor exp(i spin t), m.
@@ -367,7 +370,7 @@ class UnbalanceResponse:
         return np.abs(forward) + np.abs(backward)
 
     def phase(self, item: str | Index) -> np.ndarray:
-        """Angle (k,) of the forward part after the unbalance's direction, rad, negative where it lags."""
+        """Angle (k,) of the forward part relative to the unbalance, rad; negative where it lags behind."""
         return np.angle(self.orbit(item)[0])
 
     def plot(

@@ -22,22 +22,23 @@ from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked
 class ElasticLiner(Checked):
     """Thin elastic layer on a rigid housing, which deflects where the pressure acts (Winkler elements).
 
-    Each element deflects under its own pressure, solved with the film. When: soft or thick layers whose deflection
-    reaches a tenth of the minimum film thickness; for structures take a bush with a mesh.
+    Use it for soft or thick layers whose deflection reaches a tenth of the minimum film thickness; a housing that
+    bends needs a bush with a mesh. Each point deflects outward by ``compliance`` times its own pressure, in one solve
+    with the film; ``compliance`` = (1 + nu) (1 - 2 nu) / (1 - nu) t / E.
 
-    A contact presses on the liner too, so that journals sink into soft liners and onto their edges, deeper than the
-    clearance; under `ElrodAdams` they can starve. It takes every law and effect but the reduced films: with
-    `BarusPressure` or `RoelandsPressure` it is the classical elastohydrodynamic film, whose thick oil opens its own
-    gap.
+    Contact pressure deflects the liner too: journals may sink into soft liners, also at their edges, by more than the
+    clearance; under `ElrodAdams` such a film can starve. It works with every law and effect but not with the reduced
+    films (such as `ShortBearing`). With `BarusPressure` or `RoelandsPressure` it gives the classical
+    elastohydrodynamic film, in which high viscosity and deflection keep each other up.
 
     Parameters
     ----------
     thickness : float
-        t, m.
+        Thickness t, m.
     youngs_modulus : float
-        E, Pa.
+        Young's modulus E, Pa.
     poisson_ratio : float, default 0.3
-        nu, 0 to 0.49; Winkler elements say nothing about incompressible liners.
+        Poisson's ratio nu, 0 to 0.49: incompressible layers do not deflect point by point.
 
     Examples
     --------

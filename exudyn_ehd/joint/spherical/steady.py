@@ -194,13 +194,13 @@ class SphericalResult:
         On the ball; torque about its centre, N and N m. The socket gets minus the force in the ball's centre and minus
         the torque.
     tangent : (6, 9) array
-        Derivative of the force and of the moment about the socket's centre to place, velocity and angular velocity.
-        A film that ruptures where the ball moves away has one-sided derivatives at rest: entries are nan where both
-        sides of that coordinate differ, by more than 5 % of the largest of their kind.
+        Derivative of the force and of the moment about the socket's centre to place, velocity and angular velocity,
+        each x, y, z; SI units. At rest a film that ruptures where the ball moves away has one-sided derivatives:
+        entries are nan where both sides differ by more than 5 % of the largest entry of their kind.
     minimum_gap, peak_pressure : float
-        m, Pa.
+        Minimum film thickness, m; peak pressure, Pa.
     power_loss, contact_load : float
-        W that turn into heat, N of the wall in ``force``.
+        Power loss, W; force of the contact, N, a part of ``force``.
     bearing : SphericalBearing
     motion : (11,) array
         Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.model`.
@@ -238,7 +238,7 @@ class SphericalResult:
         return audit_ball(self.bearing, self.motion[None])
 
     def plot_pressure(self, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
-        """The pressure on the socket, seen along its axis; colatitudes in degrees outwards."""
+        """Plot the pressure on the socket, seen along its axis; colatitudes in degrees outwards."""
         # imported here: matplotlib is only needed for pictures
         from exudyn_ehd.pictures.maps import plot_patch
 
@@ -268,7 +268,8 @@ def steady_spherical(
     ----------
     bearing : SphericalBearing
     place : (3,) [m]
-        The ball's centre in the socket's frame, whose z is the axis of the socket.
+        The ball's centre in the socket's frame: origin in the socket's centre, z = axis of the socket. Its length must
+        leave a gap, so stay below the radial clearance.
     velocity : (3,) [m/s], default (0.0, 0.0, 0.0)
         Velocity of the ball's centre as seen from the socket.
     angular_velocity : (3,) [rad/s], default (0.0, 0.0, 0.0)

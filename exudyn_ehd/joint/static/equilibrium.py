@@ -112,33 +112,36 @@ class EquilibriumResult:
     position : (2,) array
         x, y of the journal axis at the mid-plane, m.
     eccentricity_ratio, attitude_angle : float
-        e/c; angle from the load to the eccentricity in the sense of rotation, rad.
+        Distance of the journal axis from the bore's centre over the radial clearance; angle from the load to the
+        eccentricity in the sense of rotation, rad.
     stiffness, damping : (2, 2) arrays
-        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame, at ``frequency``. With ``thermal``
-        the temperature is held: motions that are quick beside the exchange of the film's oil. A flexible bore or
-        journal and a liner follow without inertia. See ``settled_stiffness`` for the other limit.
+        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m with F on the journal, joint frame, at
+        ``frequency``. With ``thermal`` the temperature is held, as for motions quicker than the film's oil is
+        exchanged; ``settled_stiffness`` is the other limit. Flexible bore, journal and liner follow without inertia.
     frequency : float
-        rad/s, of the small motions for which K and C hold. 0 where they do not depend on it, for the slow motions of
-        surfaces that yield; with `ElrodAdams` that of the whirl threshold, or half the spin if there is none.
+        Frequency of the small motions for which K and C hold, rad/s. 0: they do not depend on it, or hold for slow
+        motions (surfaces that deflect). With `ElrodAdams` that of the whirl threshold, or half the spin if there is
+        none.
     whirl_ratio : float
-        Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
+        Whirl frequency at the threshold divided by |omega|; nan where there is no threshold: stable at any mass, or
+        unstable at any.
     critical_mass : float
-        Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at
-        any.
+        A rigid symmetric rotor is stable at this speed while its mass per bearing, kg, is smaller than this; inf if
+        stable at any mass, 0 if unstable at any.
     critical_mass_error : float
-        Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
-        the grid does not tell whether the bearing is stable at any mass. Of all results the critical mass feels the
-        grid most: on the default film within 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76, with its rupture
-        line on the vertices within some 20 % and several times.
+        Estimate of the relative error of ``critical_mass`` due to the rupture line's place on the grid; inf where the
+        grid does not tell whether the bearing is stable at any mass. Of all results the critical mass depends most on
+        the grid. Its error on the default film is 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76; with the
+        rupture line on the grid's vertices it is some 20 % at 0.7 and several times the value at 0.76.
     residual : float
-        Largest component of film force + load in x and y, divided by the load there; without one by 1e-5 of
+        Largest component of film force + load in x and y, divided by the size of the load; without a load by 1e-5 of
         ``L D mu omega / psi^2``.
     iterations : int
-        Positions tried, each with a film solve; with ``thermal`` temperatures are tried along with them. A flexible
-        bore settles at each of them.
+        Positions tried, each with a film solve (and with the temperature and the deflection that belong to it).
     film : SteadyResult
+        The film in this position.
     response : FilmResponse or None
-        Response that `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
+        Used by `dynamic_stiffness`; None where K and C do not depend on the frequency.
 
     Examples
     --------
@@ -178,8 +181,8 @@ class EquilibriumResult:
     def settled_stiffness(self) -> np.ndarray:
         """Stiffness -dF/d(x, y) (2, 2), N/m, under a load that changes slowly: temperature and oil content follow.
 
-        The temperature settles in every position, the cavity's oil too; what has neither has one stiffness. With
-        ``thermal`` from central differences of films that are solved when it is first asked for.
+        Equal to ``stiffness`` for a film without ``thermal`` and without dependence on the frequency. With ``thermal``
+        it comes from central differences of films that are solved at the first call.
         """
         b, motion = self.film.bearing, self.film.motion[:MOTION_SIZE]
         if b.thermal is None:
@@ -196,13 +199,14 @@ class EquilibriumResult:
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
         """Z = K + i nu C: the force's amplitude is -Z x for a motion x exp(i nu t).
 
-        With `ElrodAdams` K and C depend on the frequency, as the cavity's oil follows the journal with a delay; also
-        where surfaces yield. See `exudyn_ehd.joint.static.dynamic_stiffness`.
+        x is the small motion (x, y) about the equilibrium, the force that on the journal, joint frame. K and C depend
+        on the frequency with `ElrodAdams`, as the cavity's oil follows with a delay, and where surfaces deflect. See
+        `exudyn_ehd.joint.static.dynamic_stiffness`.
 
         Parameters
         ----------
         frequencies : (k,) array
-            nu, rad/s.
+            nu, rad/s (not Hz).
 
         Returns
         -------
@@ -233,46 +237,49 @@ def equilibrium(
 ) -> EquilibriumResult:
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
-    Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
-    the bearing and costs nothing near the solution. Where it fails, damped steps of
-    Levenberg and Marquardt lead there, first from the same guess, then from inside the bearing.
+    One bearing, alone, with a fixed tilt: a rotor in several bearings, or a journal that moments tilt, is for
+    `SolveEquilibrium`; friction over the speed for `stribeck`.
 
-    With `ElrodAdams` stiffness and damping depend on the frequency of the motion, because the cavity's oil follows
-    with a delay. The threshold is solved for with both at its own frequency, and these are the ones returned; others
-    come from `EquilibriumResult.dynamic_stiffness`. With ``thermal`` they hold at the temperature of the equilibrium;
-    `EquilibriumResult.settled_stiffness` lets it follow. On a liner, a flexible bore or journal the stiffness is that
-    of the steady film and the damping that of a slow motion; they follow quick ones with a delay, which the threshold
-    and `EquilibriumResult.dynamic_stiffness` count. With `ElrodAdams` all of it holds at the threshold's frequency. An
-    `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed state.
+    For which motions stiffness K and damping C hold:
 
-    Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
-    of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
-    place in which they carry an ``axial_load``; stiffness and damping hold for motions across the axis there, those
-    along it are ``film.faces.axial_stiffness`` and ``axial_damping``. The tilt is given: a journal that moments tilt
-    is one of a system, `SolveEquilibrium`.
+    - `ElrodAdams`: both depend on the frequency, because the cavity's oil follows with a delay. Those returned hold at
+      the frequency of the whirl threshold; `EquilibriumResult.dynamic_stiffness` gives others.
+    - ``thermal``: at constant temperature; in `EquilibriumResult.settled_stiffness` the temperature follows.
+    - liner, flexible bore or journal: K of the steady film, C of slow motions. Quick motions deflect a surface with a
+      delay, which the threshold and `EquilibriumResult.dynamic_stiffness` include. With `ElrodAdams` K and C hold at
+      the threshold's frequency here too. With an `ANCFBush` they hold about its deformed state.
 
-    Where asperities touch, the film heats, or supply areas, tilt and starved parts cut it, several positions may carry
-    a load. The search starts where a film with a cavity would carry it and returns the position that it comes to. Where
-    the stiffness is not positive definite there, it looks for others from the load's side, with supply areas, tilt and
-    `ElrodAdams`: a UserWarning names those that it knows, and the steadiest is returned. `stribeck` follows a branch
-    over the speed.
+    Films on end faces (``bearing.thrust``) carry their part of the load, in x and y too: position, stiffness and
+    damping are those of all films together, ``film.faces`` holds the faces alone. The journal is held at
+    ``axial_position``, or finds the position in which the faces carry ``axial_load``. K and C are for motions across
+    the axis; those along it are ``film.faces.axial_stiffness`` and ``axial_damping``.
+
+    Several positions may carry one load where asperities touch, the film heats, oil is supplied, the journal is tilted
+    or the film is starved. The search starts where a film with a cavity would carry the load and returns the position
+    it converges to. With supply areas, tilt or `ElrodAdams` it looks for others if K is not positive definite there: a
+    UserWarning names all that it found, and the most stable one is returned.
+
+    Method: Newton's with the exact tangent, at most 60 % of the remaining gap a step; where it fails, damped steps of
+    Levenberg and Marquardt.
 
     Parameters
     ----------
     bearing : JournalBearing
         With ``inlet=Periodic()``.
     speed : float
-        Relative spin, rad/s, not 0.
+        Spin of the journal against the housing, rad/s, positive about +z, not 0.
     load : (float, float)
-        Force on the journal in x and y, N. Without one, (0, 0), the journal lies at the exact centre of a bearing that
-        is the same in all directions. A film that ruptures has one-sided derivatives there; stiffness and damping are
-        those a little off the centre, `exudyn_ehd.joint.model.centre`.
+        External force on the journal in x and y of the joint frame, N, which the film balances: weight down is
+        (0, -W). Under no load, (0, 0), the journal of a bearing that is the same in all directions lies at the exact
+        centre. A film that ruptures has one-sided derivatives there; stiffness and damping are those a little off the
+        centre, `exudyn_ehd.joint.model.centre`.
     tilt : (float, float), default (0.0, 0.0)
-        Slopes (bx, by), held fixed, rad.
+        Slopes (bx, by) of the journal axis, rad, held fixed.
     axial_position : float, default 0.0
         Position of the journal between the faces of ``bearing.thrust``, m; 0 without them, and with ``axial_load``.
     axial_load : float or None, default None
-        Force on the journal along z, N, which the faces carry; None: the journal is held at ``axial_position``.
+        External force on the journal along z, N, which the faces carry; None: the journal is held at
+        ``axial_position``.
 
     Returns
     -------

@@ -39,9 +39,9 @@ class FilmResult:
     pressure : (n, m) array
         Gauge pressure, Pa.
     gap : (n, m) array
-        m.
+        Film thickness, m.
     unbroken : (n, m) bool array
-        Where the film is not cavitated (prescribed vertices excluded).
+        True where the film is not cavitated; False at vertices with a prescribed pressure.
     inflow : (n, m) array
         Volume flow that every prescribed vertex feeds into the film, m3/s; zero elsewhere.
     load : float
@@ -49,8 +49,8 @@ class FilmResult:
     fill : (n, m) array
         Film fraction; ones for closures that do not conserve mass.
     content : (n, m) array
-        fill times gap, m, and times the density over that at ambient pressure if the lubricant has a density law: the
-        ``history`` of the next step.
+        Oil content: fill times gap, m (with a density law also times the density over that at ambient pressure). It is
+        the ``history`` of the next step.
 
     Examples
     --------
@@ -97,13 +97,15 @@ def solve_film(
     grid : FilmGrid
         From `bearing_grid` or `slider_grid`.
     gap : (n, m) array
-        Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
+        Film thickness at the vertices, shape ``grid.shape``, m, > 0. Between two vertices their mean is used, unless
+        ``stepped_gap``.
     lubricant : Lubricant
         Its pressure and density laws take part; a shear law needs a bearing.
     surface_speed : (float, float), default (0.0, 0.0)
-        Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
+        Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given; its half is
+        the entrainment speed. R omega for a journal in a bush at rest.
     gap_rate : (n, m) array or None, default None
-        dh/dt at fixed position, m/s; None: steady.
+        dh/dt at fixed position, m/s, negative where the gap closes; None: steady.
     cavitation : closure or None, default None
         Default `SwiftStieber`.
     boundary : float or (n, m) array, default 0.0
@@ -112,10 +114,10 @@ def solve_film(
         True: the gap is constant around each vertex and steps on the faces between (pockets, textures); see
         `exudyn_ehd.film.reynolds.gap`.
     history : (n, m) array or None, default None
-        For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its
-        squeeze, so that ``gap_rate`` is not needed. None: the film is steady.
+        For `ElrodAdams` in time: ``FilmResult.content`` of the last time step, m. The change of oil content since then
+        includes the squeeze, so that ``gap_rate`` is not needed. None: the film is steady.
     step : float, default 0.0
-        Time since ``history``, s, > 0 with it.
+        Time since ``history``, s; > 0 if ``history`` is given.
 
     Returns
     -------

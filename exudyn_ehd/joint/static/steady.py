@@ -52,8 +52,9 @@ class ThrustResult:
     axial_force, friction_torque : float
         N along z; Nm about the bearing's axis.
     axial_stiffness, axial_damping : float
-        -dF/dz, N/m, and -dF/dw, N s/m. Plane faces at rest that rupture carry where they close only: in the middle of
-        two equal faces the damping is that of one, elsewhere it is nan, as both ways of the journal differ.
+        -dF/dz, N/m, and -dF/dw, N s/m, F along z, w the axial speed. Plane faces at rest have a film with a cavity only
+        on the side that closes: midway between two equal faces the damping is that of one face, elsewhere it is nan,
+        as it differs between both directions of motion.
     minimum_gap, peak_pressure, power_loss, contact_load : float
         m, Pa, W, N, of all faces.
     edge_pressures : (k,) array
@@ -65,8 +66,8 @@ class ThrustResult:
     pressure, gap : (k, n, m) arrays
         Of every face, Pa (gauge) and m; the lower one first. On edges of pads the gap is the mean of both sides.
     tangent : (6, 11) array
-        Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units.
-        Of plane faces at rest it is the mean of both ways.
+        Derivative of force and moment to the motion (x, y, bx, by, their rates, omega, w) and the axial position, SI
+        units. For plane faces at rest it is the mean over both directions of motion.
 
     Examples
     --------
@@ -159,33 +160,40 @@ SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 class SteadyResult(FilmRecord, FilmPictures):
     """Result of `steady`: the film at one position of the journal.
 
-    ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.solved_film`; SI units.
+    ``plot_pressure()`` and its like draw it. SI units; vectors in the joint frame: origin on the bearing's mid-plane,
+    z = bearing axis, fixed in the housing. Angles count from x towards y.
 
     Attributes
     ----------
     theta, z : (n,), (m,) arrays
         Grid, rad and m.
     pressure, gap : (n, m) arrays
-        Pa (gauge) and m.
+        Film pressure, Pa (gauge), and film thickness, m.
     unbroken : (n, m) bool array
         True where the film is not cavitated.
     force, moment : (3,) arrays
-        On the journal, moment about the joint origin.
+        On the journal, N and N m, from film and contact; moment about the joint's origin.
     minimum_gap, peak_pressure, peak_angle : float
-        m, Pa, rad; peak from parabolas through the largest vertex.
-    friction_torque, friction_torque_unbroken, friction_torque_bush : float
-        Nm; about the journal's own axis (all of the clearance sheared, unbroken film only), and on the bush.
+        Minimum film thickness, m; largest film pressure, Pa, and its angle, rad, from parabolas through the vertex with
+        the largest pressure.
+    friction_torque, friction_torque_unbroken : float
+        Torque on the journal about its own axis, N m: negative where it brakes a positive spin. The first holds the
+        shear of the whole clearance, cavity included, and the contact; the second the shear of the unbroken film only.
+    friction_torque_bush : float
+        Torque on the bush about the bearing's axis, N m: minus ``moment[2]``. It is smaller than that on the journal
+        by the force times its lever arm, the eccentricity.
     power_loss, leakage, contact_load : float
-        W, m3/s out of both ends, N; ``contact_load`` is the vector sum of the contact's pressure, whose integral is
-        larger where it acts around an arc (3 % over 0.8 rad).
+        Power loss, W; oil out of both ends together, m3/s; size of the contact's force, N. Where contact acts around
+        an arc this vector sum is less than the integral of the contact pressure (3 % over 0.8 rad).
     supply_flows : (k,) array
-        m3/s out of every area of ``bearing.supply``; into an arc at its leading and its trailing edge, 0 where oil
-        leaves.
+        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With ``bearing.arc``: oil that enters at
+        the leading and at the trailing edge, 0 where it leaves.
     contact_torque, contact_power_loss, peak_contact_pressure : float
-        Boundary friction of the contacts on the journal about its own axis (Nm, part of ``friction_torque``) and the
-        loss it makes (W, part of ``power_loss``); Pa.
+        Boundary friction of the contacts on the journal about its own axis, N m, part of ``friction_torque``; its
+        loss, W, part of ``power_loss``; largest contact pressure, Pa.
     sommerfeld_number, attitude_angle : float
-        So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
+        So = F psi^2 / (L D mu |omega|) with F the size of ``force`` across the axis, psi = c / R, D = 2 R and mu of the
+        lubricant; nan at zero speed. Angle from the load (minus ``force``) to the eccentricity in the sense of
         rotation, rad.
     status, iterations : Status, int
     fill : (n, m) array or None
@@ -198,9 +206,9 @@ class SteadyResult(FilmRecord, FilmPictures):
     bore_displacement : (n, m) array or None
         Deflection of a flexible bore or a liner, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
-        Coordinates of a flexible bore, m.
+        Coordinates of a flexible bore (amplitudes of its modes), m; None for a rigid one.
     faces : ThrustResult or None
-        Films on the end faces, which the other values leave out; None without ``bearing.thrust``.
+        Films on the end faces, which all other values leave out; None without ``bearing.thrust``.
     bearing : JournalBearing
     motion : (10,) array
         Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates
@@ -280,32 +288,36 @@ def steady(
 ) -> SteadyResult:
     """Film at a prescribed position and speed of the journal: pressure, force, friction, leakage.
 
-    An `ANCFBush` is in static equilibrium with the film, at any strain, as in a joint. A `ModalBush` is linear; where
-    it strains by more than 1 %, a `StrainWarning` says so. Films with more than 3 GPa, or a mean
-    of more than 1 GPa with their contact, which neither oil nor steel bears, give an `OverloadWarning`. Films
-    whose pressure peak the grid does not resolve to some 5 % give a `GridWarning` with a grid that does.
+    The position is given, whatever load the film then carries; `equilibrium` finds the position for a given load. All
+    arguments are in the joint frame: origin on the bearing's mid-plane, z = bearing axis, fixed in the housing.
 
-    Supply areas in the journal (``rotating=True``) stand where they were described. The film is that of the instant at
-    which they pass there; oil content and temperature, and what follows with a delay, are those of standing areas.
+    Warnings: `OverloadWarning` for a peak pressure above 3 GPa, or a force of film and contact above 1 GPa times the
+    projected area 2 R L; `GridWarning` where the grid gives the peak pressure with an error of more than some 5 %, with
+    a finer grid; `StrainWarning` where a `ModalBush`, which is linear, strains by more than 1 %; `HotFilmWarning` above
+    150 degrees Celsius. An `ANCFBush` is in static equilibrium with the film, at any strain.
+
+    Supply areas in the journal (``rotating=True``) are at the angles at which they were described. The film is that of
+    the instant at which they pass there; oil content, temperature and deflection are those of areas that stand still.
 
     Parameters
     ----------
     bearing : JournalBearing
     speed : float
-        Relative spin omega, rad/s.
+        Spin omega of the journal against the housing, rad/s; positive about +z, 0 for a film that is squeezed only.
     eccentricity_ratio : float
-        e/c at the mid-plane.
+        Distance of the journal axis from the bore's centre at the mid-plane over the radial clearance, >= 0; above 1
+        only where a surface deflects, wears or touches.
     direction : float, default 0.0
-        Angle of the eccentricity from x, rad.
+        Angle of the eccentricity from x towards y, rad.
     tilt : (float, float), default (0.0, 0.0)
-        Slopes (bx, by) of the journal axis, rad.
+        Slopes (bx, by) of the journal axis, which runs through (x + bx z, y + by z); m per m, so rad.
     velocity : (float, float), default (0.0, 0.0)
-        dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets
-        this velocity, so that full parts are squeezed at once and cavities keep their oil content; an `ElasticLiner`
-        has not yielded yet, so that the velocity makes no pressure on it. `EquilibriumResult.dynamic_stiffness` tells
-        more.
+        Velocity (dx/dt, dy/dt) of the journal axis, m/s. With `ElrodAdams` the journal has just got this velocity in
+        its steady film: full parts are squeezed, cavities keep their oil content. With an `ElasticLiner` under
+        `ElrodAdams` the velocity then changes no force, as the liner takes up the squeeze;
+        `EquilibriumResult.dynamic_stiffness` gives the forces of continued motion.
     axial_speed : float, default 0.0
-        w, m/s.
+        Speed w of the journal along z, m/s.
     axial_position : float, default 0.0
         Position of the journal between the faces of ``bearing.thrust``, m; 0 without them.
 
@@ -316,7 +328,8 @@ def steady(
     Raises
     ------
     InputError
-        For values that are not numbers.
+        For values that are not numbers, a negative eccentricity ratio, an axial position without faces, or
+        `ElrodAdams` without a source of oil.
     FilmError
         If there is no film at this position, or the journal is through its contact by more than the clearance.
 

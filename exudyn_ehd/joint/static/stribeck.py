@@ -36,20 +36,20 @@ class StribeckResult:
     friction_coefficient : (n,) array
         Friction torque on the journal about its own axis / (R load).
     friction_torque, contact_torque : (n,) arrays
-        Size of the whole torque and of its part from boundary friction, Nm.
+        Size of the friction torque on the journal and of its part from boundary friction, N m; both positive.
     contact_load_share : (n,) array
-        Contact load / load; above what the film leaves it the film pulls.
+        Contact load / load; above 1 the film pulls the journal into the contact.
     eccentricity_ratio, minimum_gap : (n,) arrays
-        e/c; minimum film thickness of the nominal surfaces, m (negative where asperities are pressed flat).
+        e/c; minimum film thickness between the nominal surfaces, m (negative where asperities are pressed flat).
     film_ratio : (n,) array
         lambda = ``minimum_gap`` / composite roughness; nan for smooth surfaces.
     power_loss, contact_power_loss, leakage : (n,) arrays
-        W, W, m3/s.
+        Power loss and its part from boundary friction, W; oil out of both ends together, m3/s.
     hersey : (n,) array
-        mu omega / (load / (2 R L)), dimensionless, mu the lubricant's own ``viscosity``.
+        Hersey number mu omega / (load / (2 R L)), dimensionless, with mu = ``lubricant.viscosity``, omega in rad/s.
     film_temperature, bore_displacement : (n,) arrays
-        Mean over the film's area, K, nan for an isothermal bearing; of a liner or flexible bore, m, the largest, 0 for
-        others.
+        Mean film temperature, K, nan for an isothermal bearing; largest deflection of a liner or flexible bore, m, 0
+        for a rigid one.
     position : (n, 2) array
         x, y of the journal axis, m.
 
@@ -85,7 +85,7 @@ class StribeckResult:
 
     @property
     def lowest_friction(self) -> tuple[float, float]:
-        """Speed and friction coefficient at the curve's minimum, among the speeds computed."""
+        """Speed (rad/s) and friction coefficient at the curve's minimum, among the speeds computed."""
         k = int(np.argmin(self.friction_coefficient))
         return float(self.speeds[k]), float(self.friction_coefficient[k])
 
@@ -93,20 +93,20 @@ class StribeckResult:
 def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | np.ndarray) -> StribeckResult:
     """Equilibrium and friction under a constant load (N, in -y on the journal) over a range of speeds.
 
-    Every speed is a steady state with its own temperature (``thermal``) and shape of the bore (``bush``). Sliding
-    lasts, so that boundary friction acts in full: ``GreenwoodTripp.transition_speed``, by which that of a joint passes
-    through rest, takes no part. Speeds are worked through from the fastest to the slowest, each starting from the
-    last position; where no position is found, or the temperature leaps, speeds in between lead to it. Load and friction
-    are those of the journal's film, without films on end faces (``bearing.thrust``).
+    Every speed is a steady state with its own temperature (``thermal``) and shape of the bore (``bush``). Boundary
+    friction acts in full at every speed: ``GreenwoodTripp.transition_speed``, which smooths the reversal of friction in
+    a joint, is not used. Speeds are solved from the fastest to the slowest, each from the last position; intermediate
+    speeds are added where no position is found or the temperature jumps. Films on end faces (``bearing.thrust``) are
+    left out.
 
     Parameters
     ----------
     bearing : JournalBearing
         With ``inlet=Periodic()``; a curve that turns up at low speed needs ``asperity=GreenwoodTripp(...)``.
     load : float
-        N, > 0.
+        Size of the external force on the journal, which acts in -y of the joint frame, N, > 0.
     speeds : sequence of float
-        Spins, rad/s, all > 0, in any order.
+        Spins of the journal, rad/s, all > 0, in any order.
 
     Returns
     -------

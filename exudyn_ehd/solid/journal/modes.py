@@ -49,13 +49,13 @@ class HeldEnds:
 class HeldBands:
     """``held`` of an `ElasticJournal`: its body holds bands of the cylinder, as a piston's bosses hold its pin.
 
-    The surface does not move there against the body, in no direction: bosses as stiff as the body, without play. One
-    band beside the film: an overhung pin.
+    In the bands the surface does not move against the body in any direction: bosses as stiff as the body, without play.
+    One band on one side of the film makes an overhung pin.
 
     Parameters
     ----------
     bands : tuple of (float, float)
-        Axial places where each begins and ends, joint frame, beside the film [m].
+        z where each band begins and ends, joint frame [m]; outside the film's length.
 
     Examples
     --------
@@ -80,27 +80,30 @@ class HeldBands:
 class ElasticJournal:
     """A linear elastic solid or hollow pin as a bearing's journal, reduced to modes of its surface.
 
-    Quasi-static: it follows the film at once, its mass is its body's. Weight, centrifugal forces and loads that act on
-    the body elsewhere do not bend it. It is a cylinder, so that its response does not depend on its angle: its modes
-    stay in the joint's frame, in which the film does not turn either, whatever its spin. To first order the film knows
-    the radial deflection alone, along the axis of the bore; the journal's tilt (1e-3) turns it by that share, and its
-    slide along the axis is left out.
+    It is a cylinder that follows the film without inertia: only film and contact deform it. Its mass is its body's;
+    weight, centrifugal forces and loads elsewhere on the body do not bend it. Being round it responds alike at every
+    angle, so its modes stay in the joint's frame at any spin. The film takes the radial deflection only, measured
+    across the bore's axis: the tilt (some 1e-3) changes it by that share, and sliding along the axis is omitted. For a
+    journal that is not round or whose body deforms as a whole: `FEJournal`.
 
     Parameters
     ----------
     material : SaintVenantKirchhoff
         Its density is not used.
     span : (float, float)
-        Axial places of its end faces in the joint frame, about the bearing's mid-plane [m]; the film lies between them.
+        z of its end faces in the joint frame, from the bearing's mid-plane [m], lower one first; the film lies between
+        them.
     held : HeldEnds, HeldBands or None
-        Bands or ends where its body holds it; None: the journal is the body, and its mean motion is the body's.
+        Where the body of the joint's journal holds the pin. None: the pin is that body, nothing holds it, and its mean
+        motion is the body's.
     inner_radius : float, default 0.0
         Inner radius of a hollow pin [m]; 0: solid. The outer one is the bearing's ``journal_radius``.
     tolerance : float, default 0.05
-        Error of the surface's displacement under sampled films, as in `ModalBush`; 2e-3 to 0.2. Of a pin that bends by
-        more than it flattens, over what it deforms locally.
+        Largest relative error of the surface's deflection under sampled films, as in `ModalBush`, 2e-3 to 0.2: smaller
+        takes more modes. For a pin that bends by more than it flattens, relative to its local deformation.
     tilted : bool, default True
-        False leaves out the modes that are odd in z: for journals that stay parallel.
+        False omits the modes that are odd in z, for journals that stay parallel to the bore; only for pins that are
+        symmetric about the mid-plane.
 
     Examples
     --------

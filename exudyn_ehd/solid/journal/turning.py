@@ -38,20 +38,21 @@ LARGEST_WAVE, NEGLIGIBLE, ROUNDING = 36, 2e-4, 1e-9
 class FEJournal(FESurface):
     """Journal as a finite-element body (ObjectFFRFreducedOrder), which deforms under the oil by its modes as it turns.
 
-    Of any body, also one that is not the same in all directions: its surface turns under the film, which knows the
-    radial displacement. The body's mass and its stresses by spin are Exudyn's. Give it the modes that a pressure needs
-    with `add_bore_modes` (radius: the journal's).
+    For any body, also one that is not the same in all directions: its surface turns under the film, which takes its
+    radial displacement. Inertia and spin of the body are Exudyn's. First give the body the modes that an oil pressure
+    excites: `add_bore_modes` with the journal's radius. A round pin without own dynamics: `ElasticJournal`.
 
     Parameters
     ----------
     fem : FEMinterface
-        The mesh that the body was made of, with its elements.
+        The mesh that the reduced body was made of, with its elements.
     nodes : sequence of int or None, default None
-        Mesh nodes on the journal; by default those on the cylinder around the joint's axis.
+        Numbers of the mesh nodes on the journal; by default those on the cylinder around the joint's axis.
     radius_tolerance : float, default 0.02
-        Largest relative difference of a node's radius from the bearing's journal radius.
+        Largest difference of a node's radius from the bearing's journal radius, divided by that radius.
     settled : bool, default True
-        As in `FEBore`, with a shape that stands under the turning journal. Stiff modes that start undeformed ring.
+        As in `FEBore`; the initial shape stands still in the joint's frame while the journal turns. False: stiff modes
+        start undeformed and oscillate at first.
     exact_jacobian : bool, default True
         As in `FEBore`.
 
