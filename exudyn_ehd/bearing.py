@@ -73,8 +73,8 @@ class Periodic:
 class MaximumGap:
     """``inlet`` of classical tables: ambient pressure on the line of maximum gap; for `steady` only.
 
-    A joint raises `InputError`, because the line is undefined for a concentric journal and jumps with a moving one. At
-    L/D = 1 and eccentricity ratio 0.1 the load is 2 % lower than with `Periodic`.
+    `InputError` in joints and `equilibrium`, as the line is undefined for a concentric journal and jumps with a moving
+    one. At L/D = 1 and eccentricity ratio 0.1 the load is 2 % lower than with `Periodic`.
 
     Examples
     --------
@@ -301,7 +301,7 @@ class JournalBearing(Checked):
 
     @property
     def yielding(self) -> object | None:
-        """The bush, or the elastic journal without one; None between rigid surfaces."""
+        """Flexible side: the bush, else the elastic journal; None between rigid surfaces."""
         return self.journal if self.bush is None else self.bush
 
     @property
@@ -311,7 +311,7 @@ class JournalBearing(Checked):
 
     @property
     def sized_film(self) -> FilmOption:
-        """``film`` with its columns, where it leaves them to the bearing's L/D."""
+        """``film`` with the number of columns that the bearing's L/D gives where ``n_theta`` is None."""
         return sized(self.film, 0.5 * self.length / self.journal_radius)
 
     @property
@@ -321,7 +321,7 @@ class JournalBearing(Checked):
 
     @property
     def closure(self) -> Cavitation:
-        """``cavitation`` with its rupture line inside the cells of the grid or on its vertices, where that is open."""
+        """``cavitation`` with the value of ``line_in_cells`` that a None stands for in this bearing."""
         return place_line(self.cavitation, not no_line_with(self.film, self.cavitation, self.yielding, self.lubricant))
 
     def reference_force(self, speed: float) -> float:

@@ -76,10 +76,10 @@ class FiniteLength(_OnVertices):
 
     So 1 % in the load at eps 0.8 takes 48 x 6, and 0.1 % takes 128 x 12. Stiffness K and damping C have larger errors,
     most of all in narrow bearings and with tilted journals, whose film narrows towards one end. Error of their largest
-    entry from eps 0.5 to 0.95; a tilt of 0.9 is 0.9 of the tilt that closes the gap:
+    entry, K up to eps 0.95, C up to the eps named; a tilt of 0.9 is 0.9 of the tilt that closes the gap:
 
     ========  ==========  =========  ============  ============  ======================
-    grid      L/D         stiffness  damping, 0.8  damping 0.95  load, K, C at tilt 0.9
+    grid      L/D         K          C, eps 0.8    C, eps 0.95   load, K, C at tilt 0.9
     ========  ==========  =========  ============  ============  ======================
     96 x 10   from 0.5    0.8 %      0.5 %         1.6 %         3.2 %, 17 %, 11 %
     96 x 10   from 0.125  1.5 %      2.8 %         6.5 %         3.2 %, 17 %, 11 %
@@ -101,7 +101,7 @@ class FiniteLength(_OnVertices):
     Parameters
     ----------
     n_theta : int or None, default None
-        Vertices around the circumference, at least 16. None: by L/D, 96 from 0.65 up, 112 at 0.5, 176 up to 0.25.
+        Vertices around the circumference, at least 16. None: 96 from L/D 0.65 up, 112 at 0.5, 176 at 0.25 and below.
     n_z : int, default 10
         Intervals along the bearing, at least 4.
     stretch : float, default 0.75

@@ -166,8 +166,7 @@ class Conduction(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class FilmEnergy(Checked):
-    """Temperature field T(theta, z), averaged across the film or with its profile; where heating decides load or peak
-    temperature.
+    """Temperature field T(theta, z) of the film; where heating decides load or peak temperature.
 
     Needs a lubricant with a ``temperature_law``, such as those of `oil`. Adds a third to the time of a step with
     `ElrodAdams`, doubles it with `SwiftStieber` (half more with a density law). With ``across=2`` a step takes four to

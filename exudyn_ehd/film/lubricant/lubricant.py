@@ -92,7 +92,8 @@ class Lubricant(Checked):
     makes non-symmetric, it more than doubles the time.
 
     Laws multiply: ``mu = viscosity * r_p(p) * r_T(T) * r_G(shear rate)``, each ratio 1 at ambient pressure, at
-    ``temperature``, at rest.
+    ``temperature``, at rest. `PressureOption`, `TemperatureLaw`, `ShearLaw` and `DensityLaw` stand for laws of your own:
+    "Extension points" in the package's README.
 
     Parameters
     ----------
@@ -112,9 +113,6 @@ class Lubricant(Checked):
     density_law : DowsonHigginson, DensityLaw or None, default None
         Density under pressure, at any temperature: reported flows, m3/s, are then mass flows over ``density``. None:
         incompressible.
-
-    `PressureOption`, `TemperatureLaw`, `ShearLaw` and `DensityLaw` stand for laws of your own: "Extension points" in
-    the package's README.
 
     Raises
     ------

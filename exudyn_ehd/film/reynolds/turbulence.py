@@ -102,8 +102,8 @@ class NgPan(_Transition):
     surface speed U; the audit reports Re. In the film Re is local, with its gap in place of c.
 
     Not with a ``pressure_law``, ``density_law`` or ``shear_law``, `PatirCheng`, or `FilmEnergy.conductivity`, which
-    hold for laminar flow. The fits differ from the theory's own numbers by at most 6 % from Re = 1500 to 15000, and 12 %
-    up to 30000.
+    hold for laminar flow. The fits differ from the theory's own numbers by at most 6 % from Re = 1500 to 15000, 12 % up
+    to 30000.
 
     Parameters
     ----------
