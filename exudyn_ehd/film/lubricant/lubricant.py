@@ -92,8 +92,8 @@ class Lubricant(Checked):
     makes non-symmetric, it more than doubles the time.
 
     Laws multiply: ``mu = viscosity * r_p(p) * r_T(T) * r_G(shear rate)``, each ratio 1 at ambient pressure, at
-    ``temperature``, at rest. `PressureOption`, `TemperatureLaw`, `ShearLaw` and `DensityLaw` stand for laws of your own:
-    "Extension points" in the package's README.
+    ``temperature``, at rest. `PressureOption`, `TemperatureLaw`, `ShearLaw` and `DensityLaw` stand for laws of your
+    own: "Extension points" in the package's README.
 
     Parameters
     ----------
