@@ -73,8 +73,8 @@ class Periodic:
 class MaximumGap:
     """``inlet`` of classical tables: ambient pressure on the line of maximum gap; for `steady` only.
 
-    Only for prescribed positions (`steady`): the line is undefined for a concentric journal and jumps with a moving
-    one, so that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it lowers the load by 2 % against `Periodic`.
+    `InputError` in joints and `equilibrium`, as the line is undefined for a concentric journal and jumps with a moving
+    one. At L/D = 1 and eccentricity ratio 0.1 the load is 2 % lower than with `Periodic`.
 
     Examples
     --------
@@ -94,6 +94,10 @@ Inlet = Periodic | MaximumGap
 class JournalBearing(Checked):
     """Description of a journal bearing for joints and static studies: dimensions, oil, and the effects in its film.
 
+    Frame of all places and angles: the joint's, fixed in the housing, with its origin in the bearing's mid-plane and z
+    along the bearing's axis. theta counts from x, positive about z, as the spin of the journal. Pressures are gauge
+    pressures: Pa above ambient. Effects that exclude each other raise `InputError`.
+
     Parameters
     ----------
     journal_radius : float
@@ -103,42 +107,46 @@ class JournalBearing(Checked):
     radial_clearance : float
         c = bore radius - journal radius, half the diametral clearance, m. A ratio c/R outside 1e-4 to 1e-2 warns.
     lubricant : Lubricant
+        Oil, e.g. ``ehd.oil("ISO VG 46")``.
     film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR, default FiniteLength()
         Film model and grid.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure, default SwiftStieber()
-        Closure at the cavity pressure; `Closure` is one of your own, see "Extension points" in the package's README.
+        Cavitation model; `Closure` is one of your own, see "Extension points" in the package's README.
     inlet : Periodic or MaximumGap, default Periodic()
-        Circumferential condition.
+        Periodic: the film closes around the bearing. MaximumGap: it begins at ambient pressure where the gap is
+        largest; for `steady` only.
     arc : Arc or None, default None
-        Part of the circle that the bore has; None: all of it.
+        Bore on a part of the circle; None: all around.
     end_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at z = -L/2 and z = +L/2, Pa.
     squeeze : bool, default True
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None, default None
-        Contact that carries load before the gap vanishes; None: a vanishing gap ends the run with an error.
+        Smooth wall that carries load before the gap vanishes; not with ``asperity`` or ``roughness``. None: a
+        vanishing gap ends the run with an error, unless there is an ``asperity``.
     supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket, default ()
         Areas with a prescribed supply pressure; empty: none.
     thermal : LumpedThermal, FilmEnergy or None, default None
-        Temperature of the film; None: isothermal.
+        Temperature of the film; needs a lubricant with a ``temperature_law``, such as those of `oil`. None: isothermal,
+        at ``lubricant.temperature``.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None, default None
         Flexible bore that deflects under the film's pressure; the outer surface of a bush moves with the housing.
         None: a rigid bore.
     journal : ElasticJournal, FEJournal or None, default None
-        A pin that deflects, with a rigid bore or a `ModalBush` around it; or the joint's journal, a reduced
-        finite-element body, by its own modes in a rigid bore. None: a rigid journal.
+        Flexible journal. `ElasticJournal`: a pin in a rigid bore or a `ModalBush`. `FEJournal`: the reduced
+        finite-element body that the joint holds as its journal, in a rigid bore. None: a rigid journal.
     asperity : GreenwoodTripp or None, default None
-        Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
+        Contact of rough surfaces with boundary friction; carries load before the gap vanishes, in place of ``contact``.
     roughness : PatirCheng or None, default None
-        Flow factors of rough surfaces.
+        Flow factors of rough surfaces; with ``asperity`` both must have the same ``composite_roughness``.
     profile : SurfaceProfile, tuple of SurfaceProfile or None, default None
         Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
     wear : ArchardWear or None, default None
-        Wear of the bore by the asperity contact.
+        Wear of the bore by the asperity contact; needs ``asperity``.
     turbulence : NgPan, Hirs or None, default None
         Turbulent film by the local Reynolds number; None: laminar.
     thrust : ThrustFaces or None, default None
-        Films on the two end faces, which carry axial load; None: the joint has no axial force but the film's drag.
+        Films on the two end faces, which carry axial load; None: the film's drag is the only axial force.
 
     Raises
     ------
@@ -293,7 +301,7 @@ class JournalBearing(Checked):
 
     @property
     def yielding(self) -> object | None:
-        """The bush, or the elastic journal without one; None between rigid surfaces."""
+        """Flexible side: the bush, else the elastic journal; None between rigid surfaces."""
         return self.journal if self.bush is None else self.bush
 
     @property
@@ -303,7 +311,7 @@ class JournalBearing(Checked):
 
     @property
     def sized_film(self) -> FilmOption:
-        """``film`` with its columns, where it leaves them to the bearing's L/D."""
+        """``film`` with the number of columns that the bearing's L/D gives where ``n_theta`` is None."""
         return sized(self.film, 0.5 * self.length / self.journal_radius)
 
     @property
@@ -313,7 +321,7 @@ class JournalBearing(Checked):
 
     @property
     def closure(self) -> Cavitation:
-        """``cavitation`` with its rupture line inside the cells of the grid or on its vertices, where that is open."""
+        """``cavitation`` with the value of ``line_in_cells`` that a None stands for in this bearing."""
         return place_line(self.cavitation, not no_line_with(self.film, self.cavitation, self.yielding, self.lubricant))
 
     def reference_force(self, speed: float) -> float:

@@ -316,18 +316,19 @@ def bearing_grid(
 class Arc(Checked):
     """Bore on a part of the circle, a partial bearing or a fixed pad, with given pressures at its two edges.
 
-    Film and bore begin at its leading edge, which oil enters with positive spin, and end at its trailing edge. Beside
-    the arc the journal is free. Goes with `FiniteLength` between rigid surfaces of one temperature, but not with
-    ``profile``, ``wear`` and ``supply``; as many columns as its share of the circle.
+    The film begins at the leading edge, where oil enters if the spin is positive, and ends at the trailing edge. On the
+    rest of the circle there is no bore. Only with ``film=FiniteLength(...)`` and ``inlet=Periodic()``; not with
+    ``thermal``, ``bush``, ``journal``, ``profile``, ``wear`` and ``supply``. The arc gets its share of the columns of
+    the whole circle.
 
     Parameters
     ----------
     start : float
-        Angle of the leading edge from the joint's x about its z axis, rad.
+        Angle of the leading edge, from the joint's x about its z axis, rad.
     extent : float
-        Angle from there to the trailing edge, rad, below 2 pi.
+        Angle from the leading to the trailing edge, positive about z, rad, below 2 pi.
     leading_pressure, trailing_pressure : float, default 0.0
-        Gauge pressures at both edges, Pa.
+        Gauge pressures at the two edges, Pa.
 
     Examples
     --------

@@ -61,8 +61,8 @@ class _OnVertices(Checked):
 class FiniteLength(_OnVertices):
     """Default film: the full, two-dimensional Reynolds equation on a grid over angle and length.
 
-    Largest error of the load (Swift-Stieber, L/D from 1/8 to 1, any direction of the journal, against extrapolated
-    grids):
+    Largest error of the load against extrapolated grids (Swift-Stieber, L/D from 1/8 to 1, any direction of the
+    journal), by n_theta x n_z and the eccentricity ratio eps:
 
     ========  ===========  ============
     grid      eps <= 0.8   eps = 0.95
@@ -74,38 +74,38 @@ class FiniteLength(_OnVertices):
     192 x 16  0.05 %       0.15 %
     ========  ===========  ============
 
-    So 1 % in the load at eps 0.8 takes 48 x 6, and 0.1 % takes 128 x 12. Stiffness and damping are more sensitive,
-    those of narrow bearings most, and tilted journals, because the film narrows towards one end. Error of the largest
-    entry from eps 0.5 to 0.95, tilt as a share of what closes the gap:
+    So 1 % in the load at eps 0.8 takes 48 x 6, and 0.1 % takes 128 x 12. Stiffness K and damping C have larger errors,
+    most of all in narrow bearings and with tilted journals, whose film narrows towards one end. Error of their largest
+    entry, K up to eps 0.95, C up to the eps named; a tilt of 0.9 is 0.9 of the tilt that closes the gap:
 
     ========  ==========  =========  ============  ============  ======================
-    grid      L/D         stiffness  damping, 0.8  damping 0.95  load, K, C at tilt 0.9
+    grid      L/D         K          C, eps 0.8    C, eps 0.95   load, K, C at tilt 0.9
     ========  ==========  =========  ============  ============  ======================
     96 x 10   from 0.5    0.8 %      0.5 %         1.6 %         3.2 %, 17 %, 11 %
     96 x 10   from 0.125  1.5 %      2.8 %         6.5 %         3.2 %, 17 %, 11 %
     192 x 16  from 0.125  0.25 %     0.5 %         1.1 %         1.1 %, 6 %, 3.5 %
     ========  ==========  =========  ============  ============  ======================
 
-    On the default grid, of an aligned journal in any direction, L/D 0.25 to 2 and eps 0.1 to 0.9: entries of K and C
-    within 1 % up to eps 0.8 and 1.5 % at 0.9 (of W/c, where they are smaller), critical mass 2 %, whirl ratio 1 %, load
-    0.2 %, peak pressure 0.5 %. On vertices (`SwiftStieber(line_in_cells=False)`) stiffness is up to 8 % off and damping
-    13 %, by where the rupture line lies between two columns.
+    Errors of the default grid (aligned journal in any direction, L/D 0.25 to 2, eps 0.1 to 0.9): entries of K and C 1 %
+    up to eps 0.8 and 1.5 % at 0.9 (of W/c, load over clearance, for entries below that), critical mass 2 %,
+    whirl ratio 1 %, load 0.2 %, peak pressure 0.5 %. With the rupture line on vertices
+    (`SwiftStieber(line_in_cells=False)`) the error of K is up to 8 % and that of C 13 %.
 
-    Films whose pressure peak is off by more than some 5 % on their grid, as those of journals that tilt to near
-    contact, give a `GridWarning`, once per result or run; it names a grid that is off by 2 %.
+    A `GridWarning`, once per result or run, says that the error of the peak pressure is above some 5 %, as with
+    journals that tilt to near contact; it names a grid with an error of 2 %.
 
-    Few rows want a larger stretch: ``FiniteLength(n_theta=84, n_z=4, stretch=0.85)`` has the load within 0.1 % at L/D
-    0.5 to 1.1 and eps up to 0.8, and entries of K and C within 1 % from L/D 0.9 (1.7 % from 0.5), in 0.4 of the default
-    grid's time.
+    Grids with few rows need a larger stretch: ``FiniteLength(n_theta=84, n_z=4, stretch=0.85)`` takes 0.4 of the
+    default grid's time. Its errors: load 0.1 % (L/D 0.5 to 1.1, eps up to 0.8), entries of K and C 1 % from L/D 0.9 and
+    1.7 % from L/D 0.5.
 
     Parameters
     ----------
     n_theta : int or None, default None
-        Vertices around the circumference, at least 16. None: `columns_for` the bearing's L/D.
+        Vertices around the circumference, at least 16. None: 96 from L/D 0.65 up, 112 at 0.5, 176 at 0.25 and below.
     n_z : int, default 10
         Intervals along the bearing, at least 4.
     stretch : float, default 0.75
-        Axial stretching of the vertices towards the ends, 0 (uniform) to 0.95.
+        Concentration of the vertices towards both ends, 0 (uniform) to 0.95.
 
     Examples
     --------
@@ -150,14 +150,15 @@ def columns_of(film: FilmOption, ratio: float) -> int:
 class ShortBearing(_OnVertices):
     """Ocvirk's short bearing, for L/D below 0.25: without pressure flow in theta, every column is solved on its own.
 
-    Load too high by 19 % already at L/D = 0.25 and eccentricity ratio 0.8; meant for L/D below 0.25 and moderate
-    eccentricity, and for comparison with closed forms. Tilt, squeeze and end pressures are included.
+    Compared with `FiniteLength` the load is 19 % too high already at L/D = 0.25 and eccentricity ratio 0.8. Meant for
+    L/D below 0.25 and moderate eccentricity, and for comparison with closed forms. Tilt, squeeze and end pressures are
+    included.
 
-    On the default grid, of an aligned journal in any direction (Swift-Stieber), stiffness and damping are within 0.3 %
-    of the closed form at eccentricity ratios 0.1 to 0.9, and the load within 0.25 %. Tilts up to 0.3 of what closes the
-    gap leave 1.5 %. On vertices (`SwiftStieber(line_in_cells=False)`) stiffness is up to 3 % off, damping 8 %, tilted
-    journals 5 %. Where the line crosses many columns, as with larger tilts and with end pressures above the cavity's,
-    errors approach those. The load is then up to 0.7 % off on 96 columns, where it is up to 0.3 % off on vertices.
+    Errors of the default grid against the short bearing's closed form (Swift-Stieber, aligned journal in any direction,
+    eccentricity ratio 0.1 to 0.9): stiffness and damping 0.3 %, load 0.25 %; 1.5 % for tilts up to 0.3 of the tilt that
+    closes the gap. With the rupture line on vertices (`SwiftStieber(line_in_cells=False)`): stiffness 3 %, damping 8 %,
+    tilted journals 5 %. Errors grow to these where the rupture line crosses many columns, as with larger tilts and end
+    pressures above the cavity pressure; the load on 96 columns then has 0.7 %, compared with 0.3 % on vertices.
 
     Parameters
     ----------
@@ -186,17 +187,17 @@ class ShortBearing(_OnVertices):
 class LongBearing(Checked):
     """Long bearing (Sommerfeld): no axial flow, each cross-section on its own; needs axial grooves or `MaximumGap`.
 
-    Load too high (Swift-Stieber, p = 0 at the maximum gap): at eccentricity ratios 0.5 / 0.8 / 0.95 by 262 / 111 / 39 %
-    at L/D = 1, 81 / 41 / 17 % at 2 and 30 / 17 / 8 % at 4; meant for closed forms and for sealed bearings. Needs
-    ``inlet=MaximumGap()`` or axial grooves over the whole length
-    (``supply=(AxialGroove(angle=..., width_angle=...),)``) and ambient end pressures.
+    Meant for closed forms and for sealed bearings: compared with `FiniteLength` the load at eccentricity ratios 0.5 /
+    0.8 / 0.95 is too high by 262 / 111 / 39 % at L/D = 1, 81 / 41 / 17 % at 2 and 30 / 17 / 8 % at 4 (Swift-Stieber,
+    p = 0 at the maximum gap). Needs ambient end pressures, and ``inlet=MaximumGap()`` or axial grooves over the whole
+    length (``supply=(AxialGroove(angle=..., width_angle=...),)``).
 
     Parameters
     ----------
     n_theta : int, default 192
         Vertices around the circumference, at least 16.
     n_z : int, default 4
-        Slices along the bearing, at least 2; 2 do without tilt.
+        Slices along the bearing, at least 2, which suffice without tilt.
 
     Examples
     --------

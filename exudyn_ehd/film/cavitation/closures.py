@@ -212,20 +212,22 @@ class FullSommerfeld(Closure):
 class Gumbel(Closure):
     """Half-Sommerfeld (Gümbel) cavitation: solve the linear film, then cut off pressures below the cavity pressure.
 
-    Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It
-    is the paper's condition. Flows through ends and supply areas with more than the cavity's pressure are those of the
-    linear film: beside the cavity it sucks in oil that the cut then loses, at a rate that hardly depends on that
-    pressure. ``leakage`` and ``supply_flow`` are then those of this condition, not of a bearing; take `SwiftStieber`.
+    For comparison with `ClassicSOR` and older results. Violates mass conservation at the rupture line: at eccentricity
+    ratio 0.8 the load is 15 % (L/D 1), 12 % (0.5) or 6 % (0.25) below that of `SwiftStieber`.
+
+    Where an end or a supply area has more than the cavity pressure, do not use ``leakage`` and ``supply_flow``; take
+    `SwiftStieber`. They are those of the linear film, whose tension beside the cavity sucks in oil that the cut then
+    loses.
 
     Parameters
     ----------
     cavity_pressure : float, default 0.0
         Gauge pressure of the cavity, Pa.
     cavity_shear : float, default 1.0
-        Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
+        Shear stress of sliding in the cavity over that of a full film, 0 to 1.
     line_in_cells : bool, default False
-        True: pressures act up to where the linear one is the cavity's, inside the cells of the grid (order two in
-        stiffness and damping); not with elastic liners. False: up to the vertex in front of it.
+        True: the rupture line lies inside the cells of the grid, where the linear pressure is the cavity pressure;
+        stiffness and damping are then of second order. Not with an `ElasticLiner`. False: it lies on vertices.
 
     Examples
     --------
@@ -250,28 +252,27 @@ class Gumbel(Closure):
 class SwiftStieber(Closure):
     """Default cavitation (Swift-Stieber or Reynolds): pressure and its gradient vanish at the rupture line.
 
-    The standard closure for steadily loaded bearings, and cheaper than `Gumbel` here because only the unbroken film is
-    factored.
+    The standard model for steadily loaded bearings. The pressure is at least the cavity pressure everywhere; oil in the
+    cavity is not counted (`ElrodAdams` does). Cheaper than `Gumbel` here, because only the full film is factored.
 
-    Inside the cells of the grid the line lies where it is, and stiffness and damping are of second order, within 1.5 %
-    in any direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On the vertices of the
-    grid they are up to 13 % off, in two thirds of the time. Loads differ by 0.1 %.
+    With the rupture line inside the cells of the grid the error of stiffness and damping is at most 1.5 % in any
+    direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On vertices it is up to 13 %, in two thirds
+    of the time. Loads differ by 0.1 %. Errors of a `ShortBearing` are told there.
 
-    ``line_in_cells=None`` is inside the cells, but for `ShortBearing` with a shear or density law. The line of a
-    `ShortBearing` lies between its columns; see there for its errors.
-    On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
-    (`exudyn_ehd.film.solvers.liner.line`), in about 1.4 times (liner) and 1.7 times (density law) of the time with it
-    on the vertices; where a soft liner is deflected by the pressure of a single cell errors are those of the grid.
+    With an `ElasticLiner` or a density law, a rupture line inside the cells takes 1.4 times (liner) or 1.7 times
+    (density law) the time of one on vertices (`exudyn_ehd.film.solvers.liner.line`). It does not lower the errors where
+    the pressure of a single cell deflects a soft liner.
 
     Parameters
     ----------
     cavity_pressure : float, default 0.0
         Gauge pressure of the cavity, Pa.
     cavity_shear : float, default 1.0
-        Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
+        Shear stress of sliding in the cavity over that of a full film, 0 to 1.
     line_in_cells : bool or None, default None
         True: the rupture line lies inside the cells of the grid (`exudyn_ehd.film.cavitation.rupture_line`). False: on
-        its vertices. None: inside the cells, with the exception above; `JournalBearing.closure` tells which.
+        its vertices. None: inside the cells, but on vertices in a `ShortBearing` with a shear or density law, in a
+        `SphericalBearing`, and on thrust faces with pads; `JournalBearing.closure` tells which.
 
     Examples
     --------
@@ -372,23 +373,25 @@ class ElrodAdams(Closure):
     """Cavitation that conserves the oil: rupture and reformation, with the oil in the cavity remembered in time.
 
     For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a
-    joint it needs an implicit solver. A steady film needs oil from somewhere: end or supply pressures above the cavity
-    pressure; a moving one without it runs dry within some turns, and the joint warns.
+    joint it needs an implicit solver.
 
-    In time its history is the void of the gap; full films are squeezed as under `SwiftStieber`. Flows balance what they
-    bring to rounding; the content keeps to that within half a step of the gap's rate, over any number of steps.
+    It needs a supply of oil: end or supply pressures above the cavity pressure. Without one, `steady` raises an error;
+    in a joint the film runs dry within some turns, and a warning says so.
 
-    With ``line_in_cells`` steady stiffness is within 1.5 % in any direction (default grid, eccentricity ratio 0.6 to
-    0.9, L/D 0.5 and 1) instead of 9 %, and damping varies by 1.3 % with the direction instead of 10 %, in two to
-    three times the time. Where the film reforms it does so on the grid's vertices: damping may be off by 6 % for it.
+    From step to step it remembers the void, the part of the gap without oil. Oil flows balance to round-off. The oil
+    content follows from them but for half of a step's change of the gap, a difference that does not add up over steps.
+
+    With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
+    stiffness falls from 9 to 1.5 %, and the spread of damping over the direction from 10 to 1.3 %, in two to three
+    times the time. The reformation line stays on vertices, which may leave an error of 6 % in damping.
 
     Parameters
     ----------
     cavity_pressure : float, default 0.0
         Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
     line_in_cells : bool, default False
-        True: the film ruptures where it does, inside the cells of the grid; not in a `ShortBearing`; see
-        `exudyn_ehd.film.cavitation.oil_line`. False: on their vertices.
+        True: the rupture line lies inside the cells of the grid (`exudyn_ehd.film.cavitation.oil_line`); not in a
+        `ShortBearing`. False: it lies on vertices.
 
     Source
     ------

@@ -44,32 +44,32 @@ from exudyn_ehd.status import (
 class LumpedThermal(Checked):
     """One temperature T for the whole film; for warm-up and a first idea of the viscosity.
 
-    Costs 5 % of a step at most, a sixth with a density law.
+    Needs a lubricant with a ``temperature_law``, such as those of `oil`. Adds at most 5 % to the time of a step, 17 %
+    with a density law.
 
-    ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film
-    dissipates, Q flow that leaves the film and is replaced by supply oil, G conductance to the housing,
-    ``C = rho c_p 2 pi R L c + capacity`` (with a density law, too: the mass in it at ambient pressure). Of a supply
-    area Q counts the net flow: an area is a well-mixed volume, see `FilmEnergy`. Backward Euler
-    at every accepted step, first order; the force of a step sees the temperature at its start, and so does the heat P
-    of steps that are short beside the exchange of the oil; in longer ones P follows the temperature. `steady` and
-    `equilibrium` take the steady temperature; a static solution of a multibody model takes the initial one.
+    ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``, with the mechanical and pumping power P that the
+    film dissipates, the flow Q that leaves the film and is replaced by supply oil, and
+    ``C = rho c_p 2 pi R L c + capacity``, rho at ambient pressure. Of a supply area Q counts the net flow: an area is a
+    well-mixed volume, see `FilmEnergy`. Heat of compression is omitted: some 1.3 K per 10 MPa, reversible.
 
-    Heat of compression, some 1.3 K per 10 MPa and reversible, is left out.
+    In time: backward Euler over the accepted steps, first order. The force of a step uses the temperature at its start;
+    so does P, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium` use the steady
+    temperature, a static solution of a multibody model the initial one.
 
     Parameters
     ----------
     supply_temperature : float
-        Of the oil that enters, K.
+        T_supply of the oil that enters, K.
     housing_conductance : float, default 0.0
-        G, W/K.
+        G from film to housing, W/K.
     housing_temperature : float or None, default None
-        K; None: the supply temperature.
+        T_housing, K; None: the supply temperature.
     capacity : float, default 0.0
-        Heat capacity that warms up with the film (surfaces near it), J/K.
+        Heat capacity of the metal that warms up with the film, J/K.
     initial_temperature : float or None, default None
-        Of the film at the start of a motion, K; None: the supply temperature.
+        Temperature of the film at the start of a motion, K; None: the supply temperature.
     carry_over : float, default 1.0
-        As of `FilmEnergy`.
+        As for `FilmEnergy`.
 
     Examples
     --------
@@ -98,31 +98,37 @@ class LumpedThermal(Checked):
 class Conduction(Checked):
     """Wall of a bush or a journal that takes heat from the film, conducts it, stores it, and grows with it.
 
-    ``rho c dT/dt = k (1/r d/dr (r dT/dr) + 1/r^2 d2T/dtheta2) - loss``, the mean along the bearing, in rings of finite
-    volumes from the film's surface on. A bush has a temperature at every angle and gives heat off at its outer surface,
-    ``conductance (T - ambient_temperature)``, evenly all around. A journal turns fast against the heat: it has one
-    temperature at every angle, and gives heat off along its axis, by all of its section alike. Steady heat that is the
-    same all around is exact, the rest of second order; backward Euler over the accepted steps, first order.
+    Arguments ``bush`` and ``journal`` of `FilmEnergy`.
 
-    A wall whose surfaces are free grows at the film by ``expansion R (mean of T - clearance_temperature)``, the mean
-    over its section, whatever the profile along the radius (Timoshenko and Goodier, Theory of Elasticity, the thermal
-    stress of discs and cylinders). What varies with the angle is left out of the growth.
+    ``rho c dT/dt = k (1/r d/dr (r dT/dr) + 1/r^2 d2T/dtheta2) - loss``, with T the mean along the bearing. A bush has
+    its own temperature at every angle. It loses ``conductance (T - ambient_temperature)`` at its outer surface, evenly
+    all around. A journal turns too fast to have hot and cold sides: T depends on the radius alone, and the heat leaves
+    along its axis, evenly over its section.
+
+    Finite volumes: steady heat that is the same all around is exact, all else of second order; backward Euler over the
+    accepted steps, first order.
+
+    The surface at the film moves outward by ``expansion R (mean of T - clearance_temperature)``, with the mean over the
+    wall's section, whatever the profile along the radius (Timoshenko and Goodier, Theory of Elasticity, thermal stress
+    of discs and cylinders). So a hot bush opens the clearance and a hot journal closes it. Growth that varies with the
+    angle is omitted.
 
     Parameters
     ----------
     thickness : float
-        Of the wall, m: of a bush outward from the bore, of a journal inward from its surface; a solid journal's is its
-        radius.
+        Thickness of the wall, m: of a bush outward from the bore, of a journal inward from its surface; the radius for
+        a solid journal.
     conductance : float
-        To the ambient, W/K; of a bush its outer surface times the heat transfer coefficient there. 0: none.
+        Conductance from the wall to the ambient, W/K; for a bush its outer surface times the heat transfer coefficient
+        there. 0: none.
     ambient_temperature, initial_temperature : float or None, default None
-        K; None: the supply temperature of the oil.
+        Temperature of the ambient, and of the wall at the start of a motion, K; None: the oil's supply temperature.
     conductivity, density, specific_heat : float, default 45.0, 7800.0, 460.0
-        W/(m K), kg/m3, J/(kg K), the defaults those of steel.
+        k, W/(m K), rho, kg/m3, and c, J/(kg K), of the wall; the defaults are those of steel.
     expansion : float, default 0.0
-        Coefficient of linear thermal expansion, 1/K; of steel 1.15e-5. 0: the wall does not grow.
+        Coefficient of linear thermal expansion, 1/K; 1.15e-5 for steel. 0: the wall does not grow.
     clearance_temperature : float or None, default None
-        At which the bearing has its radial clearance, K; None: the supply temperature.
+        Temperature of the walls at which the bearing has its radial clearance, K; None: the oil's supply temperature.
     rings : int, default 8
         Intervals along the radius.
 
@@ -160,76 +166,74 @@ class Conduction(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class FilmEnergy(Checked):
-    """Temperature field T(theta, z), averaged across the film or with its profile; where heating decides load or peak
-    temperature.
+    """Temperature field T(theta, z) of the film; where heating decides load or peak temperature.
 
-    One factorisation per accepted step: a third of a step's time with `ElrodAdams`, as much as the step with
-    `SwiftStieber` (half more with a density law). With ``across=2`` a step takes four to six times as long.
+    Needs a lubricant with a ``temperature_law``, such as those of `oil`. Adds a third to the time of a step with
+    `ElrodAdams`, doubles it with `SwiftStieber` (half more with a density law). With ``across=2`` a step takes four to
+    six times as long.
 
-    ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``: m film content, q flow per width (pressure
-    and Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, backward Euler, upwind in theta
-    (first order), of second order in z without new extrema. Oil enters through the ends with the supply temperature.
+    ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``, with the film content m (oil per area),
+    the flow q per width (pressure and Couette flow), and the heat Phi of shear and pressure flow per area. With a
+    ``density_law`` m and q are masses over rho. Heat of compression is omitted: some 1.3 K per 10 MPa, reversible.
+    Finite volumes, first order in theta (upwind), second order in z.
 
-    A supply area is a well-mixed volume: all that flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with
-    the flow Q that the film presses into it, Q's mean temperature T, and the net feed N, which alone is fresh (H.
-    Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). `LumpedThermal` has the same law. Flush or cool a groove by
-    ``carry_over``. In films without axial flow, oil that pressure drives into an area leaves, and that from an area is
-    fresh.
+    Where oil enters. Through the ends it has the supply temperature. A supply area is a well-mixed volume: all that
+    flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with the flow Q that enters it from the film, Q's mean
+    temperature T, and the net feed N, which alone is fresh (H. Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). To
+    flush or cool a groove, lower ``carry_over``. In films without axial flow, oil that pressure drives into an area
+    leaves the bearing, and oil from an area is fresh. Cavitation models that do not conserve mass lose oil at the
+    rupture line and find it again where the film begins: there it returns fully mixed, with the leakage replaced by
+    supply oil.
 
-    Cavitation models that do not conserve mass lose oil at the end of the film and find it again at its beginning: it
-    returns fully mixed, the leakage replaced by supply oil. The viscosity of a step follows from the temperatures at
-    its start: the coupling is explicit, of first order; in steps that are long beside the exchange of the oil the heat
-    follows the temperature, or the film would swing from step to step. `steady` and `equilibrium` take the steady
-    field; a static solution of a multibody model takes the initial temperature.
+    In time: backward Euler over the accepted steps, first order. The viscosity of a step is that of the temperatures at
+    its start. So is its heat, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium`
+    use the steady field, a static solution of a multibody model the initial temperature.
 
-    Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K
-    (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4
-    %, rise at the bush to 7 %; with walls at given temperatures and a ``conductivity`` load to 4 % (both walls) and 9 %
-    (one), mean temperature to 1.5 and 6 K, while an adiabatic bush next to a cooled journal is up to 8 K hotter than
-    the mean. A constant 3 k/c instead of the conductivity: load to 14 %.
+    Errors against solutions with the full profile across the film of a long bearing that heats by 13 to 58 K
+    (``tests/validation/test_thd_cross_film.py``):
 
-    With ``across=2`` and the same solutions: load and peak pressure to 1.5 % on 192 columns and to 2.4 % on 96, with
-    the grid's own error, mean temperature to 1 K, hottest place of the bush to 0.9 K; 3 % of load next to a journal
-    that is colder than the oil that enters, whose cold layer is thinner than a cubic follows. The temperature across
-    the film is a cubic that meets what the surfaces let through, the fluidity 1/mu another one, with which the
-    velocities, the share that sliding carries, and the stresses on the surfaces depart from those of an even film.
-    Oil is mixed over the height of supply areas. `SteadyResult.walls` has the ``across`` temperatures, histories the
-    surfaces' means.
+    - ``across=1``, adiabatic walls: load and peak pressure 5 %, mean temperature rise 4 %, rise at the bush 7 %.
+    - ``across=1``, walls at given temperatures, with ``conductivity``: load 4 % (both walls) or 9 % (one), mean
+      temperature 1.5 or 6 K; an adiabatic bush opposite a cooled journal is up to 8 K hotter than the mean. Load 14 %
+      with coefficients 3 k/c in place of the conductivity.
+    - ``across=2``: load and peak pressure 1.5 % on 192 columns and 2.4 % on 96, mean temperature 1 K, hottest place of
+      the bush 0.9 K; load 3 % next to a journal that is colder than the oil that enters.
 
-    Along z, 10, 20 and 40 intervals bring a film with a supply within 0.5, 0.1 and 0.01 % of the converged load.
-    Without supply and with hardly cooled walls, hot oil turns with the journal beside cold oil from the ends, a jump
-    that a grid smears: 6, 3 and 1 %. The rise of the hottest place is mostly within 3 % on 10 intervals; in films fed
-    through their ends alone it may be a fifth too low (``tests/joint/heat/test_energy_along_z.py``).
+    With ``across=2`` temperature and fluidity 1/mu are cubics across the film and change velocities and wall stresses.
+    Oil is mixed over the height of supply areas. `SteadyResult.walls` has the temperatures ``across`` the film,
+    histories the means of the surfaces.
 
-    Oil and walls carry the loss away to 2 % on 10 intervals and 0.5 % on 40, at rest and over a settled cycle of 64
-    steps (``tests/joint/heat/test_heat_balance.py``).
-
-    Heat of compression, some 1.3 K per 10 MPa and reversible, is left out. With a ``density_law`` it counts masses.
+    Errors of the grid. Load with 10, 20 and 40 intervals along z: 0.5, 0.1 and 0.01 % in films with a supply; 6, 3 and
+    1 % without supply and with hardly cooled walls, where hot oil that turns with the journal lies beside cold oil from
+    the ends. Rise of the hottest place on 10 intervals: mostly 3 %; up to 20 % too low in films fed through their ends
+    alone (``tests/joint/heat/test_energy_along_z.py``). Heat that oil and walls carry away, against the power loss: 2 %
+    on 10 intervals, 0.5 % on 40, in steady films and over a periodic cycle of 64 steps
+    (``tests/joint/heat/test_heat_balance.py``).
 
     Parameters
     ----------
     supply_temperature : float
-        Of the oil that enters, K.
+        T_supply of the oil that enters, K.
     bush_coefficient, journal_coefficient : float, default 0.0
-        U_b, U_j, heat transfer from the film's mean temperature to the surfaces, W/(m2 K).
+        U_b, U_j, heat transfer from the film's mean temperature to bush and journal, W/(m2 K). 0: adiabatic.
     bush_temperature, journal_temperature : float or None, default None
         T_b, T_j, K; None: the supply temperature.
     initial_temperature : float or None, default None
-        Of the film at the start of a motion, K; None: the supply temperature.
+        Temperature of the film at the start of a motion, K; None: the supply temperature.
     conductivity : float or None, default None
-        Of the oil, W/(m K), 0.13 for mineral oils: U_b and U_j then act on the film's surfaces, with the oil between
-        them and the mean temperature, 3 to 6 k/h; None: U_b and U_j from the mean temperature.
+        k of the oil, W/(m K), 0.13 for mineral oils: heat then also crosses the oil from its mean temperature to the
+        surfaces (3 to 6 k/h, in series with U_b and U_j). None: U_b and U_j alone.
     bush, journal : Conduction or None, default None
-        Walls that take the film's heat at its surfaces, in place of coefficient and temperature on that side; they need
-        the oil's ``conductivity``. The walls' temperatures are unknowns of a step as the film's are, and the gap of a
-        step sees their growth at its start.
+        Wall that takes the film's heat, in place of coefficient and temperature on that side; needs the oil's
+        ``conductivity``. Its temperatures are solved together with the film's; the gap of a step has the wall's growth
+        at the start of the step.
     carry_over : float, default 1.0
-        Share of hot oil's rise over the supply temperature that passes a supply area which feeds nothing, above 0 up to
-        1. Smaller values flush the area with ``(1 / carry_over - 1) Q`` of supply oil, Q the flow that arrives from the
-        film: ``1 - carry_over`` of the mixture is fresh then. Of closures that do not conserve mass also the share of
-        the cavity's rise that the film begins with, the rest being fresh oil. 1: hot oil mixes with the net feed alone.
+        Above 0 up to 1: share of its rise over the supply temperature that hot oil keeps when it passes a supply area
+        without net feed. 1: hot oil mixes with the net feed alone. Below 1 the area is flushed with
+        ``(1 / carry_over - 1) Q`` of supply oil in addition. In cavitation models that do not conserve mass it is also
+        the share of the cavity's rise with which the film begins.
     across : int, default 1
-        Temperatures across the film: 1, its mean; 2, its mean and its tilt from bush to journal, which needs the oil's
+        Unknown temperatures across the film: 1, the mean; 2, the mean and the tilt from bush to journal, which needs
         ``conductivity`` and does not go with a ``shear_law``.
 
     Examples

@@ -87,17 +87,18 @@ class DensityTable(NamedTuple):
 class DowsonHigginson(Checked):
     """Density of mineral oils under pressure, ``rho_0 (1 + a p / (1 + b p))``: 10 % more at 230 MPa, at most a third.
 
-    When: pressures above some 100 MPa, or the compliance of the oil itself in fast transients (with `ElrodAdams`, whose
-    history is the oil's mass).
+    When: peak pressures above some 100 MPa, or fast transients in which the oil itself is a spring (with `ElrodAdams`,
+    which remembers the oil's mass).
 
-    Oil is compressed by 0.6 % at 10 MPa and 5 % at 100 MPa. Flows and contents are masses then.
+    Oil is 0.6 % denser at 10 MPa and 5 % at 100 MPa gauge. Reported flows, m3/s, are mass flows over the density at
+    ambient pressure.
 
     Parameters
     ----------
     coefficient : float, default 6e-10
         a, 1/Pa: the compressibility at ambient pressure.
     saturation : float, default 1.7e-9
-        b, 1/Pa; the density grows to 1 + a / b at most.
+        b, 1/Pa; the density stays below 1 + a / b times that at ambient pressure.
 
     Source
     ------

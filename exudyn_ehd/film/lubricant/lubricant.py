@@ -86,32 +86,33 @@ SAE_DENSITY = 880.0
 class Lubricant(Checked):
     """Oil or another liquid: Newtonian and of constant viscosity unless laws are named.
 
-    When: a pressure law above some 50 MPa, a temperature law where the film warms up by more than a few kelvin, a shear
-    law for multigrade oils above 1e5 to 1e6 per second. A law adds a tenth to a fifth to the time of a film evaluation;
-    a density law a quarter with `ElrodAdams`, and more than the whole again with the other closures, whose matrix it
-    makes non-symmetric.
+    When: a pressure law for peak pressures above some 50 MPa, a temperature law where the film warms up by more than a
+    few kelvin, a shear law for multigrade oils at shear rates above 1e5 to 1e6 1/s. Each adds 10 to 20 % to the time of
+    a film evaluation. A density law adds 25 % with `ElrodAdams`; with the other cavitation models, whose matrix it
+    makes non-symmetric, it more than doubles the time.
 
     Laws multiply: ``mu = viscosity * r_p(p) * r_T(T) * r_G(shear rate)``, each ratio 1 at ambient pressure, at
-    ``temperature``, at rest.
+    ``temperature``, at rest. `PressureOption`, `TemperatureLaw`, `ShearLaw` and `DensityLaw` stand for laws of your
+    own: "Extension points" in the package's README.
 
     Parameters
     ----------
     viscosity : float or None, default None
-        Dynamic viscosity at ``temperature``, ambient pressure and low shear, Pa s. Left out, it comes from
+        Dynamic viscosity at ``temperature``, ambient pressure and low shear, Pa s. None: taken from
         ``temperature_law``.
     density : float, default 870.0
-        kg/m3; used where a mass, a Reynolds number, a heat capacity or a kinematic viscosity enters.
+        kg/m3, at ambient pressure; used for masses, Reynolds numbers, heat capacities and kinematic viscosities.
     temperature : float, default 313.15
         K, at which ``viscosity`` holds; without a thermal effect the whole film has it. To change it, use `at`, which
-        changes the viscosity along.
+        changes the viscosity as well.
     specific_heat : float, default 2000.0
         J/(kg K); only used by thermal effects.
     pressure_law : BarusPressure, RoelandsPressure, PressureOption or None, default None
     temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature, TemperatureLaw or None, default None
     shear_law : CarreauShear, ShearLaw or None, default None
     density_law : DowsonHigginson, DensityLaw or None, default None
-        Density under pressure, at any temperature; None: incompressible. Flows are then mass flows over ``density``.
-        The last kind of every law is one of your own: "Extension points" in the package's README.
+        Density under pressure, at any temperature: reported flows, m3/s, are then mass flows over ``density``. None:
+        incompressible.
 
     Raises
     ------
@@ -198,12 +199,12 @@ def oil(name: str, *, temperature: float = CELSIUS_40) -> Lubricant:
         ``"ISO VG 22"`` to ``"ISO VG 460"``, ``"SAE 10"`` to ``"SAE 60"``, or ``"SAE 0W-20"``, ``"SAE 5W-30"``,
         ``"SAE 10W-40"``, ``"SAE 15W-40"``, ``"SAE 20W-50"``; spaces and case do not matter.
     temperature : float, default 313.15
-        At which its viscosity is taken, K.
+        K, at which ``viscosity`` is given; without a thermal effect the temperature of the whole film.
 
     Returns
     -------
     Lubricant
-        With its temperature law; add further laws by `dataclasses.replace`.
+        With a temperature law; add other laws by ``dataclasses.replace(lubricant, pressure_law=...)``.
 
     Raises
     ------

@@ -73,8 +73,10 @@ COEFFICIENT = partial(POSITIVE, at_most=LARGEST_COEFFICIENT, hint="mineral oils 
 class BarusPressure(Checked):
     """Viscosity under pressure by Barus' law ``mu = mu_0 exp(alpha p)``; good to some 100 MPa, too steep beyond.
 
-    When: oil thickens by 10 % at 5 MPa, so that a law matters above some 5 MPa peak pressure for details, above 50 MPa
-    always.
+    p is the gauge pressure, mu_0 the viscosity at ambient pressure.
+
+    When: always for peak pressures above some 50 MPa, where oil is 2.7 times as thick with alpha = 2e-8 1/Pa; from 5
+    MPa on where 10 % in the viscosity matter.
 
     Parameters
     ----------
@@ -119,14 +121,17 @@ class BarusPressure(Checked):
 class RoelandsPressure(Checked):
     """Viscosity under pressure by Roelands' law: like Barus' at low pressure, less steep at high pressure.
 
-    When: as `BarusPressure`, and always above 100 MPa.
+    ``ln(mu / mu_0) = a ((1 + p / p_0)^Z - 1)``, ``a = ln(mu_0) + 9.67``, ``Z = alpha p_0 / a``, with the gauge pressure
+    p and the viscosity at ambient pressure mu_0 in Pa s, which must be above 6.3e-5.
+
+    When: as `BarusPressure`, and in its place above 100 MPa.
 
     Parameters
     ----------
     coefficient : float
         alpha, the slope of ln(mu) at ambient pressure, 1/Pa; 1e-8 to 2.5e-8 for mineral oils.
     reference_pressure : float, default 1.96e8
-        p_0, Pa.
+        p_0, Pa, a constant of the law for all oils.
 
     Source
     ------

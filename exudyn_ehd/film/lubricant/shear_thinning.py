@@ -63,20 +63,20 @@ class ShearLaw(Protocol):
 class CarreauShear(Checked):
     """Shear thinning after Carreau, for multigrade and polymer-thickened oils.
 
-    The viscosity follows the shear rate at every height of the film, under sliding, squeeze and pressure flow; see the
-    module.
+    ``mu / mu_0 = r_inf + (1 - r_inf) (1 + (lambda G)^2)^((n - 1) / 2)`` with the shear rate G at every height of the
+    film, under sliding, squeeze and pressure flow; assumptions: `exudyn_ehd.film.lubricant.shear_thinning`.
 
-    When: multigrade oils above 1e5 to 1e6 1/s, that is 10 m/s over 10 um. Loads of long bearings are within 0.3 % of
-    the exact flow across the film, from hardly thinning to a power law.
+    When: multigrade oils at shear rates above 1e5 to 1e6 1/s; 10 m/s over 10 um make 1e6. The error of the load of long
+    bearings, against the exact flow across the film, is 0.3 %, from hardly thinning oils to a power law.
 
     Parameters
     ----------
     relaxation_time : float
-        lambda, s: thinning sets in at a shear rate of 1 / lambda.
+        lambda, s: thinning begins at a shear rate of 1 / lambda.
     exponent : float
-        n, above 0 and up to 1 (Newtonian): at high rates the viscosity falls with the power n - 1 of the rate.
+        n, above 0 and up to 1 (Newtonian): at high rates the viscosity falls as the rate to the power n - 1.
     residual : float, default 0.0
-        r_inf = mu at infinite rate / mu_0, 0 to 1.
+        r_inf, viscosity at infinite shear rate over mu_0, 0 to 1.
 
     Source
     ------

@@ -113,18 +113,19 @@ class VogelTemperature(Checked):
 class WaltherTemperature(Checked):
     """Viscosity over temperature by Walther's law ``log10 log10(nu + 0.7) = a - b log10 T`` through two points.
 
-    The kinematic viscosity nu is in mm2/s (ASTM D341).
+    In this formula the kinematic viscosity nu is in mm2/s (ASTM D341); the arguments are in m2/s.
 
-    The dynamic viscosity is ``nu rho(T)``, with ``rho = rho_15 exp(-x (1 + 0.8 x))``, ``x = expansion (T - 288.15)`` of
-    the density at 15 degrees Celsius (ISO 91, ASTM D1250).
+    The dynamic viscosity is ``nu rho(T)``, with ``rho = rho_15 exp(-x (1 + 0.8 x))``, ``x = expansion (T - 288.15)``;
+    `Lubricant.density` is rho_15, the density at 15 degrees Celsius (ISO 91, ASTM D1250).
 
     Parameters
     ----------
     first, second : (float, float)
-        Temperature, K, and kinematic viscosity, m2/s, above 2 mm2/s; the second one hotter and thinner.
+        Temperature, K, and kinematic viscosity, m2/s, above 2e-6; the second one hotter and thinner.
     expansion : float, default 0.0
-        1/K; 0.6278 kg/m3 over the density at 15 degrees for lubricating oils, 7e-4; 0: the density is the same at all
-        temperatures, which makes mineral oils 2 % thicker at 40 and 7 % thicker at 100 degrees.
+        Thermal expansion at 15 degrees, 1/K; lubricating oils: 7e-4 (0.6278 kg/(m3 K) over rho_15). 0: the same density
+        at all temperatures, which overestimates the dynamic viscosity of mineral oils by 2 % at 40 and 7 % at 100
+        degrees.
 
     Examples
     --------

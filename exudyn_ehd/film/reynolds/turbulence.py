@@ -98,17 +98,19 @@ class _Transition(Checked):
 class NgPan(_Transition):
     """Turbulent film after Ng and Pan, for fast or thin liquids; equations: `exudyn_ehd.film.reynolds.turbulence`.
 
-    When: thin liquids (water, refrigerants, hot turbine oil) at Re = rho U c / mu above some 1000; the audit names it.
-    Not with laws of pressure, density or shear, flow factors of roughness, or a film's own heat conduction, which
-    are all those of laminar flow. The fits lie within 6 % of the theory's own numbers from Re = 1500 to 15000, 12 % up
+    When: thin liquids (water, refrigerants, hot turbine oil) at Re = rho U c / mu above some 1000, with the journal's
+    surface speed U; the audit reports Re. In the film Re is local, with its gap in place of c.
+
+    Not with a ``pressure_law``, ``density_law`` or ``shear_law``, `PatirCheng`, or `FilmEnergy.conductivity`, which
+    hold for laminar flow. The fits differ from the theory's own numbers by at most 6 % from Re = 1500 to 15000, 12 % up
     to 30000.
 
     Parameters
     ----------
     onset : float or None, default None
-        Reynolds number up to which the film is laminar; None: where Taylor's vortices begin, 41.2 sqrt(R / c).
+        Reynolds number up to which the film is laminar; None: 41.2 sqrt(R / c), where Taylor's vortices begin.
     full : float or None, default None
-        Reynolds number from which on it is fully turbulent; None: twice the onset.
+        Reynolds number from which on the film is fully turbulent; None: twice the onset.
 
     Source
     ------
@@ -137,14 +139,15 @@ class NgPan(_Transition):
 class Hirs(_Transition):
     """Turbulent film by Hirs' bulk flow, for fast or thin liquids; equations: `exudyn_ehd.film.reynolds.turbulence`.
 
-    When: as `NgPan`, with two constants that can be measured on the surfaces at hand.
+    When: as `NgPan`, and with the same exclusions; its two constants can be measured on the surfaces at hand.
 
     Parameters
     ----------
     onset, full : float or None, default None
-        As of `NgPan`.
+        As for `NgPan`.
     coefficient, exponent : float, default 0.066, -0.25
-        n and m of the wall's stress ``n rho u^2 / 2 (rho u h / mu)^m``; exponents from -1 (laminar) to 0 (rough).
+        n and m of the shear stress on a wall, ``(n / 2) rho u^2 (rho u h / mu)^m``, with the mean flow's speed u
+        relative to it; m from -1 (laminar) to 0 (rough).
 
     Source
     ------

@@ -49,22 +49,27 @@ SMALLEST_ECCENTRICITY = 1e-9
 class ImpedanceMap(Checked):
     """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
 
-    Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states
-    beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum film thickness, but no
-    pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the
-    cavity, the squeeze term, a closed ring and no further effect.
+    The table is built once per L/D and cavitation model (a few seconds) and kept on disk. A joint with it raises an
+    error for tilted journals and for eccentricity ratios above ``largest_eccentricity_ratio``. It reports force,
+    friction, power loss and minimum film thickness, but no pressure. `steady` and `equilibrium` solve the
+    two-dimensional film itself.
+
+    Needs `SwiftStieber` or `Gumbel` with a cavity at ambient pressure, ambient pressure at the ends, the squeeze term,
+    a closed ring and no further effect.
 
     Parameters
     ----------
     n_theta, n_z : int, default 320, 10
-        Grid of the film behind the map, as for `FiniteLength`. With the rupture line on its vertices the force's ripple
-        is the map's largest error (0.44 % instead of 0.11 % at L/D 1), so that n_theta is large.
+        Grid of the film from which the table is made, as for `FiniteLength`, but at least 64 columns. The default has
+        many of them against the ripple of the force with the rupture line on vertices: the map's largest error at L/D 1
+        is then 0.44 %, with the line inside the cells 0.11 %.
     stretch : float, default 0.75
         Stretching of that grid along the bearing, as for `FiniteLength`.
     largest_eccentricity_ratio : float, default 0.99
         End of the table, 0.5 to 0.995.
     n_eccentricity, n_direction : int, default 41, 81
-        Nodes in eccentricity and in direction.
+        Nodes over the eccentricity and over the angle between eccentricity and squeeze velocity, 0 to pi; at
+        least 8.
 
     Source
     ------

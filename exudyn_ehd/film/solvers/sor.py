@@ -48,12 +48,12 @@ LARGEST_SUM = 1e100
 class ClassicSOR(Checked):
     """Finite differences with successive over-relaxation (SOR) and Gümbel's condition, to compare with other codes.
 
-    See the module's docstring.
+    For comparison with Flores' paper on EHD joints and codes like it; `FiniteLength` is faster at the same error.
+    Equations: `exudyn_ehd.film.solvers.sor`. Needs ``cavitation=Gumbel()``.
 
-    A reference, not a recommendation: `FiniteLength` is faster at the same error. Every solution starts from zero
-    pressure, so that it depends on the state alone; it still jumps by about the tolerance where the number of sweeps
-    changes, so that an implicit joint wants a tolerance of 1e-9. The tangent is that of the converged difference
-    operator (one banded LU factorisation), exact as the tolerance goes to zero. Needs ``cavitation=Gumbel()``.
+    Every solution starts from zero pressure, so that it depends on the state alone. It jumps by about ``tolerance``
+    where the number of sweeps changes: take 1e-9 in joints with an implicit solver. The tangent is that of the
+    converged difference operator (one banded LU factorisation), exact as the tolerance goes to zero.
 
     Parameters
     ----------
@@ -62,10 +62,11 @@ class ClassicSOR(Checked):
     n_z : int, default 24
         Intervals along the bearing, at least 4.
     tolerance : float, default 1e-5
-        Of rule (11); the paper's is 1e-5.
+        Sweeps end when the sum of the pressure changes is at most this share of the sum of the pressures (absolute
+        values); the paper's value is 1e-5.
     relaxation : float or None, default None
-        lambda in (0, 2); None: 2 / (1 + sqrt(1 - rho^2)) with the spectral radius rho of Jacobi's iteration for a
-        constant gap.
+        Relaxation factor, between 0 and 2; None: 2 / (1 + sqrt(1 - rho^2)) with the spectral radius rho of Jacobi's
+        iteration for a constant gap.
 
     Examples
     --------

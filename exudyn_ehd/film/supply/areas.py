@@ -52,24 +52,24 @@ class _Area(Checked):
 class AxialGroove(_Area):
     """Groove that supplies oil along the axis, centred at mid-plane.
 
-    Edges of supply areas act where they are, on and between the grid's lines: on the default grid the load is within 1
-    to 1.5 %.
+    Its edges may lie anywhere between the grid's lines. On the default grid the error of the load is 1 to 1.5 %.
 
     Parameters
     ----------
     angle : float
-        theta of its centre, rad; of a ``rotating`` one in the reference configuration.
+        theta of its centre, from the joint's x about its z axis, rad; of a ``rotating`` one as it stands in the model's
+        reference configuration.
     width_angle : float
         Angle that it spans, rad, below 2 pi.
     length : float or None, default None
-        Axial length, m; None: seven eighths of the bearing's, in a `LongBearing` the whole.
+        Axial length, m; None: 7/8 of the bearing's, in a `LongBearing` all of it.
     pressure : float, default 0.0
         Gauge pressure, Pa.
     rotating : bool, default False
-        True: in the journal, turning with its spin.
+        True: in the journal, turning with it; `steady` keeps it where it was described. False: in the bore.
     depth : float or None, default None
-        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
+        Depth of the recess below the surface, m, at least four radial clearances; adds the friction of the oil in it
+        (`exudyn_ehd.film.supply.cuts`). None: deep, without friction.
 
     Examples
     --------
@@ -92,19 +92,19 @@ class AxialGroove(_Area):
 class CircumferentialGroove(_Area):
     """Groove that supplies oil around the whole bearing, between two lands.
 
-    On the default grid the load of the lands is within 1 %.
+    On the default grid the error of the load is 1 %.
 
     Parameters
     ----------
     z : float, default 0.0
-        Axial position of its centre, m.
+        Axial position of its centre from the mid-plane, m.
     width : float
         Axial width, m.
     pressure : float, default 0.0
         Gauge pressure, Pa.
     depth : float or None, default None
-        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
+        Depth of the recess below the surface, m, at least four radial clearances; adds the friction of the oil in it
+        (`exudyn_ehd.film.supply.cuts`). None: deep, without friction.
 
     Examples
     --------
@@ -126,23 +126,24 @@ class CircumferentialGroove(_Area):
 class Hole(_Area):
     """Round hole that supplies oil, of any diameter; in the journal at least one column of the grid wide.
 
-    It feeds within 1 % of what it does on a fine grid, its pressure well above the film's.
+    With a pressure well above the film's, the error of its flow on the default grid is 1 %.
 
     Parameters
     ----------
     angle : float
-        theta of its centre, rad; of a ``rotating`` one in the reference configuration.
+        theta of its centre, from the joint's x about its z axis, rad; of a ``rotating`` one as it stands in the model's
+        reference configuration.
     z : float, default 0.0
-        Axial position of its centre, m.
+        Axial position of its centre from the mid-plane, m.
     diameter : float
         m.
     pressure : float, default 0.0
         Gauge pressure, Pa.
     rotating : bool, default False
-        True: in the journal, turning with its spin.
+        True: in the journal, turning with it; `steady` keeps it where it was described. False: in the bore.
     depth : float or None, default None
-        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
+        Depth of the recess below the surface, m, at least four radial clearances; adds the friction of the oil in it
+        (`exudyn_ehd.film.supply.cuts`). None: deep, without friction.
 
     Examples
     --------
@@ -167,9 +168,10 @@ class Pocket(_Area):
     Parameters
     ----------
     angle : float
-        theta of its centre, rad; of a ``rotating`` one in the reference configuration.
+        theta of its centre, from the joint's x about its z axis, rad; of a ``rotating`` one as it stands in the model's
+        reference configuration.
     z : float, default 0.0
-        Axial position of its centre, m.
+        Axial position of its centre from the mid-plane, m.
     width_angle : float
         Angle that it spans, rad, below 2 pi.
     length : float
@@ -177,10 +179,10 @@ class Pocket(_Area):
     pressure : float, default 0.0
         Gauge pressure, Pa.
     rotating : bool, default False
-        True: in the journal, turning with its spin.
+        True: in the journal, turning with it; `steady` keeps it where it was described. False: in the bore.
     depth : float or None, default None
-        Of the recess below the surface, m, at least four radial clearances; its oil is sheared as
-        `exudyn_ehd.film.supply.cuts` says. None: so deep that its shear does not count.
+        Depth of the recess below the surface, m, at least four radial clearances; adds the friction of the oil in it
+        (`exudyn_ehd.film.supply.cuts`). None: deep, without friction.
 
     Examples
     --------

@@ -103,28 +103,31 @@ STEPS_PER_SIGMA = 64
 class GreenwoodTripp(Checked):
     """Contact of rough surfaces at their asperities, with boundary friction: carries load in mixed lubrication.
 
-    The film between the asperities then has the average gap, which is positive for any position of the journal.
+    When: films below three times the composite roughness; above 8 times it the contact pressure is zero. Not with
+    ``contact=RegularisedWall(...)``, which it replaces.
 
-    When: films below three times the composite roughness; nothing while all gaps exceed 8 times it. The contact
-    pressure is the exact integral F_5/2; load, torque and loss of the contact are reported apart.
+    The film gets the average gap between the asperities, which is positive at any position of the journal. The contact
+    pressure is ``(16 sqrt(2) pi / 15) (eta beta sigma)^2 sqrt(sigma / beta) E' F_5/2(h / sigma)``, with the exact
+    integral F_5/2. Load, torque and power loss of the contact are reported apart.
 
     Parameters
     ----------
     composite_roughness : float
-        sigma = sqrt(sigma_journal^2 + sigma_bore^2), m.
+        sigma = sqrt(sigma_journal^2 + sigma_bore^2) of the r.m.s. roughnesses, m.
     composite_modulus : float
         E' in Pa, 1/E' = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; see `composite_modulus`.
     density_radius_roughness : float, default 0.05
-        eta beta sigma (asperities per area, tip radius, roughness); 0.03 to 0.05 for most finished surfaces.
+        eta beta sigma, with eta asperities per area and the radius beta of their tips; 0.03 to 0.05 for most finished
+        surfaces.
     roughness_radius_ratio : float, default 0.01
         sigma / beta; 1e-4 to 1e-2.
     friction_coefficient : float, default 0.1
         Boundary friction of the asperities; 0: none.
     transition_speed : float, default 0.01
-        Sliding speed v0 in ``v / sqrt(v^2 + v0^2)``, by which Coulomb friction is regularised, m/s: slower sliding rubs
-        less than the coefficient says, in a joint, `steady` and `equilibrium`, but not in `stribeck`.
+        v0, m/s: the friction coefficient acts times ``v / sqrt(v^2 + v0^2)`` with the sliding speed v, so that friction
+        is too low for v near v0 and below. This holds in joints, `steady` and `equilibrium`, but not in `stribeck`.
     residual_film : float, default 0.02
-        Film that touching spots keep, share of sigma, 0.001 to 0.2.
+        Film thickness at touching spots, as a share of sigma, 0.001 to 0.2.
 
     Source
     ------
@@ -171,9 +174,9 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
     Parameters
     ----------
     youngs_moduli : (float, float)
-        Pa.
+        E_1, E_2, Pa.
     poisson_ratios : (float, float)
-        Each between -1 and 0.5.
+        nu_1, nu_2, each between -1 and 0.5.
 
     Returns
     -------

@@ -228,8 +228,8 @@ def solve_contact_gap(X, compliance, scale, reach, first, step, knots, G, P_out,
 class RegularisedWall(Checked):
     """Contact as a stiff smooth wall for gaps below an onset: a stop, no model of rough surfaces.
 
-    A stop for journals that touch now and then: a regularisation, not a model of the surfaces. It does nothing while
-    all gaps exceed its onset.
+    For journals that touch now and then. At a gap h below the onset the contact pressure is ``pressure (1 - h /
+    onset)^2``; the wall has no friction of its own. Not with `GreenwoodTripp` or `PatirCheng`.
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ class RegularisedWall(Checked):
     pressure : float, default 1e9
         Contact pressure at zero gap, Pa.
     residual : float, default 0.2
-        Share of the onset that the film gap never falls below, 0.01 to 0.9.
+        Smallest gap that the film sees, as a share of the onset, 0.01 to 0.9.
 
     Examples
     --------
@@ -296,20 +296,20 @@ def wall_gap(gaps, onset, a, slopes, bends):
 class ArchardWear(Checked):
     """Wear of the bore by its asperity contact; needs ``asperity=GreenwoodTripp(...)``.
 
-    The depth is worn off over the accepted steps.
+    The depth grows by ``k p v`` per time, with the contact pressure p and the sliding speed v, and adds to the gap of
+    the next step. The worn volume is k times the integral over the surface of pressure times sliding distance: 3 % more
+    than k times ``contact_load`` times distance for a contact over 0.8 rad, as ``contact_load`` is a vector sum.
+
+    A joint gives the largest depth, m, as ``history.wear_depth``, the volume, m3, as ``history.worn_volume``, and a
+    picture of the depth by ``plot_wear_depth()``.
 
     Parameters
     ----------
     wear_rate : float
-        Specific wear rate k, m2/N; 1e-18 to 1e-14 from well lubricated to dry.
+        Specific wear rate k, m3 per N and m of sliding, that is m2/N; from 1e-18 (well lubricated) to 1e-14 (dry).
     acceleration : float, default 1.0
-        Factor on the wear per time: 1e6 lets a second stand for twelve days of the same motion. The depth stays an
-        estimate as long as it changes by much less than the roughness per period of the load.
-
-    The worn volume is k times the integral of contact pressure and sliding distance over the surface. ``contact_load``
-    is the vector sum of that pressure: k times contact_load times distance is 3 % below the worn volume of a contact
-    over 0.8 rad. A joint shows the largest depth as ``history.wear_depth``, the volume as ``history.worn_volume``, and
-    the depth on its bore by ``plot_wear_depth()``.
+        Factor on k: with 1e6 a second stands for twelve days of the same motion. It must be so small that the depth
+        changes by much less than the roughness in a period of the load.
 
     Source
     ------

@@ -102,17 +102,18 @@ TABLE_MIDDLE = 8.0
 class PatirCheng(Checked):
     """Flow and friction factors of rough surfaces; for films below about five times the roughness.
 
-    Without an asperity contact the film ends where the nominal gap does; with one, both must name the same roughness.
-
     When: films below three to five times the composite roughness.
+
+    Without ``asperity`` a nominal gap of zero ends the run with an error. With `GreenwoodTripp` both must have the same
+    ``composite_roughness``. Not with ``contact=RegularisedWall(...)``.
 
     Parameters
     ----------
     composite_roughness : float
-        sigma = sqrt(sigma_journal^2 + sigma_bore^2), m.
+        sigma = sqrt(sigma_journal^2 + sigma_bore^2) of the r.m.s. roughnesses, m.
     pattern : float, default 1.0
-        gamma, correlation length in theta over that in z: 1/9, 1/6, 1/3 (lay across the motion), 1 (isotropic), 3, 6 or
-        9 (lay along the motion), the patterns that Patir and Cheng computed.
+        gamma, correlation length in theta over that in z. One of the patterns that Patir and Cheng computed: 1/9, 1/6,
+        1/3 (lay across the motion), 1 (isotropic), 3, 6, 9 (lay along the motion).
     journal_share : float, default 0.5
         sigma_journal^2 / sigma^2, 0 to 1; 0.5: equally rough surfaces, whose shear flow factors cancel. The rougher
         surface drags more oil along and is pulled more by a pressure gradient.

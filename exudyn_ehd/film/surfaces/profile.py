@@ -46,9 +46,9 @@ class OutOfRound(Checked):
     order : int
         Lobes around the circumference, at least 2 (1 is an eccentricity); 2: oval, 3: three-lobe.
     amplitude : float
-        m; half of the difference between largest and smallest radius.
+        Half of the difference between the largest and the smallest radius, m.
     phase : float, default 0.0
-        Angle of the first lobe's largest radius, rad.
+        Angle at which the radius is largest, from the joint's x about its z axis, rad.
 
     Examples
     --------
@@ -81,14 +81,14 @@ class OutOfRound(Checked):
 class Crown(Checked):
     """Crowned (barrelled) journal or bore: ``d = drop |2 z / L|^exponent``.
 
-    When: shapes as deep as a tenth of the minimum film thickness and more, against edge pressure of tilted journals.
+    When: journals that tilt, whose edges the crown relieves; shapes deeper than a tenth of the minimum film thickness.
 
     Parameters
     ----------
     drop : float
-        Additional gap at the bearing's ends, m; negative: waisted.
+        Additional gap at both ends of the bearing, m; negative: waisted.
     exponent : float, default 2.0
-        At least 1; 2 is a parabola, larger ones leave a longer cylinder.
+        At least 1; 2 is a parabola, larger ones leave more of the cylinder.
 
     Examples
     --------
@@ -117,7 +117,7 @@ class EdgeRelief(Checked):
     Parameters
     ----------
     drop : float
-        Additional gap at the bearing's ends, m.
+        Additional gap at both ends of the bearing, m.
     relief_length : float
         Axial length of the relief at each end, m.
 
@@ -182,18 +182,18 @@ class AxialProfile:
 class ProfileTable:
     """Any profile of the bore over (theta, z), periodic in theta, by monotone cubics along z and then along theta.
 
-    Between two points the depth stays between theirs (F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980)
-    238), so that the table may have steps and kinks and its range is kept. A peak between two points is flattened: of
-    a wave with n points by ``1 - cos(pi / n)`` of its amplitude, 1.5 % for 18 and 0.4 % for 36.
+    Between two points the depth stays between theirs, so that the table may have steps and kinks (F. N. Fritsch and R.
+    E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238). A peak between two points is cut off: a wave with n points around
+    loses up to ``1 - cos(pi / n)`` of its amplitude, 1.5 % for 18 points and 0.4 % for 36.
 
     Parameters
     ----------
     angles : sequence of float
-        Increasing theta, rad, spanning less than 2 pi; at least 4.
+        Increasing theta from the joint's x about its z axis, rad, spanning less than 2 pi; at least 4.
     positions : sequence of float
-        Increasing z, m; at least 2. Constant beyond.
+        Increasing z from the mid-plane, m; at least 2. Constant beyond the first and the last one.
     depths : (angles, positions) array-like
-        Additional gap, m.
+        Additional gap, m, a row per angle.
 
     Examples
     --------

@@ -85,18 +85,19 @@ class _Pads(Checked):
 class TaperLand(_Pads):
     """Pads of a thrust face: the recess falls from ``depth`` to 0 over the first ``share`` of each; the rest is flat.
 
-    Fixed in the housing, on both faces; pads begin at theta = 0 and follow each other without grooves.
+    On the bush's side of both faces, fixed in the housing. The first pad begins at theta = 0, the joint's x; pads
+    follow each other about +z without grooves.
 
     Parameters
     ----------
     pads : int
-        Number around the face.
+        Number of pads around the face.
     depth : float
-        Of a pad's beginning below its land, m; 1 to 3 minimum film thicknesses carry most.
+        Depth of the recess below the land where a pad begins, m; 1 to 3 minimum film thicknesses carry most.
     share : float, default 0.75
-        Of a pad's length that tapers, 0 to 1.
+        Share of a pad's length that is tapered, above 0 up to 1.
     reverse : bool, default False
-        For journals that turn in the negative sense about z.
+        False: pads for a positive spin about z. True: for a negative one, tapered from their other end.
 
     Examples
     --------
@@ -118,13 +119,13 @@ class StepLand(_Pads):
     Parameters
     ----------
     pads : int
-        As of `TaperLand`.
+        As for `TaperLand`.
     depth : float
-        Of the recess, m; 0.9 to 1.2 minimum film thicknesses carry most.
+        Depth of the recess below the land, m; 0.9 to 1.2 minimum film thicknesses carry most.
     share : float, default 0.75
-        Of a pad's length that is recessed, 0 to 1; 0.7 carries most.
+        Share of a pad's length that is recessed, above 0 up to 1; 0.7 carries most.
     reverse : bool, default False
-        As of `TaperLand`.
+        As for `TaperLand`.
 
     Examples
     --------
@@ -141,17 +142,21 @@ class StepLand(_Pads):
 class ThrustFaces(Checked):
     """Oil films between the end faces of a bush and collars of its journal: `JournalBearing.thrust`.
 
-    They carry axial load and tilting moments by squeeze, wedge and pressure. Upper face at z = L/2, lower one at -L/2;
-    the collars lie outside, so that a journal that moves along +z opens the upper gap and closes the lower one:
+    They carry axial load and tilting moments. Upper face at z = L/2, lower one at -L/2; the collars lie outside, so
+    that a journal that moves along +z opens the upper gap and closes the lower one, whose film pushes it back:
 
-        h = clearance + s (z - bx X - by Y) + d(theta),     s = 1 upper, -1 lower,
+        h = clearance + s (zeta - bx X - by Y) + d(theta),     s = 1 upper, -1 lower,
 
-    at the point (X, Y) of the face (`exudyn_ehd.film.thrust.face`). With plane parallel faces only squeeze carries; a
-    stiff place along the axis takes pads, pressure or a wall. The oil has the lubricant's constant viscosity.
+    with the journal's axial position zeta (``axial_position``, m; 0: equal gaps), the slopes bx, by of its axis, rad,
+    the point (X, Y) of the face in the joint frame, and the depth d of the pads (`exudyn_ehd.film.thrust.face`).
 
-    Columns of the grid lie on the edges of the pads. Largest error of the default grid against one four times as fine
-    in both directions (Swift-Stieber, inner over outer radius 0.35 to 0.85, 3 to 16 pads, share 0.2 to 0.9, depth 0.3
-    to 3 times the gap of the land, axial position -0.8 to 0.5 clearances, tilt up to 0.8 of what closes the gap):
+    Plane parallel faces carry by squeeze alone: for a steady axial load add pads, pressures or a contact. The oil has
+    the lubricant's constant viscosity. Not with a ``pressure_law``, ``density_law`` or ``shear_law``, ``thermal``,
+    ``turbulence``, ``roughness``, ``asperity`` or `ElrodAdams`.
+
+    Largest error of the default grid, against a grid four times as fine in both directions (Swift-Stieber, inner over
+    outer radius 0.35 to 0.85, 3 to 16 pads, share 0.2 to 0.9, depth 0.3 to 3 times the gap of the land, axial position
+    -0.8 to 0.5 clearances, tilt up to 0.8 of the tilt that closes the gap):
 
     ======  =====  =========  =============================  =============  ===============
     faces   force  stiffness  damping                        torque, power  inflow, outflow
@@ -160,29 +165,29 @@ class ThrustFaces(Checked):
     plane   0.4 %  0.6 %      2 %                            0.1 %          1 %
     ======  =====  =========  =============================  =============  ===============
 
-    Flows are within 2 % with pressures at the radii, and of narrower rings, which have fewer columns on their width.
-    Faces with pads have their rupture line on vertices, whatever `SwiftStieber.line_in_cells` says: their films end on
-    edges.
+    The error of the flows is 2 % with pressures at the radii or in narrower rings. Columns of the grid lie on the edges
+    of the pads, where films end; so faces with pads have their rupture line on vertices, whatever
+    `SwiftStieber.line_in_cells` says.
 
     Parameters
     ----------
     inner_radius, outer_radius : float
         Of the faces, m; the inner one at least the journal's radius.
     clearance : float
-        Gap of either face with the journal in the middle, m: half of the axial play.
+        Gap of either face, on the lands, with the journal in the middle, m: half of the axial play.
     profile : TaperLand, StepLand or None, default None
         Pads on both faces; None: plane faces.
     contact : RegularisedWall or None, default None
-        What takes over before a gap vanishes; None: a gap that vanishes ends the run with an error.
+        Smooth wall that carries load before a gap vanishes; None: a vanishing gap ends the run with an error.
     inner_pressures : (float, float) or None, default None
         Gauge pressures at the inner radius of lower and upper face, Pa; None: the bearing's ``end_pressures``.
     outer_pressures : (float, float), default (0.0, 0.0)
-        Gauge pressures at the outer radius, Pa.
+        Gauge pressures at the outer radius of lower and upper face, Pa.
     lower, upper : bool, default True
-        Which faces have a film.
+        True: this face has a film.
     n_theta, n_r : int or None, default None
-        Grid: vertices around, at least 16 and 8 a pad, rounded up to the same number in every pad, and intervals
-        across, at least 6. None: those of the table above, for up to 16 pads; 96 and 10 of plane faces.
+        Grid: vertices around, at least 16 and 8 a pad, rounded up to the same number in every pad; intervals from inner
+        to outer radius, at least 6. None: the default grid, for up to 16 pads; 96 and 10 for plane faces.
 
     Raises
     ------

@@ -153,34 +153,36 @@ LEAST_ANGLE = 0.05
 class SphericalBearing(Checked):
     """A ball in a socket with oil between them, for `CreateLubricatedSphericalJoint` and `steady_spherical`.
 
-    The socket is the patch of a sphere between two circles about its axis, the joint's z. It starts at z: an angle of 0
-    to pi/2 is a hemispherical cup that carries along z; beyond pi/2 it holds the ball both ways. Its edges are open to
-    the ambient pressure. Equations and assumptions: `exudyn_ehd.joint.spherical.model`.
+    The socket is the part of a sphere between two circles around the joint's z axis, fixed in the housing. Colatitudes
+    count from +z: (0, pi/2) is a hemispherical cup on the side of +z, which carries a ball that is pushed along +z. A
+    socket that ends beyond pi/2 also holds the ball along -z. The edges are open to the ambient pressure. Equations and
+    assumptions: `exudyn_ehd.joint.spherical.model`.
 
-    Errors of the default grid, of second order: squeeze of the cup against its closed form 0.02 % up to eccentricity
-    ratio 0.5, 0.4 % at 0.9; any motion in any direction, cups and belts, up to 1 % of the force at 0.8 and 2.5 % at
-    0.9, where the ball leans on an edge, and 0.5 % of the torque.
+    Errors of the default grid. Squeeze force of the cup, against the closed form: 0.02 % up to eccentricity ratio 0.5,
+    0.4 % at 0.9. Any motion in any direction, in sockets closed or open at the pole: force up to 1 % at eccentricity
+    ratio 0.8 and 2.5 % at 0.9, where the ball is close to an edge; torque 0.5 %.
 
     Parameters
     ----------
     ball_radius : float
         R, m.
     radial_clearance : float
-        c: radius of the socket less that of the ball, m.
+        c = socket radius - ball radius, m; at most 0.05 R.
     lubricant : Lubricant
-        A pressure law takes part, a temperature law gives the viscosity at the lubricant's temperature, other laws are
-        refused.
+        Its ``pressure_law`` acts. The film is isothermal: a ``temperature_law`` only sets the viscosity at
+        ``lubricant.temperature``. A ``shear_law`` or a ``density_law`` raises `InputError`.
     socket_angles : (float, float), default (0.0, pi / 2)
-        Colatitudes from the socket's axis at which the patch begins and ends, rad; 0 for a patch that is closed there.
+        Colatitudes from +z at which the socket begins and ends, rad; it begins at 0 (closed at the pole) or, with an
+        opening around the axis, from 0.05 on.
     n_phi : int, default 48
         Vertices around the axis, at least 16.
     n_chi : int, default 24
-        Intervals from edge to edge (of a closed patch from the pole to the edge), at least 4.
+        Intervals from edge to edge, or from the pole to the edge of a socket that is closed there; at least 4.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber or Closure, default SwiftStieber()
-        Without a memory and without a line inside the cells; `Closure` is one of your own. Its ``cavity_pressure`` must
-        not be above the ambient pressure.
+        Cavitation model; `ElrodAdams` and ``line_in_cells=True`` are not supported. Its ``cavity_pressure`` must not be
+        above 0, the ambient pressure. `Closure` is one of your own.
     contact : RegularisedWall or None, default None
-        Takes over before the gap vanishes.
+        Smooth wall that carries load before the gap vanishes; None: a vanishing gap ends the run with an error.
 
     Raises
     ------
