@@ -54,7 +54,7 @@ KINDS: dict[str, Kind] = {
     "gap": Kind("m", 0.0, 1e-10, 0.01, 1e3, _FINE),
     "form": Kind("m", 0.0, 1e-10, 2e-3, 0.05, _FINE),
     "roughness": Kind("m", 1e-11, 1e-9, 3e-5, 1e-3, _FINE),
-    "wall": Kind("m", 1e-12, 1e-9, 1e-3, 0.01, _FINE),
+    "wall": Kind("m", 1e-12, 1e-9, 1e-4, 0.01, (*_SMALL, ("nm", 1e-9))),
     "layer": Kind("m", 1e-9, 1e-7, 0.1, 1.0, _SMALL),
     "angle": Kind("rad", 0.0, 0.0, _TURN, 2.0 * _TURN, _DEGREES, _RADIANS),
     "angles": Kind("rad", 0.0, 0.0, 2.0 * _TURN, 1e3, _DEGREES, _RADIANS),

@@ -301,21 +301,23 @@ def require_number(
     # a lower bound is named by itself, an upper one as the end of a range
     if len(bounds) == 2:
         bounds[1] = (f"between {bounds[0][1]:g} and {bounds[1][1]:g}", *bounds[1][1:])
-    expected = bounds[0][0] if bounds else "finite"
     kind = kind_of(where)
     if not unit and kind is not None:
         unit = kind.unit
     unit = f" {unit}" if unit else ""
+    finite = f"a finite number in{unit}" if unit else "a finite number"
+    expected = f"{bounds[0][0]}{unit}" if bounds else ""
     tail = f"; {hint}" if hint else "."
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise InputError(f"{where} must be a number {expected}{unit}, got {value!r}{tail}")
+        raise InputError(f"{where} must be {f'a number {expected}' if bounds else finite}, got {value!r}{tail}")
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
     broken = [text for text, bound, holds in bounds if not holds(number, bound)]
     if broken or not math.isfinite(number):
-        raise InputError(f"{where} must be {broken[0] if broken else expected}{unit}, got {value!r}{tail}")
+        expected = f"{broken[0]}{unit}" if broken else expected or finite
+        raise InputError(f"{where} must be {expected}, got {value!r}{tail}")
     require_plausible(where, value, number)
     return number
 

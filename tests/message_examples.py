@@ -117,6 +117,18 @@ def joined(film, record=None, **motion):
     return mbs, shaft, joint
 
 
+def slider(mbs):
+    nodes = [mbs.AddNode(eii.NodePoint2DSlope1(referenceCoordinates=[x, 0, 1, 0])) for x in (0.0, 1.0)]
+    stiff = {"massPerLength": 1.0, "bendingStiffness": 10.0, "axialStiffness": 1e4}
+    cable = mbs.AddObject(eii.ObjectANCFCable2D(nodeNumbers=nodes, length=1.0, **stiff))
+    mass = mbs.AddObject(eii.ObjectMassPoint2D(mass=0.1, nodeNumber=mbs.AddNode(eii.NodePoint2D())))
+    markers = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=mass))]
+    markers += [mbs.AddMarker(eii.MarkerBodyCable2DCoordinates(bodyNumber=cable))]
+    data = mbs.AddNode(eii.NodeGenericData(initialCoordinates=[0, 0], numberOfDataCoordinates=2))
+    along = {"slidingMarkerNumbers": markers[1:], "slidingMarkerOffsets": [0.0], "nodeNumber": data}
+    return mbs.AddObject(eii.ObjectJointSliding2D(markerNumbers=markers, **along))
+
+
 mbs, shaft, joint = joined(bearing)
 """,
         "model",
@@ -164,6 +176,24 @@ def write(name, *lines):
     Path(name).write_text("\\n".join(lines))
 """,
         "model",
+        shared=False,
+    ),
+    "reduced": Setup(
+        "a finite-element body",
+        """
+from exudyn.FEM import ObjectFFRFreducedOrderInterface
+from exudyn_ehd.solid.total_lagrange import TotalLagrange
+
+solid = TotalLagrange(mesh=mesh, material=steel)
+fem.stiffnessMatrix, fem.massMatrix = solid.tangent(0 * mesh.nodes).tocsr(), solid.mass.tocsr()
+fem.VolumeToSurfaceElements()
+bore = {"position": centre, "axis": z, "radius": 0.025, "length": 0.025, "fixed_nodes": mesh.outer.nodes}
+ehd.add_bore_modes(fem, **bore, tolerance=0.2, tilted=False)
+reduced = ObjectFFRFreducedOrderInterface(fem, rigidBodyNodeType="NodeType.RotationRxyz")
+housing = reduced.AddObjectFFRFreducedOrder(mbs)["oFFRFreducedOrder"]
+wide = {**plain, "journal_radius": 0.024975}
+""",
+        "bush",
         shared=False,
     ),
 }
@@ -420,6 +450,8 @@ ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=110.0)
 
 ehd.composite_modulus(youngs_moduli=(210e9, 210e9), poisson_ratios=(0.3, 0.6))
 
+ehd.composite_modulus(youngs_moduli=(210e9,), poisson_ratios=(0.3, 0.3))
+
 ehd.RegularisedWall(onset=0.002)
 
 ehd.JournalBearing(**plain, contact=ehd.RegularisedWall(onset=30e-6))
@@ -660,6 +692,26 @@ mbs.CreateRevoluteJoint("hinge", sides, centre, z)
 ehd.ReplaceJoints(mbs, bearing=bearing)
 
 ehd.ReplaceReducedBody(mbs, shaft)
+
+body = mbs.AddObject(eii.ObjectGenericODE2(nodeNumbers=[mbs.AddNode(eii.NodePoint2D())], massMatrix=np.eye(2)))
+marker = mbs.AddMarker(eii.MarkerSuperElementRigid(bodyNumber=body, meshNodeNumbers=[0], weightingFactors=[1.0]))
+ehd.CreateLubricatedJoint(mbs, "main", [ground, marker], axis=z, bearing=bearing)
+
+joint = ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing)
+mbs.SetNodeParameter(0, "initialCoordinates", [0, -3e-5, 0, 0, 0, 0])
+mbs.Assemble(); joint.film()
+
+settings.timeIntegration.numberOfSteps, kept = 600, {"record": ehd.File(path="both.rows")}
+for name in ("left", "right"): ehd.CreateLubricatedJoint(mbs, name, sides, centre, z, bearing, **kept)
+mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+(folder := Path("rows")).mkdir()
+ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing, record=ehd.File(path=folder / "main"))
+folder.rmdir(); folder.write_text(""); mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+sides = [ground, averaged([[0.1, 0, 0], [-0.1, 0.1, 0], [0, -0.1, 0]], [1 / 3] * 3)]
+for k, v in enumerate(([0, 2e3, 0], [-2e3, -2e3, 0], [2e3, 0, 0])): mbs.SetNodeParameter(k + 1, "initialVelocities", v)
+ehd.CreateLubricatedJoint(mbs, "main", sides, [], z, bearing); mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
 """,
     ),
     Group(
@@ -890,6 +942,26 @@ joint.place_in_equilibrium(load=(0.0, -100.0), speed="fast")
 joint.place_in_equilibrium(load=(0.0, -100.0), speed=0.0)
 
 joint.place_in_equilibrium(load=(0.0, -100.0), speed=3000000.0)
+
+mbs, shaft, joint = joined(bearing, nodeType=exu.NodeType.RotationRxyz)
+slider(mbs); mbs.Assemble()
+ehd.SolveDynamicSparse(mbs, settings)
+
+stop = lambda mbs, t, load: [0, 0, 0] if t < 5e-4 else __import__("signal").raise_signal(2)
+mbs.CreateForce(itemNumber=shaft, loadVector=[0, 0, 0], loadVectorUserFunction=stop)
+mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.012, 120
+shake = {"loadVector": centre, "loadVectorUserFunction": lambda mbs, t, load: [0, 6e3 * (-1) ** round(t / 1e-4), 0]}
+mbs.CreateForce(itemNumber=shaft, **shake); mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.012, 120
+shake = {"loadVector": centre, "loadVectorUserFunction": lambda mbs, t, load: [0, 600 * (-1) ** round(t / 1e-4), 0]}
+mbs.CreateForce(itemNumber=shaft, **shake); mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+wet, wall = ehd.oil("ISO VG 46"), ehd.Conduction(thickness=0.01, conductance=0, expansion=2e-4, initial_temperature=360)
+heat, touch = ehd.FilmEnergy(supply_temperature=313, conductivity=0.13, journal=wall), ehd.RegularisedWall(onset=1e-6)
+ehd.SolveDynamic(joined(ehd.JournalBearing(**size, lubricant=wet, thermal=heat, contact=touch))[0], settings)
 """,
     ),
     Group(
@@ -954,6 +1026,22 @@ joint.restore_state(dataclasses.replace(joint.state(), bearing="other"))
 joint.restore_state(dataclasses.replace(joint.state(), rows=np.zeros((3, 3))))
 
 joint.restore_state(dataclasses.replace(joint.state(), modes=np.ones((3, 3))))
+
+import matplotlib.pyplot as plt
+plt.rcParams["animation.ffmpeg_path"] = "nowhere"
+joint.record_films(); ehd.SolveDynamic(mbs, settings); joint.animate("orbit.mp4")
+
+import sys
+sys.modules["pandas"] = None
+history.to_dataframe()
+
+import sys
+sys.modules["meshio"] = None
+joint.export_vtk("film.vtu")
+
+state = joint.state()
+changed = dataclasses.replace(state.begin, motion=np.zeros(4))
+joint.restore_state(dataclasses.replace(state, begin=changed))
 """,
     ),
     Group(
@@ -1066,6 +1154,30 @@ ehd.solve_film(grid, gap, lubricant=oil, history=gap, gap_rate=gap, step=1e-3, c
 grid = ehd.slider_grid(length=0.1, width=0.1, n_x=16, n_z=8)
 thin = ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.8))
 ehd.solve_film(grid, np.full(grid.shape, 1e-5), lubricant=thin)
+
+class Plastic(ehd.CarreauShear): ratio = lambda self, rate: 2.0 + 0.0 * rate
+plastic = ehd.Lubricant(viscosity=0.02, shear_law=Plastic(relaxation_time=1e-6, exponent=0.8))
+ehd.steady(ehd.JournalBearing(**size, lubricant=plastic), speed=300.0, eccentricity_ratio=0.5)
+
+ball = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil)
+at = ehd.steady_spherical(ball, place=(0.0, 0.0, 1e-5))
+dataclasses.replace(at, motion=np.where(np.arange(11) == 2, 6e-5, 0.0)).audit()
+
+groove = ehd.AxialGroove(angle=5.03, width_angle=1.19, length=0.0225, pressure=4740.0)
+fed = {"supply": (groove,), "cavitation": ehd.ElrodAdams(), "end_pressures": (57.6, 57.6)}
+ehd.equilibrium(ehd.JournalBearing(**plain, **fed), speed=116.9, load=(1.16, -3.197))
+
+heat = ehd.LumpedThermal(supply_temperature=313.15)
+hot = ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 460"), thermal=heat)
+ehd.steady(hot, speed=3e4, eccentricity_ratio=0.99)
+
+heat = ehd.FilmEnergy(supply_temperature=313.15, initial_temperature=2500.0)
+hot = ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 460"), thermal=heat)
+ehd.equilibrium(hot, speed=3e3, load=(0.0, -1e3))
+
+wet, wall = ehd.oil("ISO VG 46"), ehd.Conduction(thickness=0.01, conductance=9, ambient_temperature=400, expansion=1e-3)
+heat, touch = ehd.FilmEnergy(supply_temperature=313, conductivity=0.13, journal=wall), ehd.RegularisedWall(onset=1e-6)
+ehd.steady(ehd.JournalBearing(**size, lubricant=wet, thermal=heat, contact=touch), speed=300.0, eccentricity_ratio=0.5)
 """,
     ),
     Group(
@@ -1134,6 +1246,22 @@ table = ehd.parameter_study(lambda p: p["x"], {"x": [1.0], "y": list(range(11))}
 table.plot("value")
 
 ehd.varied(bearing, {"width": 0.1})
+
+print(ehd.recommend(bearing, 0.05, "critical mass", eccentricity_ratio=0.9).reason)
+
+still = ehd.JournalBearing(**plain, cavitation=ehd.ElrodAdams())
+print(ehd.recommend(still, eccentricity_ratio=0.5).reason)
+
+hole = ehd.Hole(angle=3.14, diameter=0.001, pressure=50.0)
+fed = ehd.JournalBearing(**plain, cavitation=ehd.ElrodAdams(), supply=(hole,))
+print(ehd.recommend(fed, speed=3000.0, eccentricity_ratio=0.1).reason)
+
+coarse = ehd.JournalBearing(**plain, film=ehd.FiniteLength(n_theta=16, n_z=4))
+force = np.array([(0.0, -2e4 - 5e3 * np.sin(k)) for k in range(8)])
+ehd.recommend_steps(coarse, 0.9, speed=300.0, period=0.02, load=force, mass=1.0)
+
+from exudyn_ehd.studies.film_errors import converged
+converged([1.0, 2.0], ratio=2.0, formal_order=2.0, scale=1.0)
 """,
     ),
     Group(
@@ -1199,6 +1327,18 @@ ehd.SolveEquilibrium(mbs, 300.0).unbalance_response({exu.ObjectIndex(0): 1e-4})
 ehd.SolveEquilibrium(mbs, 300.0).unbalance_response(1e-4)
 
 ehd.SolveEquilibrium(mbs, 300.0).unbalance_response({body: 1e-4}).amplitude("middle")
+
+point = mbs.CreateMassPoint(physicsMass=0.0)
+mbs.CreateCartesianSpringDamper(itemNumbers=[exu.ObjectIndex(0), point], stiffness=[1e6] * 3); mbs.Assemble()
+ehd.SolveEquilibrium(mbs, 300.0)
+
+other = mbs.CreateRigidBody(inertia=cube); mbs.CreateRevoluteJoint("hinge", [exu.ObjectIndex(0), other], centre, z)
+ehd.CreateLubricatedJoint(mbs, "third", [exu.ObjectIndex(0), other], centre, z, bearing); mbs.Assemble()
+ehd.SolveEquilibrium(mbs, 300.0, rotors=[[body], [other]]).unbalance_response({body: 1e-4, other: 1e-4})
+
+marker = averaged([[0.1, 0, 0], [-0.1, 0.1, 0], [0, -0.1, 0]], [1 / 3] * 3)
+ehd.CreateLubricatedJoint(mbs, "third", [marker, body], [], z, bearing); mbs.Assemble()
+ehd.SolveEquilibrium(mbs, 300.0)
 """,
     ),
     Group(
@@ -1406,6 +1546,84 @@ ehd.add_bore_modes(fem, **where, fixed_nodes=mesh.outer.nodes, nodes=some)
 ehd.add_bore_modes(fem, position=centre, axis=z, radius=0.025, length=0.02, fixed_nodes=[0])
 
 ehd.add_bore_modes(fem, position=centre, axis=z, radius=0.025, length=0.02, fixed_nodes=[0, 1, 2], nodes=[9999])
+
+bushed = ehd.JournalBearing(**plain, bush=ehd.ModalBush(mesh=tube, material=steel))
+ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bushed, bushGravity=[0, -9.81, 0])
+
+bushed = ehd.JournalBearing(**plain, bush=ehd.ANCFBush(mesh=tube, material=steel))
+ehd.CreateLubricatedJoint(mbs, "main", [cable(), shaft], [0.05, 0, 0], [1, 0, 0], bushed)
+mbs.Assemble(); mbs.ComputeLinearizedSystem()
+
+soft = ehd.ANCFBush(mesh=tube, material=dataclasses.replace(steel, youngs_modulus=1e5))
+press = {"loads": [ehd.DeadPressure(surface=mesh.bore, pressure=1e9)], "outer": ehd.FreeOuter()}
+ehd.CreateFlexibleBush(mbs, bush=soft, **press); mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+Path("plate.vtu").write_text("no mesh")
+ehd.mesh_from_file("plate.vtu", bore_radius=0.025)
+
+import meshio
+meshio.write_points_cells("sheet.vtu", mesh.nodes, {"quad": mesh.elements[:, :4]})
+ehd.mesh_from_file("sheet.vtu", bore_radius=0.025)
+
+import sys
+Path("bore.vtu").write_text(""); sys.modules["meshio"] = None
+ehd.mesh_from_file("bore.vtu", bore_radius=0.025)
+
+some = np.setdiff1d(mesh.outer.nodes, mesh.outer.faces[0, -1])
+ehd.mesh_from_arrays(mesh.nodes, mesh.elements, bore_radius=0.025, held=some)
+
+long = ehd.HollowCylinder(inner_radius=0.025, thickness=0.002, length=0.3, axial=12, radial=1, circumferential=24)
+bush = ehd.ModalBush(mesh=long, material=steel, tolerance=0.002)
+ehd.steady(ehd.JournalBearing(**{**plain, "length": 0.3}, bush=bush), speed=300.0, eccentricity_ratio=0.2)
+
+import os; os.environ["EXUDYN_EHD_CACHE"] = "kept"
+bushed = ehd.JournalBearing(**plain, bush=ehd.ModalBush(mesh=tube, material=steel))
+for _ in "12": ehd.steady(bushed, speed=9.0, eccentricity_ratio=0.2), [f.write_text("") for f in Path("kept").iterdir()]
+
+from exudyn_ehd.pictures.bush import contour_figure
+contour_figure(mesh, [], label="stress in Pa")
+
+from exudyn_ehd.solid.stress import StressRecovery
+StressRecovery(mesh=mesh, material=steel).locate([[0.0, 0.0, 0.0]])
+
+from exudyn_ehd.solid.total_lagrange import TotalLagrange
+mirrored = dataclasses.replace(mesh, nodes=-mesh.nodes)
+TotalLagrange(mesh=mirrored, material=steel).tangent(0 * mesh.nodes)
+""",
+    ),
+    Group(
+        "Finite-element bodies with films",
+        "Raised for an ObjectFFRFreducedOrder as a joint's side, by `add_bore_modes` and by `ReplaceReducedBody`.",
+        "reduced",
+        """
+ehd.CreateLubricatedJoint(mbs, "main", [housing, shaft], centre, z, bearing)
+
+nodes = {"meshNodeNumbers": mesh.bore.nodes, "weightingFactors": 0 * mesh.bore.nodes + 1 / mesh.bore.nodes.size}
+marker = mbs.AddMarker(eii.MarkerSuperElementRigid(bodyNumber=housing, **nodes))
+ehd.CreateLubricatedJoint(mbs, "main", [marker, shaft], axis=z, bearing=bearing, axial=ehd.Held())
+
+lined = ehd.JournalBearing(**wide, bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9))
+ehd.CreateLubricatedJoint(mbs, "main", [housing, shaft], centre, z, lined)
+
+pin = ehd.ElasticJournal(material=steel, span=(-0.03, 0.03), held=ehd.HeldEnds())
+ehd.CreateLubricatedJoint(mbs, "main", [ground, housing], centre, z, ehd.JournalBearing(**plain, journal=pin))
+
+turned = ehd.JournalBearing(**plain, journal=ehd.FEJournal(fem=fem), thrust=faces)
+ehd.CreateLubricatedJoint(mbs, "main", [ground, housing], centre, z, turned)
+
+other = FEMinterface()
+other.nodes, bushed = {"Position": mesh.nodes[1:]}, ehd.JournalBearing(**wide, bush=ehd.FEBore(fem=other))
+ehd.CreateLubricatedJoint(mbs, "main", [housing, shaft], centre, z, bushed)
+
+ehd.ReplaceReducedBody(mbs, housing)
+ehd.ReplaceReducedBody(mbs, housing)
+
+ehd.ReplaceReducedBody(mbs, housing)
+mbs.SetObjectParameter(housing, "computeFFRFterms", True)
+mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+
+fem.stiffnessMatrix = 0.0 * fem.stiffnessMatrix
+ehd.add_bore_modes(fem, **bore)
 """,
     ),
 )

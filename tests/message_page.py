@@ -16,8 +16,11 @@ import pathlib
 import re
 import sys
 import tempfile
+import unittest.mock
 import warnings
 from typing import NamedTuple
+
+import matplotlib
 
 import exudyn_ehd as ehd
 from tests.api_page import anchor, table, wrapped
@@ -28,9 +31,11 @@ PAGE = PACKAGE / "MESSAGES.md"
 COMMAND = "python -m tests.message_page"
 # Errors that a user reads, and the calls that tell a user something without one.
 ERRORS = {"InputError", "FilmError", "RunError", "EHDError", "KeyError", "AttributeError", "KeyboardInterrupt"}
-CALLS = {"warn_user", "warnings.warn", "summary.LOGGER.info", "self._at"}
+CALLS = {"warn_user", "warnings.warn", "summary.LOGGER.info"}
 # Calls whose text is the second argument.
 TEXT_SECOND = {"summary.LOGGER.info", "self._at"}
+# The file whose `self._at` makes errors; elsewhere it is something else.
+FAILURES = "coupling/element/failures.py"
 # Pass on the texts of their callers.
 PASSED_ON = {"status.warn_user", "coupling.element.failures._at"}
 
@@ -71,11 +76,13 @@ def template(node):
     return "..."
 
 
-def is_message(node):
-    """Return whether a call makes an error, a warning or a line for users."""
+def is_message(node, path):
+    """Return whether a call in a file of the package makes an error, a warning or a line for users."""
     if not isinstance(node, ast.Call):
         return False
     name = ast.unparse(node.func)
+    if name == "self._at":
+        return path == FAILURES
     return name in CALLS or name.split(".")[-1] in ERRORS or name == "type(cause)"
 
 
@@ -92,7 +99,7 @@ def sites():
             if isinstance(node, ast.FunctionDef) and f"{name[:-3].replace('/', '.')}.{node.name}" in PASSED_ON
         ]
         for node in ast.walk(tree):
-            if is_message(node) and not any(node.lineno in lines for lines in skipped):
+            if is_message(node, name) and not any(node.lineno in lines for lines in skipped):
                 text = template(node.args[ast.unparse(node.func) in TEXT_SECOND]) if node.args else ""
                 found.append(Site(name, node.lineno, node.end_lineno, "" if text == "..." else text))
     return found
@@ -145,6 +152,8 @@ def listening():
 
     def keep_warning(message, category=UserWarning, stacklevel=1, source=None):
         told.append(Told(category.__name__, str(message), site_of(stack(sys._getframe(1)))))
+        # the package records some, to tell them later
+        warn(message, category, stacklevel + 1, source)
 
     def keep_place(self, *args):
         init(self, *args)
@@ -156,7 +165,9 @@ def listening():
     log.addHandler(handler)
     warnings.warn, ehd.EHDError.__init__ = keep_warning, keep_place
     try:
-        yield told, made
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield told, made
     finally:
         warnings.warn = warn
         del ehd.EHDError.__init__
@@ -181,19 +192,51 @@ def prepared(setup):
     return names
 
 
+@contextlib.contextmanager
+def undone():
+    """Undo what examples change for the whole process: hidden packages, the environment, settings of pictures."""
+    modules = dict(sys.modules)
+    with matplotlib.rc_context(), unittest.mock.patch.dict(os.environ):
+        try:
+            yield
+        finally:
+            for name in [name for name, module in sys.modules.items() if module is None]:
+                del sys.modules[name]
+            sys.modules.update(modules)
+
+
 def raised(code, setup):
-    """Run an example; return its error, else its first warning, else its first line in the log; None if silent."""
-    with listening() as (told, made), contextlib.redirect_stdout(io.StringIO()):
+    """Run an example; return its error, else its first warning, what it prints, or its first line in the log.
+
+    None if it is silent.
+    """
+    with listening() as (told, made), undone(), contextlib.redirect_stdout(io.StringIO()) as printed:
         names = prepared(setup)
-        told.clear(), made.clear()
+        told.clear(), made.clear(), printed.seek(0), printed.truncate()
         try:
             exec(compile(code, "example", "exec"), names)
-        except (ehd.EHDError, KeyError, AttributeError) as error:
+        except (ehd.EHDError, KeyError, AttributeError, KeyboardInterrupt) as error:
             text = error.args[0] if isinstance(error, KeyError) else str(error)
-            places = [site for said, place in made for site in place if said and said in text]
-            return Told(type(error).__name__, anywhere(text), tuple(places) or site_of(traced(error)))
-    shown = [item for item in told if item.kind != "log"] or told
-    return shown[0] if shown else None
+            return Told(type(error).__name__, anywhere(text), makers(made, text) or site_of(traced(error)))
+        shown = [item for item in told if item.kind != "log"]
+        if not shown and (places := makers(made, text := printed.getvalue())):
+            return Told("printed", anywhere(text), places)
+    return with_repeats(shown or told)
+
+
+def makers(made, text):
+    """Places of the errors (text, places) whose words are in a text."""
+    return tuple(dict.fromkeys(site for said, places in made for site in places if said and said in text))
+
+
+def with_repeats(told):
+    """The first message that is passed on, else the first, with the places of all that say it; None for no message."""
+    if not told:
+        return None
+    texts = [item.text for item in told]
+    first = max(told, key=lambda item: texts.count(item.text))
+    places = dict.fromkeys(site for item in told if item.text == first.text for site in item.sites)
+    return first._replace(sites=tuple(places))
 
 
 def anywhere(text):
@@ -262,7 +305,7 @@ about causes and remedies is in [all messages](coupling/README.md#all-messages).
 
 `InputError` says that an argument can't be meant, `FilmError` that a film could not be evaluated, `RunError` that a run
 failed for another reason. Names that end in `Warning` are warnings: the call goes on. "log" is a line of the logger
-`exudyn_ehd`.
+`exudyn_ehd`, "printed" what the code prints of an error that a result keeps.
 
 *This page is made by `{COMMAND}`, which runs all of the code; a test compares.*
 """
@@ -304,8 +347,8 @@ ZERO = 1e-11
 LEFT = "Messages without an example"
 NAMES = "Every section says with the names of which of these blocks its code begins."
 REST = wrapped(
-    'The texts of all other messages, with "..." for values. Most need a long run, a broken file, or a package that is '
-    "not installed."
+    'The texts of all other messages, with "..." for values. They need folders that can\'t be written, an object of '
+    "Exudyn without matrices, or a solver that gives up."
 )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.plausible import ARGUMENTS, KINDS
+from exudyn_ehd.plausible import ARGUMENTS, KINDS, doubt
 from tests.descriptions import usual
 from tests.sampling import but_slow
 
@@ -317,6 +317,16 @@ def test_what_may_be_meant_warns(trap):
     call, said = UNUSUAL[trap]
     with pytest.warns(ehd.PlausibilityWarning, match=said):
         call()
+
+
+@pytest.mark.parametrize(
+    ("onset", "advice"),
+    [(0.002, "if it is in mm, give 2e-06"), (0.5, "if it is in micrometres, give 5e-07"), (1e-4, None)],
+)
+def test_onsets_of_contact_in_other_units(onset, advice):
+    """Two micrometres in mm, half of one in micrometres."""
+    said = doubt("RegularisedWall.onset", onset, onset)
+    assert said is None if advice is None else advice in said[0]
 
 
 def test_a_mesh_in_millimetres_is_refused():

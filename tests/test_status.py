@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.status import hint_arguments
+from exudyn_ehd.status import InputError, hint_arguments, require_number
 
 
 def _descriptions():
@@ -77,3 +77,21 @@ def test_descriptions_stay_what_they_were():
 def test_what_is_gone_names_its_substitute(call, message):
     with pytest.raises(ehd.InputError, match=message):
         call()
+
+
+@pytest.mark.parametrize(
+    ("unit", "bounds", "value", "text"),
+    [
+        ("rad/s", {}, "fast", "must be a finite number in rad/s, got 'fast'."),
+        ("rad/s", {}, np.inf, "must be a finite number in rad/s, got inf."),
+        ("", {}, "fast", "must be a finite number, got 'fast'."),
+        ("m", {"above": 0.0}, "wide", "must be a number > 0 m, got 'wide'."),
+        ("m", {"above": 0.0}, -1.0, "must be > 0 m, got -1.0."),
+        ("m", {"above": 0.0}, np.inf, "must be > 0 m, got inf."),
+        ("m", {"at_least": 0.0, "below": 2.0}, 3.0, "must be between 0 and 2 m, got 3.0."),
+    ],
+)
+def test_what_a_number_must_be(unit, bounds, value, text):
+    with pytest.raises(InputError) as told:
+        require_number("Thing.size", value, unit, **bounds)
+    assert str(told.value) == f"Thing.size {text}"

@@ -236,7 +236,8 @@ def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
 
 def _joint(mbs: exu.MainSystem, number: Index) -> tuple[Data, str]:
     """Data of the joint, and how messages call it."""
-    require_type("ReplaceJoint.objectNumber", number, ObjectIndex)
+    index = f"exu.ObjectIndex({number if isinstance(number, int) else '...'})"
+    require_type("ReplaceJoint.objectNumber", number, ObjectIndex, hint=f"give {index}, as Exudyn returns it.")
     if not 0 <= int(number) < mbs.systemData.NumberOfObjects():
         raise InputError(f"ReplaceJoint.objectNumber: the system has no object {int(number)}.")
     joint = mbs.GetObject(number)

@@ -316,7 +316,7 @@ def test_end_pressures_in_an_array_are_a_pair():
     [
         (ehd.AxialGroove, {"angle": 0.0, "width_angle": 20.0}, "math.radians"),
         (ehd.AxialGroove, {"angle": 0.0, "width_angle": 0.0}, "width_angle must be > 0"),
-        (ehd.AxialGroove, {"angle": math.nan, "width_angle": 0.1}, "angle must be finite"),
+        (ehd.AxialGroove, {"angle": math.nan, "width_angle": 0.1}, "angle must be a finite number in rad, got nan"),
         (ehd.AxialGroove, {"angle": 0.0, "width_angle": 0.1, "length": -1.0}, "length must be > 0"),
         (ehd.AxialGroove, {"angle": 0.0, "width_angle": 0.1, "rotating": "yes"}, "rotating must be"),
         (ehd.Hole, {"angle": 0.0, "diameter": 0.0}, "diameter must be > 0"),
@@ -325,7 +325,7 @@ def test_end_pressures_in_an_array_are_a_pair():
         (
             ehd.Pocket,
             {"angle": 0.0, "width_angle": 0.1, "length": 0.1, "pressure": "high"},
-            "pressure must be a number",
+            "pressure must be a finite number in Pa",
         ),
     ],
 )

@@ -354,10 +354,10 @@ class UnbalanceResponse:
         """Forward and backward amplitude (k,) of a journal, by the name of its joint, or of a body or node, m."""
         if isinstance(item, str):
             if item not in self.joints:
-                raise InputError(f"UnbalanceResponse.orbit: no joint '{item}', there are {list(self.joints)}.")
+                raise InputError(f"UnbalanceResponse: no joint '{item}', there are {list(self.joints)}.")
             x, y = self.films[:, self.joints.index(item)].T
         else:
-            node = self.layout.spinning("UnbalanceResponse.orbit: item", item)
+            node = self.layout.spinning("UnbalanceResponse: item", item)
             first, frame = self.layout.nodes[node], self.layout.frames[node]
             x, y = (self.displacement[:, first : first + 3] @ frame[:, :2]).T
         if self.spin[0] < 0.0:

@@ -56,7 +56,7 @@ def find_rotors(
     else:
         groups = [
             _connected(node_of(mbs, entry), links)
-            if not isinstance(entry, Sequence)
+            if isinstance(entry, str) or not isinstance(entry, Sequence)
             else [node_of(mbs, part) for part in entry]
             for entry in rotors
         ]

@@ -44,7 +44,7 @@ from numba import njit
 from scipy.special import gamma, ndtr, pbdv
 
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
 
 # Beyond this many sigma the average gap equals the nominal one (to 2e-13 sigma).
 SMOOTH_BEYOND = 7.0
@@ -186,13 +186,18 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
     Raises
     ------
     InputError
-        For moduli that are not positive, or Poisson ratios beyond -1 to 0.5.
+        For other than two bodies, moduli that are not positive, or Poisson ratios beyond -1 to 0.5.
 
     Examples
     --------
     >>> round(1e-9 * ehd.composite_modulus((2.1e11, 1.1e11), (0.3, 0.34)), 1)  # GPa, steel on bronze
     80.8
     """
+    if not len(youngs_moduli) == len(poisson_ratios) == 2:
+        raise InputError(
+            "composite_modulus: youngs_moduli and poisson_ratios must be two numbers each, one of each body, got "
+            f"{len(youngs_moduli)} and {len(poisson_ratios)}."
+        )
     compliance = 0.0
     for E, nu in zip(youngs_moduli, poisson_ratios, strict=True):
         POSITIVE("composite_modulus: youngs_moduli", E)

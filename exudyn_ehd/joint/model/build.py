@@ -103,7 +103,7 @@ def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
         If the bearing is described by something else, or by an option that only a prescribed position allows.
     """
     if not isinstance(bearing, JournalBearing):
-        raise InputError(f"bearing must be a JournalBearing(...), got {bearing!r}.")
+        raise InputError(f"CreateLubricatedJoint.bearing must be a JournalBearing(...), got {bearing!r}.")
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError(
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is "

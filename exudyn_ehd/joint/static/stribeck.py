@@ -185,7 +185,7 @@ def _follow(search: LoadSearch, before: Place | None, start: np.ndarray, speed: 
     if found is None or reached < 1.0:
         raise FilmError(
             f"stribeck: no equilibrium found at {speed:.4g} rad/s under {search.size:.4g} N; next to "
-            f"{last * (speed / last) ** reached:.4g} rad/s: {failure}"
+            f"{last * (speed / last) ** reached:.4g} rad/s: {str(failure).removeprefix('stribeck: ')}"
         ) from failure
     return found
 

@@ -76,6 +76,8 @@ def test_pressure_scale():
 
 def test_composite_modulus_of_equal_bodies():
     assert ehd.composite_modulus((2.1e11, 2.1e11), (0.3, 0.3)) == pytest.approx(2.1e11 / (2 * 0.91), rel=1e-14)
+    with pytest.raises(ehd.InputError, match=r"composite_modulus: .* two numbers each, .*, got 1 and 2\."):
+        ehd.composite_modulus((2.1e11,), (0.3, 0.3))
 
 
 def test_average_gap_is_the_mean_of_the_clipped_gap():

@@ -162,5 +162,6 @@ def test_a_film_without_a_source_of_oil_is_refused():
 def test_a_load_that_no_film_carries_says_where_the_curve_ends():
     with pytest.raises(
         ehd.FilmError, match=r"stribeck: no equilibrium found at 1e-06 rad/s under 1e\+05 N.*GreenwoodT"
-    ):
+    ) as told:
         ehd.stribeck(bearing(), load=1e5, speeds=[1e-6])
+    assert str(told.value).count("stribeck: ") == 1
