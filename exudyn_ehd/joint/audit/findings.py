@@ -106,15 +106,17 @@ class Finding:
     on : bool or None
         True if the bearing has the effect; None for an assumption or a number that can't be switched.
     matters : bool
-        The effect changes something by more than 3 %; where no change was computed or no film was found, ``value``
-        beyond ``threshold``.
+        Switching the effect changes minimum film thickness, peak pressure or power loss at the same load by more than
+        3 %. Where no change was computed or no film was found: ``value`` is beyond ``threshold``.
     unneeded : bool
-        It takes time although it does not matter; never where no film was found without it.
+        The bearing has the effect, it takes computing time, and it does not matter; False if no film was found without
+        it.
     advice : str
         Remedy; empty if none is needed.
     change : Change or None
-        Change by switching the effect, computed at the audited states; not ``found`` if no film then carries the same
-        load. None if ``value`` alone shows that the effect is negligible, or if the films can't be compared.
+        Relative changes by switching the effect, computed at the audited states; ``change.found`` is False if no film
+        then carries the same load. None if ``value`` alone shows that the effect is negligible, or if the films can't
+        be compared.
     remedy : function or None
         Function that applies ``advice`` to a bearing.
     time_share : float or None
