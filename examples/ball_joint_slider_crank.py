@@ -1,13 +1,13 @@
 """A spatial slider-crank whose rod has oil-filled ball joints at both ends, next to Exudyn's ideal ones.
 
-The crank (radius 40 mm, 955 rpm, prescribed, axis z) moves through a rod of 160 mm a slider of 1.5 kg along x, 60 mm
-below the crank's plane. Balls of 20 mm in sockets with a radial clearance of 25 um and oil of 0.1 Pa s; the sockets
+The crank (radius 40 mm, prescribed 955 rpm about z) drives a slider of 1.5 kg along x, 60 mm below the crank's plane,
+by a rod of 160 mm. Balls of 20 mm run in sockets with a radial clearance of 25 um and oil of 0.1 Pa s. The sockets
 belong to the rod: belts about the balls' equators, open where the studs come out. The numbers are our own.
 
-The ball on the crank turns in its socket with the whole speed of the crank, so that a wedge carries it; that of the
-slider swings only, and at every reversal of the load it is squeezed from one side of the socket to the other. The
-slider leaves the path of the ideal mechanism by what both films give way, and the forces of the films are those of the
-ideal joints.
+The ball on the crank turns in its socket with the whole speed of the crank, so that a wedge film carries it. The
+slider's ball only swings: at every reversal of the load it is squeezed from one side of the socket to the other. The
+slider deviates from the path of the ideal mechanism by the displacements of the balls in both sockets; the forces are
+those of the ideal joints.
 
 Run ``python examples/ball_joint_slider_crank.py``; the picture is written to ``results/ball_joint_slider_crank``.
 """

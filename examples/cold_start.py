@@ -1,12 +1,13 @@
 """Cold start of a rotor: its bearing loses clearance because the journal warms up faster than the housing.
 
 A steel journal of 80 mm diameter starts at 3000 rpm in a bearing of 40 mm length, fed by a groove with oil at 40
-degrees Celsius; shaft and housing, a heavy steel ring, are at 20. The film heats both of them, and each grows with the
-mean temperature of its section: the solid journal soon, the ring much later.
+degrees Celsius; shaft and housing (a heavy steel ring) are at 20 degrees. The film heats both of them, and each expands
+with the mean temperature of its section: the solid journal soon, the ring much later.
 
-1. With 50 um of radial clearance the journal takes a fifth of it within a minute or two, until the ring follows.
-2. With 20 um `equilibrium` finds a steady film of 15 um, once all is warm. The cold start never gets there: the
-   clearance closes, the film heats the more the thinner it is, and after 80 s the bearing seizes.
+1. With 50 um of radial clearance the journal's expansion takes a fifth of it within a minute or two; then the ring
+   expands too.
+2. With 20 um `equilibrium` finds a steady film of 15 um with all parts warm. The cold start never gets there: the
+   clearance closes, the thinner film heats more, and after 80 s the bearing seizes.
 
 Run ``python examples/cold_start.py``; a picture is written to ``results/cold_start``.
 """

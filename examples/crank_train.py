@@ -1,10 +1,11 @@
 """Crank train of a three-cylinder engine over four-stroke cycles: four main bearings and three big ends on oil.
 
-A petrol engine of one litre at 3000 rpm and full load; sizes are usual ones, of no engine in particular. Four main
-bearings carry one rigid crankshaft: ideal joints could not say which of them carries how much, films do. Ideal joints
-guide the pistons and hold the rods' small ends. A groove in the upper shell feeds each main bearing, a hole in the pin
-each big end. The gas is an ideal one, d(p V^k) = (k - 1) V^(k-1) dQ, with Wiebe's burn function for the heat Q
-(J. I. Ghojel, Int. J. Engine Research 11 (2010) 297). Rigid surfaces, one viscosity: ``joint.audit()`` weighs them.
+A petrol engine of one litre at 3000 rpm and full load, with typical sizes of no engine in particular. Four main
+bearings carry one rigid crankshaft: with ideal joints their loads would be undetermined, the films determine them.
+Ideal joints guide the pistons and hold the rods' small ends. A groove in the upper shell feeds each main bearing, a
+hole in the pin each big end. The gas is an ideal one, d(p V^k) = (k - 1) V^(k-1) dQ, with Wiebe's burn function for the
+heat Q (J. I. Ghojel, Int. J. Engine Research 11 (2010) 297). Surfaces are rigid and the viscosity is constant:
+``joint.audit()`` tells how much that matters.
 
 Run ``python examples/crank_train.py``; the picture is written to ``results/crank_train``.
 """

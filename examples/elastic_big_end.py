@@ -1,9 +1,9 @@
 """The big end of a connecting rod: an elastic bore on a moving housing.
 
 A slider-crank at 3000 rpm with a gas pulse on the piston. The rod's big end is the housing and carries a steel bush of
-8 mm, the crank pin is the journal. Rigid bore against a modal bush: the elastic one lowers the pressure peak of the
-firing stroke and changes the minimum film thickness. Both runs end when the orbit of the cycle of two turns has closed
-within a thousandth of the clearance; the picture shows the last cycle.
+8 mm, the crank pin is the journal. Compared with a rigid bore, the elastic bush (`ModalBush`) lowers the pressure peak
+of the firing stroke and changes the minimum film thickness. Both runs end when the orbit repeats from one cycle (two
+turns) to the next within a thousandth of the clearance; the picture shows the last cycle.
 
 Run ``python examples/elastic_big_end.py``; the picture is written to ``results``.
 """

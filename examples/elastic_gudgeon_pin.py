@@ -1,9 +1,9 @@
 """The gudgeon pin of an engine, tilted and bent.
 
 A four-stroke cycle at 3000 rpm. The piston is the journal and holds a hollow pin in its two bosses; the rod's small end
-is the housing, with a steel eye of 6 mm around the pin. The rod's bores are out of parallel by 1.5e-4, so that the pin
-stands askew in its film, and the gas bends it in between its bosses and flattens it. Minimum film thickness and peak
-pressure over the cycle for a rigid pin, an elastic pin, and an elastic pin in an elastic eye.
+is the housing, with a steel eye of 6 mm wall around the pin. The rod's bores are out of parallel by 1.5e-4 rad, so that
+the pin is tilted in its film; the gas force bends it between its bosses and flattens it. The picture shows minimum film
+thickness and peak pressure over the cycle for a rigid pin, an elastic pin, and an elastic pin in an elastic eye.
 
 Run ``python examples/elastic_gudgeon_pin.py``; the picture is written to ``results``.
 """

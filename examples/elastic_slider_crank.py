@@ -6,11 +6,10 @@ kg m2); here it is a flat steel bar of the same mass, 10 mm high in the plane of
 radius 10 mm, length 20 mm, clearance 20 um, 0.02 Pa s. Four mechanisms side by side: rod rigid or elastic, pins ideal
 (Exudyn's revolute joints) or lubricated.
 
-What the elastic rod changes: its own inertia, m w^2 r per length at the crank, bends it by 0.09 mm, more than four
-clearances, first one way and then the other; it is stretched by 12 um at the inner dead centre, about as far as the
-gudgeon pin leaves the middle of its film; and the bend turns the rod's eyes by 0.14 degrees, which adds to the swing of
-the pins. The film sees forces, which the mechanism's inertia sets: orbits and films stay those of the rigid rod within
-a few per cent, while the slider's position and velocity do not.
+What the elastic rod changes: its own inertia bends it by 0.09 mm to either side, more than four clearances. At the
+inner dead centre it is stretched by 12 um, about the eccentricity of the gudgeon pin. The bend turns the rod's eyes by
+0.14 degrees, which adds to the swing of the pins. The forces on the films come from the mechanism's inertia: orbits and
+films differ from those of the rigid rod by a few per cent only, the slider's position and velocity by more.
 
 The beam. P. Flores, "Modeling, Analysis and Simulation of 3D Elastohydrodynamic Revolute Joints in Multibody Systems",
 takes the two-node element of A. A. Shabana and R. Y. Yakoub (J. Mechanical Design 123 (2001) 606): position and all
@@ -22,7 +21,8 @@ little, a simply supported beam under uniform load by 8 / (5 n^2), a tension is 
 needs fewer elements, with more coordinates each; the strains of its solid's cross section stiffen it in bending
 (Poisson locking), which section stiffnesses do not.
 
-The orbits of the pins have closed to a hundredth of the clearance after three turns, or the run is refused.
+After three turns the orbits of the pins repeat within a hundredth of the clearance; otherwise the example raises an
+error.
 
 Run ``python examples/elastic_slider_crank.py``; pictures are written to ``results/elastic_slider_crank``.
 """

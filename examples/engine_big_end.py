@@ -13,11 +13,11 @@ The same engine is driven through five bearings:
   bearing is too stiff,
 * ``Gümbel``: the same with the linear pressure clipped,
 * ``oil balance``: Elrod-Adams, with the oil of the cavities as history; fed by the ends and by a hole in the pin at
-  3 bar. The others forget their start within a cycle; here each cycle still misses a quarter of what the one before
-  missed,
+  3 bar. The other films forget their start within a cycle; here each cycle reduces the distance from the periodic
+  orbit to a quarter only,
 * ``elastic``: the default film on a steel bush 6 mm thick.
 
-Each run ends when its orbit has closed within a thousandth of the clearance.
+Each run ends when its orbit repeats from one cycle to the next within a thousandth of the clearance.
 
 Run ``python examples/engine_big_end.py``; pictures are written to ``results/engine_big_end``.
 """

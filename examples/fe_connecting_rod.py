@@ -2,16 +2,22 @@
 
 The slider-crank of `elastic_big_end.py`, 3000 rpm with a gas pulse on the piston, with the whole rod as a reduced
 finite-element body: two eyes and a shank of 20-node hexahedra, small end as rigid interface, eigenmodes of the rod and
-the modes that its bore needs under an oil film. At the firing the mechanism asks a rigid rod and both elastic ones for
-the same pin force. What the oil does with it is a matter of the shank: a narrow one carries the firing load in the
-middle of a thin eye that yields next to it, so that the pressure gathers over the shank and the film right after the
-firing is less than half as thick as in a rigid bore; a wide one backs the whole loaded side, the bore yields where the
-pressure is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart. (The wide
-shank is the heavier one: between firings its inertia asks for more force than that of the narrow one, whose mass the
-rigid rod has.) The run begins half a turn before the one that is shown, at the inner dead centre, so that the journal
-has left the middle of its bore and the rod's first vibrations are gone. It does not go on until the cycle of two turns
-closes, which takes two and a half times as long: there, the turn of the next firing is within 3 % of the clearance of
-the one shown at its beginning, within 0.5 % from 60 degrees on, and has its peak and minimum film thickness to 0.1 %.
+the modes that its bore needs under an oil film. At the firing the pin force is the same for a rigid rod and for both
+elastic ones. The film depends on the shank:
+
+* A narrow shank carries the firing load in the middle of a thin eye, which deflects on both sides of it. The pressure
+  concentrates over the shank, and the film right after the firing is less than half as thick as in a rigid bore.
+* A wide shank backs the whole loaded side: the bore deflects where the pressure is largest, and the peak is below that
+  of the rigid bore.
+
+A bush in a rigid housing can't show this difference. The wide shank is heavier, so that between firings its inertia
+force is larger than that of the narrow one, whose mass the rigid rod has.
+
+The run begins half a turn before the one that is shown, at the inner dead centre, so that the journal has left the
+middle of its bore and the rod's first vibrations have decayed. It does not continue until the cycle of two turns
+repeats, which takes two and a half times as long. Compared with the turn of the next firing, the orbit shown is off by
+3 % of the clearance at its beginning and by 0.5 % from 60 degrees on; peak pressure and minimum film thickness by
+0.1 %.
 
 Run ``python examples/fe_connecting_rod.py``; the picture is written to ``results``.
 """

@@ -1,15 +1,16 @@
 """A hollow finite-element shaft in a bearing that carries a standing load: round and oval bore against a rigid one.
 
-A shaft of 40 mm runs at 2865 rpm under 8 kN that stand still, in one bearing of 30 mm. A flywheel drives it through a
-coupling that turns it and holds it along its axis alone. The wall of a hollow shaft yields where the oil presses it:
-the peak falls from 17.8 to 12.4 MPa, and the film is thinnest at the bearing's ends now, where the wall yields least,
-6.4 in place of 7.1 µm. If the hole is oval the shaft is softer in one direction than in the other, and the film
-breathes twice in every turn under a load that never changes, from 6.1 to 6.5 µm. A journal whose modes stand still in
-the film (`ElasticJournal`) can't show that; the modes of a finite-element body turn with it. The walls have the same
-area to 0.7 %; the end faces carry the floating frame, so that bending is a matter of the modes, too.
+A shaft of 40 mm runs at 2865 rpm under a constant load of 8 kN in one bearing of 30 mm length. A flywheel drives it
+through a coupling that transmits rotation and axial position only. The wall of a hollow shaft deflects under the oil
+pressure: the peak falls from 17.8 to 12.4 MPa. The minimum film thickness falls from 7.1 to 6.4 µm and moves to the
+bearing's ends, where the wall deflects least. With an oval hole the shaft is softer in one direction than in the
+other: under the same constant load the minimum film thickness varies twice in every turn, from 6.1 to 6.5 µm. A
+journal whose modes stand still in the film (`ElasticJournal`) can't show that; the modes of a finite-element body turn
+with it (`FEJournal`). The cross sections have the same area to 0.7 %. The end faces carry the floating frame, so that
+modes represent the bending too.
 
-The rigid shaft begins where it is in balance, the others where the round one is. The first turn, in which what was
-thrown by the start dies out, is left out of all numbers.
+The rigid shaft starts in its equilibrium, the others in that of the round shaft. All numbers leave out the first turn,
+in which the oscillation of the start decays.
 
 Run ``python examples/fe_shaft.py``; the picture is written to ``results``.
 """

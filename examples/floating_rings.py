@@ -13,11 +13,12 @@ What is compared:
       J dw/dt = 2 pi mu_i Ri^3 Li / ci (W - w) - 2 pi mu_o Ro^3 Lo / co w
 
   Before the films whirl, the ring is within 1 % of that, later within 5 %.
-* The whirl against the mean speed of the surfaces, (W + w) / 2 in an inner and w / 2 in an outer film. The outer film,
-  whose housing stands still, shows both: at 2300 Hz 0.60 and 0.145 of the shaft's speed, the means are 0.64 and 0.14.
+* The frequencies of whirl against the mean speed of the surfaces, (W + w) / 2 in an inner and w / 2 in an outer film.
+  The motion in the outer film, whose housing stands still, contains both whirls: at 2300 Hz 0.60 and 0.145 of the
+  shaft's speed, where the mean speeds are 0.64 and 0.14.
 
-The estimated error of the time steps (``history.step_error``) follows one film alone. For an inner film in a ring that
-whirls it grows without bound and says nothing. Steps of half the length change no number of the table by 0.5 %.
+The estimated error of the time steps (``history.step_error``) is that of one film alone. For an inner film in a ring
+that whirls it grows without bound: ignore it there. Steps of half the length change no number of the table by 0.5 %.
 
 Run ``python examples/floating_rings.py``; the picture is written to ``results/floating_rings``.
 """

@@ -1,19 +1,19 @@
 """A spatial four-bar mechanism whose elastic rocker tilts its journals in their bearings.
 
-An RSSR mechanism: a crank (radius 20 mm, 1800 rpm, axis y) moves through a coupler with a ball at either end a rocker
-whose axis x crosses the crank's at 90 degrees. The rocker is a steel shaft of 16 mm in two bearings 100 mm apart
-(length 16 mm, radial clearance 16 um, 0.04 Pa s), with an arm overhanging by 30 mm; the coupler takes hold of the arm's
-middle, a tool of 0.25 kg sits at its tip. The numbers are our own. The tool's inertia, 0.6 kN to and fro, bends arm and
-shaft. Between the bearings the shaft sees no other force, so that beam theory gives the tilt of the right journal from
-what the left film carries: with force F and moment M on the left journal, distance s, and the section's rotation in
-place of the axis' slope::
+An RSSR mechanism: a crank (radius 20 mm, 1800 rpm, axis y) drives a rocker, whose axis x crosses the crank's at 90
+degrees, by a coupler with a ball joint at either end. The rocker is a steel shaft of 16 mm in two bearings 100 mm apart
+(length 16 mm, radial clearance 16 um, 0.04 Pa s), with an arm overhanging by 30 mm. The coupler pulls at the arm's
+middle, a tool of 0.25 kg sits at its tip. The numbers are our own. The tool's inertia force, 0.6 kN in both directions,
+bends arm and shaft. No other force acts on the shaft between the bearings, so that beam theory gives the tilt of the
+right journal from the force F and the moment M of the left film, with the bearings' distance s, and the section's
+rotation in place of the axis' slope::
 
     tilt = (e_right - e_left) / s + F s^2 / (3 EI) - M s / (2 EI) + F / (k GA)
 
 A rigid rocker tilts only as far as its two journals are eccentric to different sides: the first term, below 1e-4 rad.
-Elastic, the right journal stands aslant by 9e-4 rad. Its film is thinnest at the bearing's edge, little more than half
-as thick as a calculation of the same bearing under the same load finds with parallel axes: the usual way to size
-bearings, done here with the recorded load on a journal that can't tilt.
+With the elastic rocker the right journal is tilted by 9e-4 rad. Its film is thinnest at the bearing's edge, little
+more than half as thick as under the same load with parallel axes. The latter is the usual way to size bearings, done
+here with the recorded load on a journal that can't tilt.
 
 The rocker swings by +-20 degrees: twice per turn there is no entrainment and the squeeze of the film alone carries.
 
@@ -21,7 +21,7 @@ Shaft and arm are geometrically exact beams (``ObjectBeamGeometricallyExact`` on
 angle is the swing); the rigid rocker is one body of the same mass and inertia, with the same bearings, and with
 Exudyn's ideal revolute joint. The coupler has no mass.
 
-The journals' orbits have closed to 2 % of the clearance after four turns, or the run is refused.
+After four turns the journals' orbits repeat within 2 % of the clearance; otherwise the example raises an error.
 
 Run ``python examples/four_bar_spatial.py``; pictures are written to ``results/four_bar_spatial``.
 """

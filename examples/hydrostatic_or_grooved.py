@@ -6,11 +6,10 @@ Swift-Stieber's (pressure and slope vanish at the rupture line) and Elrod and Ad
 
 1. What does the film do at a given position, aligned and tilted? Elrod-Adams and Gümbel are laid next to another
    finite-volume code on the same case, which shears the oil in the groove as on a land.
-2. Where should the groove be? The load of 3 kN is fixed, the groove's angle varies. What flows in has to flow out:
-   only the mass-conserving film knows, and only it notices that a groove under the load starves the film until it can't
-   carry.
-3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN with a tenth of
-   it. The run begins half a turn of the load before the turn that is shown.
+2. Where should the groove be? The load of 3 kN is fixed, the groove's angle varies. Only the mass-conserving film
+   balances inflow and outflow, so only it shows that a groove under the load starves the film until it can't carry.
+3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN at a tenth of
+   that speed. The run begins half a turn of the load before the turn that is shown.
 
 Run ``python examples/hydrostatic_or_grooved.py``; pictures are written to ``results/hydrostatic_or_grooved``.
 """

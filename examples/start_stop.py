@@ -2,12 +2,12 @@
 
 Journal bearings wear when they start and stop. A steel shaft of 5 kg (50 mm diameter, bush of bronze 25 mm long, 25 um
 radial clearance, oil of 20 mPa s) is pressed down by 2 kN. At rest its asperities carry everything. A motor with a
-speed governor brings it to 60 rad/s in 0.2 s: the film takes over at 34 rad/s, where steady running needs 5. Then the
-motor is cut, and the shaft coasts on the film's drag until it stops after 1.2 s, still on its film.
+speed governor brings it to 60 rad/s in 0.2 s: the asperities lift off at 34 rad/s, while in steady running 5 rad/s
+are enough. Then the motor is cut, and the film's drag brakes the shaft until it stops after 1.2 s, still on its film.
 
 The asperity contact is Greenwood and Tripp's with boundary friction of 0.1, the film's average flow Patir and Cheng's
 (composite roughness 0.5 um, both surfaces isotropic), the wear Archard's with 1e-16 m2/N, a common value for boundary
-lubrication, one start standing for a thousand.
+lubrication, accelerated so that one start counts as a thousand.
 
 Shown side by side: the Stribeck curve of steady running (``ehd.stribeck``) and the friction that the shaft meets
 on its way up and down, which leaves the curve where the film is squeezed or drawn in.

@@ -4,10 +4,10 @@ A shaft of 20 kg (50 mm journal, 300 rad/s) carries a gear: 2 kN across the axis
 their sign within 2 ms when the torque does. Nothing but oil holds the shaft along its axis: films on the two end faces
 of its bearing (26 to 45 mm radius, 40 um of room on either side) against two collars.
 
-1. With six taper lands on either face the wedge carries: the shaft comes to rest where ``ehd.steady`` says, goes over
-   to the other face when the force turns, and stops there, without touching.
-2. Plane faces are as good as the lands as a damper, but have no wedge: the shaft creeps on under a lasting force until
-   it rubs on the wall that takes over from the film.
+1. With six taper lands on either face a wedge film carries: the shaft comes to rest where ``ehd.steady`` predicts,
+   moves to the other face when the force reverses, and stops there, without touching.
+2. Plane faces damp as well as the lands, but have no wedge: under a lasting force the shaft creeps on until it touches
+   the face, where the contact model carries it.
 
 Run ``python examples/thrust_reversal.py``; a picture is written to ``results/thrust_reversal``.
 """

@@ -5,10 +5,10 @@ carries 4 kN, the weight of its share of the rotor. At 3000 rpm the Reynolds num
 1300 at which a film with this clearance leaves the laminar flow. Two questions are asked with the laminar film, Ng and
 Pan's law and Hirs' law:
 
-1. Where does the journal run over the speed, and what does the film take? Turbulence lifts the journal and costs
-   several times the power.
-2. A lifted journal whirls sooner. At 5000 rpm the rotor is set beside its equilibrium in Exudyn: on the laminar film
-   the orbit dies away, on turbulent films it grows, as the critical mass of `equilibrium` says.
+1. Which position and which power loss has the journal over the speed? Turbulence lifts the journal and makes the
+   power loss several times larger.
+2. Does the rotor whirl? A lifted journal does so sooner. At 5000 rpm the rotor starts beside its equilibrium in Exudyn:
+   on the laminar film the orbit decays, on turbulent films it grows, as the critical mass of `equilibrium` predicts.
 
 Run ``python examples/turbulent_bearing.py``; a picture is written to ``results/turbulent_bearing``.
 """

@@ -6,8 +6,8 @@ second axis x, a force of 0.5 N and a torque of 0.1 Nm on the tip; pins of 20 mm
 builds it with ideal joints, ``after`` with bearings: the program prints the difference of the two functions, which is
 all that a model needs. The bearings have a radial clearance of 40 um and a gear oil of 0.4 Pa s.
 
-What the bearings change: the pins tilt and travel within their clearance, the film brakes the fall, and what it takes
-out of the mechanism's energy is what its losses add up to.
+What the bearings change: the pins tilt and move within their clearance, and the film brakes the fall. The mechanism's
+loss of energy equals the integral of the films' power loss.
 
 Run ``python examples/upgrade_existing_model.py``; the picture is written to ``results/upgrade_existing_model``.
 """

@@ -28,6 +28,10 @@ MOST_VERTICES = 20_000
 class Status(enum.IntEnum):
     """Outcome of one film evaluation: converged, or why not; ``advice`` says what to do about it.
 
+    CONVERGED: evaluated. NOT_CONVERGED: the cavitation model did not converge. NO_FILM: the gap closed. NO_PRESSURE: no
+    finite pressure carries the film with this viscosity-pressure law. OUTSIDE_MAP: outside an `ImpedanceMap`. NO_OIL: a
+    steady `ElrodAdams` film has no source of oil. NOT_FINITE: the state is not finite.
+
     Examples
     --------
     After the example of `solve_film`:

@@ -143,9 +143,9 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         Parameters
         ----------
         liner : ElasticLiner or None, default None
-            Liner whose elasticity is assessed if the bearing has none.
+            Liner to assess elasticity with, for bearings without one; None: a steel ring around the journal.
         measure_time : bool, default False
-            Measure the share of computing time of each active effect.
+            True measures the share of computing time of each effect that is on.
 
         Returns
         -------

@@ -267,10 +267,12 @@ def bearing_grid(
 ) -> FilmGrid:
     """Grid of a journal bearing's film, for `solve_film`.
 
+    Its vertices are at theta = ``grid.x``, rad, and z = ``grid.z * grid.reference_length``, m, from -L/2 to L/2.
+
     Parameters
     ----------
     radius, length : float
-        R and L in m.
+        Radius R and length L, m.
     n_theta, n_z : int
         Vertices around, intervals along z: the grid has n_theta x (n_z + 1) vertices.
     stretch : float, default 0.75
@@ -278,9 +280,11 @@ def bearing_grid(
     start_angle : float, default 0.0
         theta of the first column, rad.
     open_ring : bool, default False
-        True: the first column carries a prescribed pressure (the film starts there).
+        True: the first column has a prescribed pressure, so that the film starts and ends there. The vertices at both
+        ends of the bearing have one in any case.
     rows : tuple of (m,) arrays or None, default None
-        Axial vertices over R, from end to end, and their weights; they replace ``n_z`` and ``stretch``.
+        z / R of the axial vertices, from end to end, and their integration weights, also over R; they replace ``n_z``
+        and ``stretch``.
 
     Returns
     -------
@@ -413,22 +417,23 @@ def slider_grid(
 ) -> FilmGrid:
     """Grid of a plane slider's film, for `solve_film`: x in [0, length], z in [-width/2, width/2].
 
-    Columns are cell centres between two end columns of zero width, which carry the pressures at x = 0 and x = length,
-    so that a gap may jump at the faces between cells. With ``sealed_sides`` no flow leaves through z = +-width/2 (a
-    one-dimensional film for n_z = 1).
+    Its vertices are at ``grid.x`` and ``grid.z`` times ``grid.reference_length``, m. The columns are the centres of n_x
+    cells, between two end columns of zero width for the pressures at x = 0 and x = length, so that a gap may jump at
+    the faces between cells: the grid has (n_x + 2) x (n_z + 1) vertices.
 
     Parameters
     ----------
     length, width : float
-        m.
+        Extent in x, the direction of sliding, and in z, m.
     n_x, n_z : int
         Cells in x, intervals in z.
     stretch : float, default 0.75
-        Axial stretching, 0 is uniform.
+        Stretching in z in [0, 1): 0 is uniform, larger values refine the sides.
     sealed_sides : bool, default False
-        No side flow instead of prescribed side pressures.
+        True: no flow through the sides z = -width/2 and width/2 (with n_z = 1 a one-dimensional film). False: the sides
+        have a prescribed pressure.
     reference_length : float or None, default None
-        Scale of all lengths, m; default ``length``.
+        Length by which ``grid.x`` and ``grid.z`` are divided, m; None: ``length``.
 
     Returns
     -------

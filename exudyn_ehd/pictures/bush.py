@@ -87,7 +87,7 @@ def plot_bearing(
         style_ticks(figure.colorbar(bar, ax=ax, label=label("pressure", unit), shrink=0.7, pad=0.02).ax)
         if own:
             R, L = 1e3 * film.bearing.journal_radius, 1e3 * film.bearing.length
-            sizes = f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale"
+            sizes = f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale\narrow: load on the bush"
             ax.set_title(headed(title, sizes), y=0.98)
     return figure
 

@@ -113,13 +113,13 @@ def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, pa
             dots = ax.scatter(x[part], y[part], s=size, c=table["whirl"][part], cmap=_SENSE, vmin=-1, vmax=1, lw=0)
         growing = table["growth"] > 0.0
         if growing.any():
-            ax.plot(x[growing], y[growing], "x", color="black", ms=3.0, mew=0.6, label="grows")
+            ax.plot(x[growing], y[growing], "x", color="black", ms=3.0, mew=0.6, label="grows: unstable")
         for order, style in ((1.0, "--"), (0.5, ":")):
             ax.plot(RPM(speed), HERTZ(order * speed), style, color=GREY, lw=0.8, label=f"{order:g} x speed")
         ax.set(xlabel=label("speed", RPM), ylabel=label("frequency", HERTZ), ylim=(0.0, top))
         ax.legend(loc="upper left")
         bar = figure.colorbar(dots, ax=ax, ticks=[-1, 0, 1])
-        bar.ax.set_yticklabels(["backward", "line", "forward"])
+        bar.ax.set_yticklabels(["backward", "straight line", "forward"])
         style_ticks(bar.ax)
     return figure
 
@@ -175,7 +175,7 @@ def plot_response(
                 (line,) = panel.plot(x, np.where(stable, y, np.nan), label=text)
                 panel.plot(x, np.where(stable, np.nan, y), ":", color=line.get_color())
         upper.set(ylabel=label("amplitude", unit), ylim=(0.0, None))
-        lower.set(xlabel=label("speed", RPM), ylabel="phase after the\nunbalance [°]")
+        lower.set(xlabel=label("speed", RPM), ylabel="phase relative to\nthe unbalance [°]")
         for panel in (upper, lower):
             style_ticks(panel, grid=True)
             panel.margins(x=0.0)

@@ -59,9 +59,16 @@ ROWS: Mapping[str, AuditRow] = {
 class Audit:
     """Table of effects: which mattered, which omitted ones would have, which are not needed; print it.
 
+    From `SteadyResult.audit` or `LubricatedJoint.audit`. Columns of the printed table: the effect; on or off (- for an
+    assumption or a number); the largest change of minimum film thickness, peak pressure and power loss at the same load
+    if the effect is switched; an indicator's value and the limit beyond which the effect may matter; share of computing
+    time; verdict; meaning of the indicator. An effect matters if it changes one of the three by more than 3 %. Advice
+    stands below the table.
+
     Attributes
     ----------
     findings : tuple of Finding
+        The rows.
 
     Examples
     --------
@@ -129,8 +136,9 @@ class Audit:
     def improved(self, bearing: JournalBearing) -> JournalBearing:
         """The bearing with missing effects switched on, with typical numbers, and unneeded ones switched off.
 
-        Follows every advice that the bearing's description allows; with an arc, heat and surfaces that deflect stay
-        off. Effects change each other: audit the new bearing's film or run again, until nothing is left to change.
+        It follows every advice that the bearing's options allow; an arc takes neither heat nor surfaces that deflect.
+        The new numbers are typical ones: replace them by yours. Effects act on each other: compute the film or the run
+        anew with the result and audit it, until nothing is left to change.
 
         Parameters
         ----------

@@ -106,15 +106,17 @@ class Finding:
     on : bool or None
         True: the bearing has the effect; False: it has not; None: an assumption or a number that can't be switched.
     matters : bool
-        The effect changes minimum film thickness, peak pressure or power loss at the same load by more than 3 %. Where
-        no change was computed or no film was found: ``value`` is beyond ``threshold``.
+        Switching the effect changes minimum film thickness, peak pressure or power loss at the same load by more than
+        3 %. Where no change was computed or no film was found: ``value`` is beyond ``threshold``.
     unneeded : bool
-        The effect takes computing time although it does not matter; never if no film was found without it.
+        The bearing has the effect, it takes computing time, and it does not matter; False if no film was found without
+        it.
     advice : str
         Remedy; empty if none is needed.
     change : Change or None
-        Largest change of the audited films by switching the effect on or off; not ``found`` if no film then carries the
-        same load. None if ``value`` alone shows that the effect is negligible, or if the films can't be compared.
+        Relative changes by switching the effect, computed at the audited states; ``change.found`` is False if no film
+        then carries the same load. None if ``value`` alone shows that the effect is negligible, or if the films can't
+        be compared.
     remedy : function or None
         Function that applies ``advice`` to a bearing.
     time_share : float or None

@@ -257,9 +257,9 @@ class SteadyResult(FilmRecord, FilmPictures):
         Parameters
         ----------
         liner : ElasticLiner or None, default None
-            Liner whose elasticity is assessed, for bearings without one.
+            Liner to assess elasticity with, for bearings without one; None: a steel ring around the journal.
         measure_time : bool, default False
-            Measure the share of computing time of each active effect.
+            True measures the share of computing time of each effect that is on.
 
         Returns
         -------
