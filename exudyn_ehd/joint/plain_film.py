@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.linear_film import extend_film
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
@@ -21,9 +22,14 @@ from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, OilFie
 _NO_CONTACT = np.zeros(6)
 
 
+def has_plain_edges(bearing: JournalBearing) -> bool:
+    """Return whether no pressure acts on the cross sections at which the film of an arc ends."""
+    return bearing.arc is None or not any((*bearing.arc.pressures, *bearing.end_pressures))
+
+
 def is_plain(parts: FilmParts, effects: Effects) -> bool:
     """Return whether `solve_plain` can solve films of these parts."""
-    s, arc = parts.solver, parts.bearing.arc
+    s = parts.solver
     return (
         effects == Effects()
         and type(s) is FilmSolver
@@ -31,7 +37,7 @@ def is_plain(parts: FilmParts, effects: Effects) -> bool:
         and s.complementary
         and not s.closure.conserves_mass
         and parts.supply is None
-        and (arc is None or not any((*arc.pressures, *parts.bearing.end_pressures)))
+        and has_plain_edges(parts.bearing)
     )
 
 

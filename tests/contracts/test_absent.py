@@ -40,15 +40,18 @@ def oil(**laws):
 
 # Modules that belong to an effect alone, and options that must call each of them.
 EFFECTS = {
-    "contact": (("film.surfaces.contact",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
+    "contact": (("film.surfaces.contact:WallContact",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
     "contact loads": (
-        ("film.surfaces.contact", "film.surfaces.patir_cheng"),
+        ("film.surfaces.contact:add_contact", "film.surfaces.patir_cheng:drag_weights"),
         {"contact": ehd.RegularisedWall(onset=0.9 * C)},
     ),
-    "asperity": (("film.surfaces.asperity",), {"asperity": ASPERITY}),
+    "asperity": (
+        ("film.surfaces.asperity:AsperityContact", "film.surfaces.asperity:AverageGap"),
+        {"asperity": ASPERITY},
+    ),
     "roughness": (("film.surfaces.patir_cheng",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
     "turbulence": (("film.reynolds.turbulence",), {"turbulence": ehd.Hirs(onset=2.0, full=4.0, coefficient=5.0)}),
-    "wear": (("film.surfaces.contact",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
+    "wear": (("film.surfaces.contact:ArchardWear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
     "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
     "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
     "shear law": (
@@ -62,7 +65,7 @@ EFFECTS = {
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
     "energy": (("film.heat.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
     "walls": (
-        ("film.heat.options",),
+        ("film.heat.options:Walls", "film.heat.options:Rings"),
         {
             "lubricant": HOT,
             "thermal": ehd.FilmEnergy(
@@ -117,7 +120,7 @@ EFFECTS = {
         {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True), "bush": LINER},
     ),
     "holes": (
-        ("film.supply.cuts", "film.supply.holes"),
+        ("film.supply.cuts", "film.supply.cuts:recess_shear", "film.supply.holes"),
         {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5, depth=1e-3),)},
     ),
     "thrust": (
@@ -169,7 +172,7 @@ SHARED = {
 
 FILM = pathlib.Path(ehd.__file__).parent / "film"
 FOUND = {".".join(path.relative_to(FILM).with_suffix("").parts) for path in FILM.rglob("[!_]*.py")}
-NAMED = {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
+NAMED = {name[5:].partition(":")[0] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
 # A module with a public option of its own need not be named above.
 EFFECTS |= {
     f"{name} of {module}": ((f"film.{module}",), {name: option} if name not in LAWS else oil(**{name: option}))
@@ -194,10 +197,16 @@ def forbidden(*_, **__):
 
 
 def forbid(patch, *names):
-    """Let everything that these modules define raise; classes keep their names, for questions of type."""
+    """Let everything that these modules define raise; classes keep their names, for questions of type.
+
+    ``module:name`` is one class or function of a module that several effects share.
+    """
     # all of them first: one that is imported later would keep what it takes from another one
-    for module in [importlib.import_module(f"exudyn_ehd.{name}") for name in names]:
+    parts = [name.partition(":") for name in names]
+    for module, only in [(importlib.import_module(f"exudyn_ehd.{name}"), only) for name, _, only in parts]:
         own = [item for item in vars(module).values() if getattr(item, "__module__", None) == module.__name__]
+        own = [item for item in own if only in ("", item.__name__)]
+        assert own, (module, only)
         for item in own:
             if inspect.isclass(item):
                 if not getattr(item, "_is_protocol", False):
@@ -238,8 +247,8 @@ def use(made):
 
 
 def test_every_module_of_the_film_is_asked_about():
-    named = {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
-    assert SHARED | named == FOUND
+    names = [name for modules, _ in EFFECTS.values() for name in modules if name.startswith("film.")]
+    assert SHARED | {name[5:].partition(":")[0] for name in names} == FOUND
 
 
 @pytest.mark.parametrize("closure", CLOSURES)
@@ -248,7 +257,7 @@ def test_a_plain_film_calls_no_effect(closure, monkeypatch):
     expected = use(made)
     present = ("mass conservation", "elrod"), ("line", "swift")
     absent = [modules for name, (modules, _) in EFFECTS.items() if (name, closure) not in present]
-    forbid(monkeypatch, *(module for modules in absent for module in modules))
+    forbid(monkeypatch, *{module.partition(":")[0] for modules in absent for module in modules})
     for a, b in zip(use(made), expected, strict=True):
         np.testing.assert_array_equal(a, b)
 

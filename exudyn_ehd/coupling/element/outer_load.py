@@ -244,13 +244,13 @@ class OuterLoad:
 
     def _mass(self, mbs: exu.MainSystem, J: np.ndarray) -> np.ndarray:
         """W^-1 of all blocks, zero where a body's mass is not known; sets what loads (20,) have in common."""
-        W, size, count = np.zeros((6, 6)), self.sides[0].size, mbs.systemData.NumberOfObjects()
+        W, size, objects = np.zeros((6, 6)), self.sides[0].size, range(mbs.systemData.NumberOfObjects())
+        held = [node for number in objects for node in mbs.GetObject(number).get("nodeNumbers", ())]
         mass, self.constant = np.zeros((len(self.rows), len(self.rows))), np.zeros(LOADS)
         for side, part in zip(self.sides, (slice(size), slice(size, None)), strict=True):
             if side.size:
-                node, held = side.nodes[0], [mbs.GetObject(i).get("nodeNumbers", ()) for i in range(count)]
-                films = sum(int(node) in map(int, nodes) for nodes in held)
-                body = body_of_node(mbs, node) if len(side.nodes) == 1 and films < 3 else None
+                films = sum(int(node) == int(side.nodes[0]) for node in held)
+                body = body_of_node(mbs, side.nodes[0]) if len(side.nodes) == 1 and films < 3 else None
                 M = None if body is None else object_mass(mbs, body)
                 if not isinstance(M, np.ndarray) or M.shape != (side.size, side.size):
                     return mass

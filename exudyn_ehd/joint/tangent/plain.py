@@ -18,12 +18,13 @@ from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.sensitivity import functional_gradients, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.solver import FilmSolver
+from exudyn_ehd.joint.plain_film import has_plain_edges
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
 
 def is_plain(film: SolvedFilm) -> bool:
     """Return whether `plain_tangent` holds for this film."""
-    s, p, oil, arc = film.solver, film.parts, film.oil, film.parts.bearing.arc
+    s, p, oil = film.solver, film.parts, film.oil
     return (
         type(s) is FilmSolver
         and s.axial
@@ -36,7 +37,7 @@ def is_plain(film: SolvedFilm) -> bool:
         and film.limited is None
         and film.pressing is None
         and p.supply is None
-        and (arc is None or not any((*arc.pressures, *p.bearing.end_pressures)))
+        and has_plain_edges(p.bearing)
         and not p.uneven_drag
     )
 
