@@ -148,8 +148,8 @@ def scatter(values, order, count, out):
 
 
 @njit(cache=True)
-def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, full, skipped):
-    """Scaled volume flow that leaves through z = -L/2 and z = +L/2, less ``skipped`` columns at both edges.
+def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, full):
+    """Scaled volume flow that leaves through z = -L/2 and z = +L/2.
 
     The end's half control volume takes q + B: q through the link to the next vertex, B for the divergence of what the
     turn carries and for the squeeze. That is so where the film next to the end is ``full`` (n, m): unbroken, or fed by
@@ -161,7 +161,7 @@ def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, full, skipped):
     lower = 0.0
     upper = 0.0
     e = m - 1
-    for i in range(skipped, n - skipped):
+    for i in range(n):
         prv = i - 1 if i > 0 else n - 1
         flow, q, carried = -fz[i, 0], kz[i, 0] * (P[i, 0] - P[i, 1]), fx[i, 0] - fx[prv, 0]
         rate = H_t[i, 0] * width_x[i] * width_z[0] if squeeze else 0.0

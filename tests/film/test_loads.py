@@ -125,7 +125,7 @@ def test_end_flows_balance_supply_and_squeeze():
         s.solve(3.0, 1.0, -np.inf)
         y = s.system
         lower, upper = loads.end_flows(
-            s.pressure, y.kz, y.fz, y.fx, s.H_t, g.width_x, g.width_z, True, np.ones(g.shape, dtype=bool), 0
+            s.pressure, y.kz, y.fz, y.fx, s.H_t, g.width_x, g.width_z, True, np.ones(g.shape, dtype=bool)
         )
         inflow = s.inflow()
         growth = (s.H_t * np.outer(g.width_x, g.width_z)).sum()

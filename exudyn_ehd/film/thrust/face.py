@@ -142,7 +142,7 @@ class FaceFilm:
         """Flows of the last solution in at the inner radius and out at the outer one, m3/s."""
         s, grid, unit = self.solver, self.annulus.grid, self.scales.c * self.scales.R**2
         (fx, fz, rate), (P, full) = s.couette_flows(), s.flow_pressures()
-        inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full, 0)
+        inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
         return -unit * inner, unit * outer
 
     @property

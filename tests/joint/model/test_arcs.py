@@ -41,7 +41,10 @@ def random_scene(rng):
 @pytest.mark.parametrize("seed", range(10))
 def test_against_an_independent_solution(seed):
     """Force within 0.5 %, torque within 0.1 %, peak within 1 %, with pressures at the edges, tilt, squeeze, both
-    directions of spin; its share of the ring's columns."""
+    directions of spin; its share of the ring's columns.
+
+    That is the error of the default grid; the reference's own on 201 x 61 is below 0.1 %.
+    """
     arc, length, motion = random_scene(np.random.default_rng(seed))
     bearing = bearing_on(arc, length=length)
     model = build_model(bearing)
@@ -49,7 +52,7 @@ def test_against_an_independent_solution(seed):
     q, film = found.quantities(), found.film
     force, torque, peak = arc_film(
         motion, radius=R, length=length, clearance=C, viscosity=MU, start=arc.start, extent=arc.extent,
-        edges=arc.pressures,
+        edges=(arc.leading_pressure, arc.trailing_pressure),
     )  # fmt: skip
     assert np.linalg.norm(found.wrench[:2] - force) < 5e-3 * np.linalg.norm(force)
     assert q["friction_torque"] == pytest.approx(torque, rel=1e-3)
@@ -78,7 +81,7 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_tangent_against_differences(name):
-    """1e-5 of the wrench, at random motions with pressures at the edges, in a step."""
+    """1e-5 of the wrench, what central differences leave, at random motions with pressures at the edges, in a step."""
     rng = np.random.default_rng(7)
     arc = ehd.Arc(start=3.4, extent=2.3, leading_pressure=3e5, trailing_pressure=1.5e5)
     model = build_model(bearing_on(arc, **CASES[name]))
@@ -111,11 +114,11 @@ def test_what_enters_at_the_edges_leaves_at_the_ends():
 
 @pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams()], ids=repr)
 def test_flows_and_friction_on_a_finer_grid(cavitation):
-    """Within 0.5 % of those on 384 columns; nothing enters where the film leaves."""
+    """Within 0.5 % of those on 384 columns, the default grid's error; nothing enters where the film leaves."""
     films = []
     for grid in ({}, {"n_theta": 384, "n_z": 40}):
         bearing = bearing_on(ehd.Arc(start=3.4, extent=2.3), cavitation=cavitation, film=ehd.FiniteLength(**grid))
-        films.append(ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.75, direction=4.5, tilt=(1e-4, 0.0)))
+        films.append(ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.75, direction=5.3, tilt=(1e-4, 0.0)))
     found, fine = films
     assert found.supply_flows[1] == fine.supply_flows[1] == 0.0
     for name in ("leakage", "friction_torque", "power_loss"):
@@ -133,7 +136,7 @@ def test_the_journal_is_free_beside_the_arc():
 
 
 def test_equilibrium_stiffness_and_damping_against_the_independent_solution():
-    """K and C within 1 % of their largest entry."""
+    """K and C within 1 % of their largest entry: differences over 1e-3 of the clearance leave some 0.1 %."""
     arc = ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0))
     rest = ehd.equilibrium(bearing_on(arc), speed=314.0, load=(0.0, -5e3))
     motion = rest.film.motion
