@@ -313,6 +313,16 @@ def test_start_stop(example, tmp_path):
 
 
 @pytest.mark.slow
+def test_step_error_of_a_film_in_a_floating_ring(example):
+    """Estimates for the inner film, which whirls in its ring, against a run with four times the steps."""
+    rings = example("floating_rings")
+    coarse, fine = (rings.run_up(steps)["compressor inner film"] for steps in (4000, 16000))
+    true = np.abs(coarse.minimum_gap / np.interp(coarse.time, fine.time, fine.minimum_gap) - 1.0)
+    for part in np.array_split(np.arange(1000, 4000), 6):
+        assert 0.35 * true[part].max() < coarse.step_error[part].max() < 1.2 * true[part].max()
+
+
+@pytest.mark.slow
 def test_floating_rings(example, tmp_path):
     slow, inner, both = example("floating_rings").main(quick=True, output=tmp_path).values()
     assert (tmp_path / "floating_rings.png").stat().st_size > 10_000
