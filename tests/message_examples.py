@@ -1298,6 +1298,10 @@ ehd.SolveEquilibrium(rotor(gravity=[0, -1e9, 0])[0], 300.0)
 
 ehd.SolveEquilibrium(rotor(ehd.JournalBearing(**plain, squeeze=False))[0], 300.0)
 
+steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+pin = ehd.ElasticJournal(material=steel, span=(-0.02, 0.02), held=ehd.HeldEnds())
+ehd.SolveEquilibrium(rotor(ehd.JournalBearing(**plain, journal=pin))[0], 300.0)
+
 ehd.SolveEquilibrium(mbs, 300.0, rotors=[exu.ObjectIndex(0)])
 
 extra = mbs.CreateRigidBody(inertia=cube)

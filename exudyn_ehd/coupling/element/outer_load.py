@@ -73,7 +73,7 @@ class LoadFunctions:
     """
 
     def __init__(self, mbs: exu.MainSystem) -> None:
-        self.calls: list[tuple[Callable[[exu.MainSystem, float, Any], Any], Any]] = []
+        self.calls: list[tuple[Callable[..., float | list[float]], float | list[float]]] = []
         for number in range(mbs.systemData.NumberOfLoads()):
             data: Any = mbs.GetLoad(number)
             name = "load" if "load" in data else "loadVector"

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, ObjectIndex, require_system
 from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
-from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, films_off
+from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, State, films_off
 from exudyn_ehd.coupling.rotor.spinning import WHERE
 from exudyn_ehd.coupling.run.solve import joints_of, require_items
 from exudyn_ehd.status import InputError, require_number, require_plausible
@@ -39,8 +39,11 @@ def SolveEquilibrium(
       ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes;
       unbalance comes in by `RotorResult.unbalance_response`.
     - Loads with user functions have their value at the start time.
-    - Bearings: rigid surfaces and films whose K and C do not depend on the frequency, so no `ElrodAdams`, heat, wear,
-      liners or flexible bushes. Films on end faces take part, but the result's values of single films omit them.
+    - Bearings: rigid surfaces and liners, no flexible bushes or journals. With `ElrodAdams` and on liners the film
+      follows a motion with a delay: every vibration and every whirl sees it at its own frequency
+      (`exudyn_ehd.joint.static.dynamic_stiffness`). Films with heat have the temperature of the equilibrium, which
+      vibrations do not change; nothing wears. Films on end faces take part, but the result's values of single films
+      omit them.
     - A film without load: at the exact centre K and C are those a little off it, half to two thirds of an unbroken
       film's, since it ruptures on the side that opens (`exudyn_ehd.joint.model.centre`).
 
@@ -232,7 +235,7 @@ def _search(
             data.SetTime(time, configuration)
 
 
-def _result(search: EquilibriumSearch, states: list[dict[str, np.ndarray]]) -> RotorResult:
+def _result(search: EquilibriumSearch, states: list[State]) -> RotorResult:
     """The record of states of one search."""
     system, objects = search.system, map(ObjectIndex, range(search.mbs.systemData.NumberOfObjects()))
     layout = Layout(
@@ -246,5 +249,6 @@ def _result(search: EquilibriumSearch, states: list[dict[str, np.ndarray]]) -> R
         joints=tuple(film.name for film in search.films),
         clearances=np.array([film.bearing.radial_clearance for film in search.films]),
         layout=layout,
-        **{name: np.array([state[name] for state in states]) for name in states[0]},
+        memories=tuple(memories for _, memories in states),
+        **{name: np.array([values[name] for values, _ in states]) for name in states[0][0]},
     )

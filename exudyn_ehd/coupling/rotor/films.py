@@ -18,17 +18,18 @@ from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton_limits import allowed_part
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.status import InputError, Status
+from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmResponse, response_of, slow_motions
+from exudyn_ehd.joint.static.steady import require_rest
+from exudyn_ehd.status import FilmError, InputError, Status
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.thrust import ThrustEvaluation
-
-# Loads that do work on the slopes of a motion (x, y, bx, by): F_x, F_y, M_y, -M_x.
-_LOADS, _SIGNS = [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 
 
 class SpinningSide:
@@ -83,6 +84,29 @@ class FilmLoads(NamedTuple):
     by_rate: np.ndarray
 
 
+class FilmMemory(NamedTuple):
+    """A film whose stiffness and damping depend on the frequency, in n directions y that constraints leave.
+
+    Attributes
+    ----------
+    response : FilmResponse
+    slow : two (4, 4) arrays
+        K and C of slow motions, which the matrices of the system contain.
+    loads, places : (n, 4), (4, n) arrays
+        Forces on y of the loads of `slow_motions`, and their places by y.
+    """
+
+    response: FilmResponse
+    slow: tuple[np.ndarray, np.ndarray]
+    loads: np.ndarray
+    places: np.ndarray
+
+    def beyond(self, s: complex) -> np.ndarray:
+        """Dynamic stiffness (n, n) of motions exp(s t) beyond K + s C of slow ones."""
+        stiffness, damping = self.slow
+        return self.loads @ (self.response.at(-1j * s) - stiffness - s * damping) @ self.places
+
+
 class RotorFilm:
     """One film of the system.
 
@@ -94,7 +118,7 @@ class RotorFilm:
 
     def __init__(self, joint: Joint, system: SpinningSystem) -> None:
         self.name, self.size = joint.name, system.size
-        self.model = plain_model(joint)
+        self.model = film_model(joint)
         self.bearing = self.model.bearing
         housing, journal = (_spinning_side(joint, side, system) for side in joint.element.sides)
         self.mbs, self.sides = system.mbs, (housing, journal)
@@ -110,6 +134,7 @@ class RotorFilm:
         self.motion, self.rates = np.zeros(10), np.zeros(self.places.size)
         self.faces, self.offset, self.centre = joint.element.faces, joint.element.offset, np.zeros(3)
         self._on_faces: ThrustEvaluation | None = None
+        self._near: History | None = None
         self._told = False
 
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
@@ -127,8 +152,20 @@ class RotorFilm:
         found = self._on_faces
         if not np.all(np.isfinite(self.motion)) or (found is not None and found.status is not Status.CONVERGED):
             return None
-        evaluation = self.model.evaluate(self.motion)
+        try:
+            self._near = settled_history(self.model, self.motion, self._near, WHERE)
+        except FilmError:
+            return None
+        evaluation = self.model.evaluate_steady(self.motion, self._near)
         return evaluation if evaluation.status is Status.CONVERGED else None
+
+    def memory(self, evaluation: Evaluation, free: np.ndarray) -> FilmMemory | None:
+        """Response of the film just evaluated in directions ``free`` (N, n); None of a film without a memory."""
+        slow, response = response_of(evaluation)
+        if response is None:
+            return None
+        own, by_place = free[self.places], relative.variation_of(*self.frames, *self.jacobians)[0][:PLACES]
+        return FilmMemory(response, slow, own.T @ (self._wrench_map()[:, LOADS] * SIGNS), by_place @ own)
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
         """Loads of a wrench (6,) with tangent (6, 10), and of the films on the end faces, after `update`."""
@@ -161,7 +198,7 @@ class RotorFilm:
     def support(self, force: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, with a force (2,) at ``middle``."""
         tangent = np.zeros((6, 10))
-        tangent[_LOADS, range(4)] = -self.support_stiffness * _SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
+        tangent[LOADS, range(4)] = -self.support_stiffness * SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
         away = np.concatenate((self.motion[:2] - middle, self.motion[2:]))
         return np.concatenate((force, np.zeros(4))) + tangent @ away, tangent
 
@@ -200,15 +237,18 @@ class RotorFilm:
         angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
         rows = np.zeros((2, self.size))
         rows[:, self.places] = relative.variation_of(*self.frames, *self.jacobians)[0][:2]
-        coefficients = -_SIGNS[:, None] * tangent[_LOADS]
-        return {
+        stiffness, damping = slow_motions(tangent)
+        values: dict[str, np.ndarray | float] = {
             "motion": self.motion.copy(),
             "wrench": evaluation.wrench,
             "attitude_angle": math.remainder(math.copysign(angle, angle * self.motion[8]), 2.0 * math.pi),
-            "stiffness": coefficients[:, :4],
-            "damping": coefficients[:, 4:8],
+            "stiffness": stiffness,
+            "damping": damping,
             "film_directions": rows,
-        } | {name: known[name] for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss")}
+        }
+        return values | {
+            name: known[name] for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss")
+        }
 
 
 def _spinning_side(joint: Joint, side: object, system: SpinningSystem) -> SpinningSide:
@@ -225,20 +265,15 @@ def _spinning_side(joint: Joint, side: object, system: SpinningSystem) -> Spinni
     )
 
 
-def plain_model(joint: Joint) -> BearingModel:
-    """The model of a film whose stiffness and damping hold for motions of any frequency; `InputError` for others."""
-    element, model = joint.element, joint.element.model
+def film_model(joint: Joint) -> BearingModel:
+    """The model of a film that has stiffness and damping about a position at rest; `InputError` for others."""
+    where, element, model = f"{WHERE}: joint '{joint.name}'", joint.element, joint.element.model
     if type(element) is not FilmElement or not isinstance(model, BearingModel):
-        what = "a ball, a flexible bush or journal, or a film of your own"
-    elif model.remembers:
-        what = "a film that remembers (ElrodAdams, thermal, wear, liner), of which it knows no frequency response"
-    elif not model.bearing.squeeze:
-        what = "squeeze=False and so no damping"
-    elif model.needs_spin:
-        what = "supply areas that turn with the journal"
-    else:
-        return model
-    raise InputError(
-        f"{WHERE}: joint '{joint.name}' has {what}; take a rigid bearing with SwiftStieber() or Gumbel(), at the "
-        "viscosity of its temperature, or single bearings by ehd.equilibrium(...)."
-    )
+        raise InputError(
+            f"{where} has a ball, a flexible bush or journal, or a film of your own, whose coordinates or response it "
+            "does not know; take a rigid bearing or an ElasticLiner, or single bearings by ehd.equilibrium(...)."
+        )
+    if not model.bearing.squeeze:
+        raise InputError(f"{where} has squeeze=False and so no damping; take squeeze=True.")
+    require_rest(model.bearing, where)
+    return model

@@ -12,12 +12,17 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
+from exudyn_ehd.coupling.rotor.films import FilmMemory
 from exudyn_ehd.pictures.records import Target
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import FilmError, InputError, require_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+# Vibrations of films with a memory: steps that may pass, relative change of the last one, and step of the difference
+# quotients over half the speed; each step divides the error by some 1e5.
+STEPS, SETTLED, DIFFERENCE = 30, 1e-7, 1e-5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,10 +80,12 @@ class RotorResult:
         minimum film thickness, m; peak pressure, Pa; power loss, W.
     stiffness, damping : (k, j, 4, 4) arrays
         K and C of every film in its joint's frame: minus the derivative of (F_x, F_y, M_y, -M_x) on the journal, N and
-        N m, with respect to (x, y, bx, by), m and rad, and to their rates.
+        N m, with respect to (x, y, bx, by), m and rad, and to their rates. With `ElrodAdams` and liners those of slow
+        motions.
     mass_matrix, damping_matrix, stiffness_matrix : (k, n, n) arrays
         M, D, K of small motions of the whole system, ``M y_tt + D y_t + K y = 0``, with gyroscopic terms in D. The
-        motion of all bodies in space is ``directions @ y``; spins of the driven nodes are held, constraints kept.
+        motion of all bodies in space is ``directions @ y``; spins of the driven nodes are held, constraints kept. With
+        `ElrodAdams` and liners those of slow motions; eigenvalues and responses also take what ``memories`` add.
     directions : (k, N, n) array
         Map from y to displacements (m) and rotations (rad) in space of all nodes of rigid bodies, and to other
         coordinates.
@@ -94,6 +101,8 @@ class RotorResult:
         Radial clearances, m.
     layout : Layout
         Map of bodies to the directions.
+    memories : tuple of k tuples of FilmMemory
+        Dynamic stiffness of the films with `ElrodAdams` or liners, beyond that of slow motions.
 
     Examples
     --------
@@ -127,6 +136,7 @@ class RotorResult:
     evaluations: np.ndarray = field(repr=False)
     clearances: np.ndarray = field(repr=False)
     layout: Layout = field(repr=False)
+    memories: tuple[tuple[FilmMemory, ...], ...] = field(repr=False)
 
     def __repr__(self) -> str:
         stable = f"{int(self.is_stable.sum())} of {self.speeds.size} stable"
@@ -138,16 +148,47 @@ class RotorResult:
     @cached_property
     def _modes(self) -> tuple[np.ndarray, np.ndarray]:
         """Eigenvalues (k, 2n), sorted by imaginary and real part, and modes (k, N, 2n) in the directions."""
-        k, n = self.mass_matrix.shape[:2]
-        matrix = np.zeros((k, 2 * n, 2 * n))
-        matrix[:, :n, n:] = np.eye(n)
-        matrix[:, n:, :n] = -np.linalg.solve(self.mass_matrix, self.stiffness_matrix)
-        matrix[:, n:, n:] = -np.linalg.solve(self.mass_matrix, self.damping_matrix)
-        values, vectors = np.linalg.eig(matrix)
+        matrices = self.mass_matrix, self.damping_matrix, self.stiffness_matrix
+        found = [_vibrations(*parts) for parts in zip(*matrices, strict=True)]
+        for k, memories in enumerate(self.memories):
+            if memories:
+                found[k] = self._with_memory(k)
+        values, vectors = (np.array(part) for part in zip(*found, strict=True))
         order = np.lexsort((values.real, values.imag))
-        values = np.take_along_axis(values.astype(complex), order, axis=1)
-        vectors = np.take_along_axis(vectors[:, :n], order[:, None, :], axis=2)
-        return values, self.directions @ vectors
+        values = np.take_along_axis(values, order, axis=1)
+        return values, self.directions @ np.take_along_axis(vectors, order[:, None, :], axis=2)
+
+    def _beyond(self, k: int, s: complex) -> np.ndarray:
+        """Dynamic stiffness (n, n) of motions exp(s t) at a speed beyond that of slow motions."""
+        return sum((film.beyond(s) for film in self.memories[k]), np.zeros(self.mass_matrix.shape[1:]))
+
+    def _with_memory(self, k: int) -> tuple[np.ndarray, np.ndarray]:
+        """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + Z(s)) y = 0`` with the whole dynamic stiffness Z.
+
+        Every vibration is that of ``K + s D`` tangent to Z at the one before, from the vibrations at half the speed on.
+        """
+        M, D, K = self.mass_matrix[k], self.damping_matrix[k], self.stiffness_matrix[k]
+        half = 0.5 * abs(self.speeds[k])
+        slower = self._beyond(k, 1j * half)
+        values, vectors = _vibrations(M, D + slower.imag / half, K + slower.real)
+        for j in np.flatnonzero(values.imag >= 0.0):
+            twin = np.argmin(np.abs(values - values[j].conj())) if values[j].imag > 0.0 else j
+            for _ in range(STEPS):
+                s, at = values[j], self._beyond(k, values[j])
+                by_s = (self._beyond(k, s + DIFFERENCE * half) - at) / (DIFFERENCE * half)
+                near, shapes = _vibrations(M, D + by_s, K + at - s * by_s)
+                best = np.argmin(np.abs(near - s))
+                values[j], vectors[:, j] = near[best], shapes[:, best]
+                if abs(near[best] - s) <= SETTLED * abs(s):
+                    break
+            else:
+                raise FilmError(
+                    f"RotorResult: the vibration near {s:.6g} 1/s at {self.speeds[k]:.6g} rad/s is not found, because "
+                    "its films follow it with a delay; look at speeds beside it, or run it in time."
+                )
+            if twin != j:
+                values[twin], vectors[:, twin] = values[j].conj(), vectors[:, j].conj()
+        return values, vectors
 
     @property
     def eigenvalues(self) -> np.ndarray:
@@ -245,6 +286,7 @@ class RotorResult:
             force[first : first + 3] += turned * (frame[:, 0] - 1j * frame[:, 1])
         w = (ratio * self.speeds)[:, None, None]
         dynamic = self.stiffness_matrix - w**2 * self.mass_matrix + 1j * w * self.damping_matrix
+        dynamic = dynamic + [self._beyond(k, 1j * nu) for k, nu in enumerate(w.flat)]
         y = np.linalg.solve(dynamic, w**2 * (self.directions.transpose(0, 2, 1) @ force)[:, :, None])
         x = (self.directions @ y)[:, :, 0]
         return UnbalanceResponse(
@@ -307,6 +349,14 @@ class RotorResult:
 
         places = self.motion[:, :, :2] / self.clearances[:, None]
         return plot_positions(self.speeds, places, self.joints, ax=ax, path=path)
+
+
+def _vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K) y = 0``."""
+    n = len(M)
+    lower = -np.linalg.solve(M, np.hstack((K, D)))
+    values, vectors = np.linalg.eig(np.vstack((np.eye(n, 2 * n, n), lower)))
+    return values.astype(complex), vectors[:n].astype(complex)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -14,14 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.kinematics.relative import skew
-from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm, plain_model
+from exudyn_ehd.coupling.rotor.films import FilmLoads, FilmMemory, RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -69,6 +69,10 @@ class ForceBalance(NamedTuple):
     rounding: float
 
 
+# Values of one equilibrium by their names in `RotorResult`, and what its films remember.
+State: TypeAlias = tuple[dict[str, np.ndarray], tuple[FilmMemory, ...]]
+
+
 class EquilibriumSearch:
     """Search for the equilibria of one system, whose films are switched off in Exudyn meanwhile (`films_off`).
 
@@ -85,7 +89,7 @@ class EquilibriumSearch:
     ) -> None:
         # films first: a rotor of finite elements has none of these
         for joint in joints:
-            plain_model(joint)
+            film_model(joint)
         self.mbs, self.system = mbs, SpinningSystem(mbs, find_rotors(mbs, joints, rotors, ratios))
         self.films = [RotorFilm(joint, self.system) for joint in joints]
         self.length = max(film.bearing.length for film in self.films)
@@ -97,7 +101,7 @@ class EquilibriumSearch:
         self.slope: np.ndarray | None = None
         self.speed, self.count = math.nan, 0
 
-    def at(self, speed: float) -> dict[str, np.ndarray]:
+    def at(self, speed: float) -> State:
         """The equilibrium at a speed, rad/s, looked for from the last one found: what `RotorResult` has of each.
 
         Raises
@@ -140,9 +144,10 @@ class EquilibriumSearch:
             "evaluations": self.count,
         }
         films = [film.found(e, t) for film, e, t in zip(self.films, *found, strict=True)]
+        memories = [film.memory(e, free) for film, e in zip(self.films, evaluations, strict=True)]
         return {name: np.array(value) for name, value in whole.items()} | {
             name: np.array([film[name] for film in films]) for name in films[0]
-        }
+        }, tuple(memory for memory in memories if memory is not None)
 
     def _start(self) -> None:
         """Move all bodies to a first place near the equilibrium, and check what the theory asks of them."""
@@ -179,7 +184,7 @@ class EquilibriumSearch:
                 return None
             evaluations.append(evaluation)
             # films of one bearing's description have models of their own: the tangent is this evaluation's
-            tangents.append(evaluation.tangent())
+            tangents.append(evaluation.steady_tangent(exact=True))
         return evaluations, tangents
 
     def _balance(self, loads: list[FilmLoads]) -> ForceBalance:

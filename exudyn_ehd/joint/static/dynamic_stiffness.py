@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -35,7 +36,9 @@ from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.cavitation.rupture_line import line_matrices
 from exudyn_ehd.joint.bore.shapes import Bore
+from exudyn_ehd.joint.model.centre import evaluate_beside, is_central
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
+from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
 from exudyn_ehd.joint.tangent.true_gap import line_by_motion, true_fills, weigh_fills
@@ -46,6 +49,17 @@ SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
 # Whirl ratios at which a bore of many coordinates is asked how it follows. The space of the answers tells the critical
 # mass of soft bushes to 2e-9, and Z from 0 to 4 times the spin to 5e-7.
 SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
+# Places and slopes x, y, bx, by of a journal, and the rows of a wrench that do work on them: F_x, F_y, M_y, -M_x.
+PLACES, LOADS, SIGNS = 4, [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
+
+
+def slow_motions(tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """K and C (4, 4) of x, y (m) and slopes bx, by (rad): minus the derivatives of F_x, F_y (N), M_y, -M_x (N m).
+
+    ``tangent`` (6, 10) is that of the wrench to the motion.
+    """
+    rows = -SIGNS[:, None] * tangent[LOADS]
+    return rows[:, :PLACES], rows[:, PLACES : 2 * PLACES]
 
 
 class FilmResponse:
@@ -63,7 +77,8 @@ class FilmResponse:
         s, w, liner = film.solver, film.solver.work, film.parts.liner
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
-        rows, stored = -wrench_rows(film)[:2] / film.scales.force, np.zeros(film.grid.shape)
+        rows = -SIGNS[:, None] * wrench_rows(film)[LOADS] / film.scales.force
+        stored = np.zeros(film.grid.shape)
         self.matrix = s.matrix()
         if liner is not None:
             stored += s.storage_weights()[0] * liner.deflection_by_pressure
@@ -84,32 +99,34 @@ class FilmResponse:
             self.contents = weigh_fills(fills, whole, number)
             by_fill = line_by_motion(film, self.contents, w.count) * scale
         # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
-        self.by_pose, self.by_rate = by_motion[:2].copy(), by_motion[4:6]
-        self.by_content, self.by_sway = by_fill[:2], by_fill[4:6]
-        self._rest_of(tangent[:2, :2], tangent[:2, 4:6])
+        self.by_pose, self.by_rate = by_motion[:PLACES].copy(), by_motion[PLACES : 2 * PLACES]
+        self.by_content, self.by_sway = by_fill[:PLACES], by_fill[PLACES : 2 * PLACES]
+        self._rest_of(*slow_motions(tangent))
         if liner is not None:  # the tangent knows no rate of its deflection, and neither does the rupture line
             line, follows = s.line_gradients(), liner.gap_slopes.D_r.reshape(-1)[order]
-            resting = 0.0 if line is None else line_by_motion(film, line, w.count)[4:6] * scale[4:6]
+            resting = 0.0 if line is None else (line_by_motion(film, line, w.count) * scale)[PLACES : 2 * PLACES]
             self.by_rate = self.by_rate + (self.by_rate - resting) * follows
 
-    def _rest_of(self, by_place: np.ndarray, by_rate: np.ndarray) -> None:
-        """Keep what the derivatives of the forces hold besides the film's pressure."""
+    def _rest_of(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
+        """Keep what stiffness and damping of slow motions hold besides the film's pressure."""
         pose, rate = self._gradients(0.0)
-        self.rest = -by_place - pose, -by_rate - rate
+        self.rest = stiffness - pose, damping - rate
 
     def add(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         """Add K and C (2, 2) that do not depend on the frequency."""
         self.rest[0][:2, :2] += stiffness
         self.rest[1][:2, :2] += damping
 
-    def at(self, frequency: float) -> np.ndarray:
-        """Z (2, 2), N/m, at a frequency, rad/s."""
+    def at(self, frequency: complex) -> np.ndarray:
+        """Z (4, 4) of `slow_motions` at a frequency, rad/s; a complex one stands for motions that grow or decay."""
         pose, rate = self._gradients(frequency)
         return self.rest[0] + pose + 1j * frequency * (self.rest[1] + rate)
 
-    def _gradients(self, frequency: float) -> tuple[np.ndarray | float, np.ndarray | float]:
-        """Contributions of the film's pressure to stiffness and damping at a frequency, rad/s, (2, 2) each, complex."""
-        lam = splu(csc_matrix(self.matrix + 1j * frequency * self.store)).solve(self.rows, trans="T")
+    def _gradients(self, frequency: complex) -> tuple[np.ndarray | float, np.ndarray | float]:
+        """Contributions of the film's pressure to stiffness and damping at a frequency, rad/s, (4, 4) each, complex."""
+        # the unknowns are numbered for a narrow band
+        factor = splu(csc_matrix(self.matrix + 1j * frequency * self.store), permc_spec="NATURAL")
+        lam = factor.solve(self.rows, trans="T")
         pose, rate = self.by_pose + 1j * frequency * self.by_content, self.by_rate + 1j * frequency * self.by_sway
         return (pose @ lam).T, (rate @ lam).T
 
@@ -132,9 +149,10 @@ class FilmOnBoreResponse(FilmResponse):
         if self.remembers:
             super().__init__(film, T)
             self._add_bore(film, bore)
-        forces = np.r_[0:2, 6 : 6 + k]
-        self._rest_of(T[np.ix_(forces, np.r_[0:2, m : m + k])], T[np.ix_(forces, np.r_[4:6, m + k : m + 2 * k])])
-        if self.remembers and k > 4 * len(SAMPLES):
+        rows = -np.append(SIGNS, np.ones(k))[:, None] * T[[*LOADS, *range(6, 6 + k)]]
+        rates = slice(PLACES, 2 * PLACES), slice(m + k, m + 2 * k)
+        self._rest_of(*(np.hstack((rows[:, a], rows[:, b])) for a, b in ((slice(PLACES), slice(m, m + k)), rates)))
+        if self.remembers and k > 2 * PLACES * len(SAMPLES):
             speed, whole = abs(film.journal.omega), super().at
             self._reduce([self._followed(whole(ratio * speed)) for ratio in SAMPLES])
 
@@ -150,49 +168,72 @@ class FilmOnBoreResponse(FilmResponse):
         self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
         self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
 
-    def _gradients(self, frequency: float) -> tuple[np.ndarray | float, np.ndarray | float]:
+    def _gradients(self, frequency: complex) -> tuple[np.ndarray | float, np.ndarray | float]:
         return super()._gradients(frequency) if self.remembers else (0.0, 0.0)
 
-    def at(self, frequency: float) -> np.ndarray:
-        """Z (2, 2), N/m, at a frequency, rad/s."""
+    def at(self, frequency: complex) -> np.ndarray:
+        """Z (4, 4) at a frequency, rad/s; see `FilmResponse.at`."""
         Z = super().at(frequency)
-        return Z[:2, :2] + Z[:2, 2:] @ self._followed(Z)
+        return Z[:PLACES, :PLACES] + Z[:PLACES, PLACES:] @ self._followed(Z)
 
     def _followed(self, Z: np.ndarray) -> np.ndarray:
-        """q (k, 2) of unit motions of the journal."""
-        return -np.linalg.solve(self.stiffness + Z[2:, 2:], Z[2:, :2])
+        """q (k, 4) of unit motions of the journal."""
+        return -np.linalg.solve(self.stiffness + Z[PLACES:, PLACES:], Z[PLACES:, :PLACES])
 
     def _reduce(self, found: list[np.ndarray]) -> None:
         """Leave q in the space of what it was found to be at some frequencies."""
         columns = [part for q in found for part in (q.real, q.imag)]
-        V = block_diag(np.eye(2), np.linalg.qr(np.concatenate(columns, axis=1))[0])
+        V = block_diag(np.eye(PLACES), np.linalg.qr(np.concatenate(columns, axis=1))[0])
         self.rows, self.by_pose, self.by_rate = self.rows @ V, V.T @ self.by_pose, V.T @ self.by_rate
         self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
-        self.stiffness = V[2:, 2:].T @ self.stiffness @ V[2:, 2:]
+        self.stiffness = V[PLACES:, PLACES:].T @ self.stiffness @ V[PLACES:, PLACES:]
+
+
+def response_of(evaluation: Evaluation) -> tuple[tuple[np.ndarray, np.ndarray], FilmResponse | None]:
+    """K and C (4, 4) of slow motions, and the response at other frequencies; None where K and C depend on none.
+
+    Parameters
+    ----------
+    evaluation : Evaluation
+        A steady film, the model's last; at the exact centre a film beside it takes its place.
+    """
+    model = evaluation.model
+    has_memory = model.remembers_mass or model.flexible or model.parts.liner is not None
+    if has_memory and not model.remembers_mass and is_central(evaluation):
+        evaluation = cast("Evaluation", evaluate_beside(evaluation))
+    slow = slow_motions(evaluation.steady_tangent(exact=True))
+    if isinstance(evaluation, ElasticEvaluation):
+        return slow, FilmOnBoreResponse(evaluation)
+    if not has_memory:
+        return slow, None
+    assert evaluation.film is not None
+    return slow, FilmResponse(evaluation.film, evaluation.steady_tangent())
 
 
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:
-    """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu) (2, 2).
+    """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu), x and y its first.
 
     As `exudyn_ehd.joint.static.equilibrium.whirl_threshold`; thresholds are looked for between 0.05 and twice the
     spin omega > 0, and the one of the smallest mass counts.
     """
 
+    def values(ratio: float) -> np.ndarray:
+        return np.linalg.eigvals(stiffness(ratio * omega)[:2, :2])
+
     def both(ratio: float) -> float:
         """Product of the imaginary parts of Z's eigenvalues: it changes sign where one of them is real."""
-        return float(np.prod(np.linalg.eigvals(stiffness(ratio * omega)).imag))
+        return float(np.prod(values(ratio).imag))
 
     ratios = np.geomspace(SLOWEST, FASTEST, STEPS)
     signs = [both(ratio) for ratio in ratios]
     found = []
     for k in np.flatnonzero(np.diff(np.sign(signs))):
         ratio = brentq(both, ratios[k], ratios[k + 1], rtol=1e-9)
-        values = np.linalg.eigvals(stiffness(ratio * omega))
-        real = float(values[np.argmin(np.abs(values.imag))].real)
+        real = float(min(values(ratio), key=lambda value: abs(value.imag)).real)
         if real > 0.0:
             found.append((real / (ratio * omega) ** 2, ratio))
     if found:
         mass, ratio = min(found)
         return ratio, mass
-    return math.nan, math.inf if np.linalg.eigvals(stiffness(SLOWEST * omega)).imag.min() > 0.0 else 0.0
+    return math.nan, math.inf if values(SLOWEST).imag.min() > 0.0 else 0.0

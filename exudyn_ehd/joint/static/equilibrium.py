@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +17,10 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.newton import Place, evaluate_at
 from exudyn_ehd.joint.balance.position import INSIDE, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.centre import evaluate_beside, is_central, require_derivatives
+from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
-from exudyn_ehd.joint.model.flexible import ElasticEvaluation
-from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.static.dynamic_stiffness import FilmOnBoreResponse, FilmResponse, threshold
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, response_of, slow_motions, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
@@ -186,7 +184,7 @@ class EquilibriumResult:
         """
         b, motion = self.film.bearing, self.film.motion[:MOTION_SIZE]
         if b.thermal is None:
-            return self.stiffness if self.response is None else self.response.at(0.0).real
+            return self.stiffness if self.response is None else self.response.at(0.0).real[:2, :2]
         model = build_study_model(b, 0.0)
         step = SETTLED_STEP * max(self.film.minimum_gap, 1e-3 * b.radial_clearance)
         near = remembered(self.film)
@@ -223,7 +221,7 @@ class EquilibriumResult:
             raise InputError(f"dynamic_stiffness: frequencies must be finite numbers in rad/s, got {frequencies!r}.")
         if self.response is None:
             return self.stiffness + 1j * nu[:, None, None] * self.damping
-        return np.array([self.response.at(float(f)) for f in nu]).reshape(-1, 2, 2)
+        return np.array([self.response.at(float(f))[:2, :2] for f in nu]).reshape(-1, 2, 2)
 
 
 def equilibrium(
@@ -323,10 +321,10 @@ def equilibrium(
     motion = np.array([*first_guess(bearing, omega, force, b), *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0, place])
     search = LoadSearch(model, "equilibrium", np.append(force, along), size=size, faces=faces)
     found = steadiest(search, search.find(motion))
-    K, C, response = _small_motions(model, found)
+    K, C, response = _small_motions(found)
     ratio, mass = whirl_threshold(K, C, abs(omega)) if response is None else threshold(response.at, abs(omega))
     frequency = abs(omega) * (0.5 if math.isnan(ratio) else ratio)
-    Z = K + 1j * frequency * C if response is None else response.at(frequency)
+    Z = K + 1j * frequency * C if response is None else response.at(frequency)[:2, :2]
     there = Z.real, Z.imag / frequency
     if not model.remembers_mass:
         frequency = 0.0
@@ -352,37 +350,22 @@ def equilibrium(
     )
 
 
-def _small_motions(model: BearingModel, found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse | None]:
+def _small_motions(found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse | None]:
     """K and C (2, 2) of slow motions about a position whose film is the model's last, and its response.
 
     None where K and C do not depend on the frequency.
     """
     evaluation = found.evaluation
-    central = is_central(evaluation)
-    if central:
+    if is_central(evaluation):
         require_derivatives(evaluation, "equilibrium")
-    K, C = own = _slow_motions(evaluation)
+    K, C = (part[:2, :2] for part in slow_motions(evaluation.steady_tangent(exact=True)))
     if found.faces is not None:
         beside = found.faces.tangent()
         K, C = K - beside[:2, :2], C - beside[:2, 4:6]
-    if not (model.remembers_mass or model.flexible or model.parts.liner is not None):
-        return K, C, None
-    if central and not model.remembers_mass:
-        evaluation = cast("Evaluation", evaluate_beside(evaluation))
-        own = _slow_motions(evaluation)
-    assert evaluation.film is not None
-    if isinstance(evaluation, ElasticEvaluation):
-        response: FilmResponse = FilmOnBoreResponse(evaluation)
-    else:
-        response = FilmResponse(evaluation.film, evaluation.steady_tangent())
-    response.add(K - own[0], C - own[1])
+    own, response = response_of(evaluation)
+    if response is not None:
+        response.add(K - own[0][:2, :2], C - own[1][:2, :2])
     return K, C, response
-
-
-def _slow_motions(evaluation: Evaluation) -> tuple[np.ndarray, np.ndarray]:
-    """K and C (2, 2) of slow motions, which a liner and a bore follow, of one film."""
-    tangent = evaluation.steady_tangent(exact=True)
-    return -tangent[:2, :2], -tangent[:2, 4:6]
 
 
 def _faces(bearing: JournalBearing, position: float, load: float | None) -> tuple[ThrustModel | None, list[float]]:

@@ -64,14 +64,14 @@ def test_what_turns_with_the_rotor_or_keeps_it_from_turning():
     ("options", "match"),
     [
         ({"squeeze": False}, "joint 'left' has squeeze=False and so no damping"),
-        ({"cavitation": ehd.ElrodAdams()}, "joint 'left' has a film that remembers"),
+        ({"cavitation": ehd.ElrodAdams()}, "joint 'left': a steady film with ElrodAdams needs oil from somewhere"),
         (
             {"supply": (ehd.Hole(angle=1.0, diameter=0.005, pressure=1e5, rotating=True),)},
-            "joint 'left' has supply areas that turn",
+            r"joint 'left': JournalBearing.supply\[0\] turns with the journal",
         ),
     ],
 )
-def test_films_whose_response_depends_on_the_frequency_are_refused(options, match):
+def test_films_without_a_position_of_rest_or_damping_are_refused(options, match):
     refused(match, film=bearing(**options))
 
 

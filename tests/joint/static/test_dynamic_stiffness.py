@@ -7,6 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, SIGNS, response_of
 from tests.sampling import but_slow
 
 R, L, C, SPEED, VISCOSITY = 0.025, 0.025, 25e-6, 300.0, 0.02
@@ -175,6 +176,31 @@ def test_slow_and_fast_limits(scene):
     sudden = -model.evaluate(motion, model.evaluate(motion).history()).tangent()[:2, 4:6]
     if made.lubricant.density_law is None:
         assert np.abs(fast.imag / (1e6 * SPEED) - sudden).max() < 1e-3 * np.abs(sudden).max()
+
+
+@pytest.mark.parametrize("tilt", [(0.0, 0.0), (3e-4, -2e-4)])
+def test_slow_and_fast_limits_of_tilts(tilt):
+    """Places and slopes together: slow by the steady tangent's columns, fast by those of a sudden motion."""
+    model, motion = build_study_model(bearing(film=(48, 6)), 0.0), np.zeros(10)
+    motion[:4], motion[8] = (0.3 * C, -0.4 * C, *tilt), SPEED
+    sizes = np.outer([1.0, 1.0, L, L], [1.0, 1.0, L, L])
+    (stiffness, _), response = response_of(model.evaluate(motion))
+    scale = np.abs(stiffness / sizes).max() * sizes
+    sudden = -SIGNS[:, None] * model.evaluate(motion, model.evaluate(motion).history()).tangent()[LOADS]
+    assert np.all(np.abs(response.at(0.0) - stiffness) < 1e-10 * scale)
+    slow, fast = 1e-4 * SPEED, 1e7 * SPEED
+    model.evaluate(motion)
+    assert np.abs((response.at(fast).imag / fast - sudden[:, 4:8]) / sizes).max() < 1e-4 * np.abs(sudden[:2, 4:6]).max()
+    for k in range(4):
+        forces = [
+            (
+                SIGNS
+                * model.evaluate(motion + sign * np.eye(10)[k] * (1e-5 * C if k < 2 else 1e-5 * C / L)).wrench[LOADS]
+            )
+            for sign in (1.0, -1.0)
+        ]
+        slope = (forces[1] - forces[0]) / (2e-5 * C if k < 2 else 2e-5 * C / L)
+        assert np.all(np.abs(response.at(slow).real[:, k] - slope) < 2e-3 * scale[:, k]), k
 
 
 def test_without_memory_there_is_one_stiffness_and_one_damping():
