@@ -118,11 +118,11 @@ from exudyn_ehd.solid.loads import LineLoad as LineLoad
 from exudyn_ehd.solid.loads import SurfaceLoad as SurfaceLoad
 from exudyn_ehd.solid.mesh import BushMesh as BushMesh
 from exudyn_ehd.solid.mesh import HollowCylinder as HollowCylinder
-from exudyn_ehd.solid.mesh_files import mesh_from_file as mesh_from_file
 from exudyn_ehd.solid.mesh_import import OnCylinder as OnCylinder
 from exudyn_ehd.solid.mesh_import import OnPlane as OnPlane
 from exudyn_ehd.solid.mesh_import import mesh_from_arrays as mesh_from_arrays
 from exudyn_ehd.solid.mesh_import import mesh_from_fem as mesh_from_fem
+from exudyn_ehd.solid.mesh_import import mesh_from_file as mesh_from_file
 from exudyn_ehd.solid.total_lagrange import NeoHooke as NeoHooke
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as SaintVenantKirchhoff
 from exudyn_ehd.status import EHDError as EHDError
