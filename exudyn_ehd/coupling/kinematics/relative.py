@@ -33,17 +33,18 @@ from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCI
 _JP, _JR, _VQ, _WQ = (np.int64(k) for k in range(4))
 
 
+# Cross products: component [i, j, k] of e_i . (e_k x e_j).
+_CROSS = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(2, 1, 0).copy()
+
+
 def skew(v: np.ndarray) -> np.ndarray:
     """Matrix (3, 3) of the cross product with v (3,)."""
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    return np.asarray(_CROSS @ v)
 
 
 def skews(vectors: np.ndarray) -> np.ndarray:
     """Matrices (n, 3, 3) of the cross products with the columns of ``vectors`` (3, n)."""
-    out = np.zeros((vectors.shape[1], 3, 3))
-    out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -vectors[2], vectors[1], -vectors[0]
-    out[:, 1, 0], out[:, 2, 0], out[:, 2, 1] = vectors[2], -vectors[1], vectors[0]
-    return out
+    return np.moveaxis(_CROSS @ vectors, -1, 0)
 
 
 @njit(cache=True)
