@@ -270,14 +270,7 @@ class FilmElement:
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
-        force = np.empty(len(trial.q))
-        self._rigid_force(trial.found.wrench, force)
-        return force
-
-    def _rigid_force(self, wrench: np.ndarray, force_out: np.ndarray) -> None:
-        """Generalized force (n,) of a wrench on housing and journal."""
-        housing, journal = self.sides
-        relative.wrench_force(housing.frame, journal.frame, housing.jac, journal.jac, wrench, force_out)
+        return self._wrench_map() @ trial.found.wrench
 
     def _wrench_map(self) -> np.ndarray:
         """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
