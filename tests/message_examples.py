@@ -734,6 +734,8 @@ ehd.ConfigureSolver(None)
 
 ehd.ConfigureSolver(settings, spectralRadius=2.0)
 
+ehd.SolveDynamic(mbs, settings, threads=2)
+
 ehd.SolveDynamic(mbs, settings, stepControl=0.02)
 
 ehd.SolveDynamic(mbs, settings, stepControl=ehd.StepControl())

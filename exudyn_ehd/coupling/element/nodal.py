@@ -130,7 +130,7 @@ class ModalFilmElement(BoreFilmElement):
         return self._evaluation(trial).combined_tangent(f_q, f_qt)
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        T, n, k = self._tangent(trial, f_q, f_qt), self.rigid_size, self.stiffness.size
+        T, n, k = self._film_tangent(trial, f_q, f_qt), self.rigid_size, self.stiffness.size
         own, whole = np.ascontiguousarray(T[:6, :MOTION_SIZE]), np.empty((n + k, n + k))
         stiffness, damping, by_place, by_rate = self._rigid_derivatives(mbs, trial, own)
         whole[:n, :n] = -(f_q * stiffness + f_qt * damping)

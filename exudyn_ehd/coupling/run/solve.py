@@ -12,7 +12,6 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
-from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton_limits import free_bushes, require_settings, require_time
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
@@ -123,9 +122,7 @@ def SolveDynamic(
     until_periodic : UntilPeriodic or None, default None
         Ends the run as soon as the orbits of all joints repeat themselves. None: the run ends at ``endTime``.
     threads : int or None, default 1
-        Number of threads that evaluate the films of all joints in parallel; results are bit-identical to those of one
-        thread. None: one for each core of the process. It pays from two joints on fine grids on, see
-        coupling/README.md.
+        Not supported any more: films are evaluated one after the other.
     **options
         As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; storeSolver is always True.
 
@@ -360,13 +357,17 @@ def running(
 ) -> Iterator[None]:
     """Let a solver run within, with this package's errors.
 
-    Films are on ``threads``, steps chosen as by ``control``, those without a film refused, and progress is shown.
+    Steps are chosen as by ``control``, those without a film refused, and progress is shown.
     """
+    if threads not in (1, None):
+        raise InputError(
+            f"{where}.threads is not supported any more, got {threads!r}: films are evaluated one after the other; let "
+            "several runs take a core each, as parameter_study(processes=...) does."
+        )
     joints = joints_of(mbs)
     films = [joint.element for joint in joints]
     aim = None if control is None else control.error
     with (
-        side_by_side(where, films, threads),
         nullcontext() if aim is None else steps_by_error(mbs, settings, films, aim),
         hooked(mbs, "PostNewton", partial(refuse, films)),
         own_errors(mbs, where),
