@@ -238,6 +238,12 @@ def axial_variation(wrench_map: np.ndarray, centre: np.ndarray) -> np.ndarray:
     return np.asarray(wrench_map @ [0.0, 0.0, 1.0, centre[1], -centre[0], 0.0])
 
 
+def levers_of(bearing: JournalBearing) -> np.ndarray:
+    """Lengths (4,) that turn a motion's places, or their rates, into distances: a tilt counts at the ends, m."""
+    half = 0.5 * bearing.length
+    return np.array(getattr(bearing, "levers", (1.0, 1.0, half, half)))
+
+
 # Points around and along a bore that is no circular cylinder.
 AROUND, ALONG = 180, 9
 

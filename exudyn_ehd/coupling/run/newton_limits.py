@@ -43,14 +43,14 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
-from numba import njit
 
 from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, ObjectIndex, Trial
 from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
+from exudyn_ehd.coupling.kinematics.relative import BoreGap, levers_of
+from exudyn_ehd.joint.balance.newton import part_that_closes
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import InputError, Status, require_bool, require_number
 
 # Share of a film's gap that a step of Newton's method may close.
@@ -96,12 +96,8 @@ class GapLimit:
         for film in self.films:
             last = film.last
             if last is not None:
-                bearing = film.model.bearing
-                bore, after = self.bores[film], film.motion(mbs, CURRENT)
-                if bore.depth.size:
-                    allowed = _allowed_in_profile(bore, last.bodies, after)
-                else:
-                    allowed = allowed_part(last.bodies, after, bearing.radial_clearance, bearing.length)
+                after = film.motion(mbs, CURRENT)
+                allowed = allowed_part(self.bores[film], last.bodies, after)
                 part = min(part, allowed, self._allowed_at_end(film, last, after))
         state = state_of(mbs)
         if part < 1.0:
@@ -118,52 +114,21 @@ class GapLimit:
         if last.status == Status.NO_PRESSURE and bearing.yielding is None:
             self.behind[film] = last.bodies
         elif film in self.behind:
-            half = 0.5 * bearing.length
-            levers = np.array(getattr(bearing, "levers", (1.0, 1.0, half, half)))
-            return _allowed_towards(self.behind[film], last.bodies, after, levers)
+            return _allowed_towards(self.behind[film], last.bodies, after, levers_of(bearing))
         return 1.0
 
 
-@njit(cache=True)
-def _at_end(motion, z):
-    """Square of the eccentricity at z."""
-    x, y = motion[0] + z * motion[2], motion[1] + z * motion[3]
-    return x * x + y * y
-
-
-@njit(cache=True)
-def allowed_part(before, after, clearance, length):
+def allowed_part(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
     """Part of a step between two motions that closes the film of the rigid surfaces by `SHARE`, 1 if none does.
 
-    Parameters
-    ----------
-    before, after : (10,) array
-        Motion of the journal's axis, m and rad first.
-    clearance, length : float
-        m.
+    Gaps of a bore with profiles are linear in the motion.
     """
-    half, part = 0.5 * length, 1.0
-    gap = clearance - math.sqrt(max(_at_end(before, -half), _at_end(before, half)))
-    farthest = clearance - SHARE * gap
-    reached = max(_at_end(after, -half), _at_end(after, half))
-    # not true for what is not finite
-    if not (gap > SMALLEST_GAP_SHARE * clearance and reached > farthest * farthest):
-        return part
-    for z in (-half, half):
-        px, py = before[0] + z * before[2], before[1] + z * before[3]
-        dx, dy = after[0] + z * after[2] - px, after[1] + z * after[3] - py
-        along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest * farthest - _at_end(before, z)
-        if 2.0 * along + square > rest:
-            part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
-    return part
-
-
-def _allowed_in_profile(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
-    """Return the part of a step like `allowed_part`, for a bore with profiles; its gaps are linear in the motion."""
-    gaps, ends = bore.values(before), bore.values(after)
-    smallest = float(gaps.min())
-    if not (smallest > SMALLEST_GAP_SHARE * bore.clearance and np.isfinite(ends).all()):
+    smallest = bore.smallest(before)
+    if not (smallest > SMALLEST_GAP_SHARE * bore.clearance and np.isfinite(after[:4]).all()):
         return 1.0
+    if not bore.depth.size:
+        return part_that_closes(SHARE, before, after, bore.clearance, 2.0 * bore.half)
+    gaps, ends = bore.values(before), bore.values(after)
     beyond = ends < SHARE * smallest
     return float(np.min((gaps - SHARE * smallest)[beyond] / (gaps - ends)[beyond], initial=1.0))
 

@@ -52,6 +52,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.kinematics.relative import levers_of
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import RingingWarning
@@ -92,8 +93,7 @@ class ChatterWatch:
 
     def __init__(self, bearing: JournalBearing) -> None:
         self.clearance = bearing.radial_clearance
-        self.lever = 0.5 * bearing.length
-        self.levers = np.array(getattr(bearing, "levers", (1.0, 1.0, self.lever, self.lever)))
+        self.length, self.levers = bearing.length, levers_of(bearing)
         self.time = np.inf
         self.place = self.rate = np.zeros(4)
         self.error = self.largest = 0.0
@@ -117,7 +117,7 @@ class ChatterWatch:
         mismatch = place - before - 0.5 * step * (rate + rate_before)
         self.error = float(np.sqrt(mismatch @ mismatch))
         speed, speed_before = float(np.sqrt(rate @ rate)), float(np.sqrt(rate_before @ rate_before))
-        gap = 1.0 - eccentricity_ratios(motion, self.clearance, 2.0 * self.lever)[1]
+        gap = 1.0 - eccentricity_ratios(motion, self.clearance, self.length)[1]
         smallest = max(ROUNDING, SMALLEST_SHARE * self.clearance * max(gap, SMALLEST_GAP_SHARE))
         self.largest = max(self.error, FADING * self.largest)
         unresolved = self.error > max(UNRESOLVED * step * max(speed, speed_before), smallest)

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.kinematics.relative import levers_of
 from exudyn_ehd.status import PlausibilityWarning, warn_user
 
 # Steps in which a journal crosses the clearance. Below the first nothing of the impact is resolved; below the second it
@@ -26,9 +27,7 @@ def warn_of_misfit(states: Iterable[tuple[str, np.ndarray, JournalBearing]], ste
     """
     told: list[tuple[float, str]] = []
     for name, motion, bearing in states:
-        lever, c = 0.5 * bearing.length, bearing.radial_clearance
-        # tilting counts by what it moves at the ends
-        speed = float(np.linalg.norm(np.array(getattr(bearing, "levers", (1.0, 1.0, lever, lever))) * motion[4:8]))
+        c, speed = bearing.radial_clearance, float(np.linalg.norm(levers_of(bearing) * motion[4:8]))
         spin = float(np.linalg.norm(motion[8 : 9 if isinstance(bearing, JournalBearing) else None]))
         thrown = step * speed * FEW_STEPS > c and speed > FASTER * c * spin > 0.0
         if thrown or step * speed * LEAST_STEPS > c:

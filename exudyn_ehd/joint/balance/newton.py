@@ -304,22 +304,33 @@ def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float) -> np.nd
 
 
 def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end.
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap, or a part of the clearance.
 
-    A wall or a flexible bush limits nothing.
+    Where surfaces may touch or deflect, gaps of rigid surfaces limit nothing.
     """
+    c = model.bearing.radial_clearance
     if model.effects.contacts or model.flexible:
-        longest = FREE_STEP * model.bearing.radial_clearance
-        return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
-    c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
-    scale = 1.0
-    for s in (-half, half):
-        e = motion[:2] + s * motion[2:4]
-        allowed = float(np.hypot(*e)) + ROOM * (c - float(np.hypot(*e)))
-        a, b, d = float(step @ step), float(e @ step), float(e @ e) - allowed**2
-        if a > 0.0:
-            scale = min(scale, (-b + math.sqrt(b * b - a * d)) / a)
-    return scale * step
+        return step * min(1.0, FREE_STEP * c / float(np.hypot(*step) + 1e-300))
+    after = np.concatenate((motion[:2] + step, motion[2:4]))
+    return step * part_that_closes(ROOM, motion, after, c, model.bearing.length)
+
+
+def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
+    """Part of a step between two motions that closes a share of the film of the rigid surfaces, 1 if none does.
+
+    With the ends of the journal's axis at p, moved by d, and the smallest gap g = c - max |p|, the part s of the step
+    holds ``|p + s d| <= c - (1 - share) g``.
+    """
+    (x, y, bx, by), (to_x, to_y, to_bx, to_by), part = before[:4].tolist(), after[:4].tolist(), 1.0
+    ends = [(x + z * bx, y + z * by, to_x + z * to_bx, to_y + z * to_by) for z in (-0.5 * length, 0.5 * length)]
+    farthest = clearance - (1.0 - share) * (clearance - max(math.hypot(px, py) for px, py, _, _ in ends))
+    for px, py, to_px, to_py in ends:
+        dx, dy = to_px - px, to_py - py
+        along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest**2 - px * px - py * py
+        # not true for what is not finite; a gap that is closed limits nothing
+        if 2.0 * along + square > rest >= 0.0:
+            part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
+    return part
 
 
 def limited_shift(faces: ThrustEvaluation, step: float) -> float:

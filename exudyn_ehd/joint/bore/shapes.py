@@ -32,7 +32,6 @@ from __future__ import annotations
 
 import abc
 from math import ceil
-from typing import Protocol
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
@@ -55,26 +54,7 @@ RIM = 1e-4
 LARGEST_BLOCK = 2e7
 
 
-class Faces(Protocol):
-    """Faces of a bore."""
-
-    @property
-    def cuts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Angles [rad] from 0 to 2 pi, and places z [m], ascending, at which they meet."""
-
-    @property
-    def rims(self) -> np.ndarray:
-        """Edges at which they end: middle and half of their angle [rad], lowest and highest z [m], (r, 4)."""
-
-    @property
-    def count(self) -> int:
-        """Number of faces."""
-
-    def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
-        """Values at points (p,) from values at the bore's nodes."""
-
-
-def vertex_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
+def vertex_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
     """S (n m, nodes) of a bore for an (n, m) film grid, without directions; rows add up to one."""
     z, along, _ = _along(grid, faces.cuts[1] / grid.reference_length)
     theta, around = _around(grid, faces.cuts[0])
@@ -91,7 +71,7 @@ def vertex_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
     return _pruned(sound + own @ _values(faces, grid, grid.x, grid.z, places))
 
 
-def end_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
+def end_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
     """Return S (2 n, nodes) of the loads ``int p N dA`` of p = (1 - zeta) / 2 and (1 + zeta) / 2, zeta = 2 z / L.
 
     Rows follow the n lines of vertices one after the other. They are divided by the integral of p, half the length.
@@ -121,7 +101,7 @@ def _end_courses(z: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 
 def _values(
-    faces: Faces, grid: FilmGrid, theta: np.ndarray, z: np.ndarray, chosen: np.ndarray | None = None
+    faces: Surface, grid: FilmGrid, theta: np.ndarray, z: np.ndarray, chosen: np.ndarray | None = None
 ) -> csr_matrix:
     """Values (p, nodes) at points theta x z, scaled z, or at those with the flat numbers ``chosen``."""
     at = np.arange(theta.size * z.size) if chosen is None else chosen
@@ -137,7 +117,7 @@ def _pruned(matrix: csr_matrix) -> csr_matrix:
     return matrix
 
 
-def _near_rims(faces: Faces, grid: FilmGrid) -> np.ndarray:
+def _near_rims(faces: Surface, grid: FilmGrid) -> np.ndarray:
     """Vertices (n m,) that share an interval of their interpolation with an edge at which faces end.
 
     There a bore may be torn. Edges on the ends of the film or beyond do not count.

@@ -100,14 +100,8 @@ class SolidElasticity(Elasticity):
         if self._factor is None:
             self._renew()
         last, pose, rest = self.displacements, self._pose, np.zeros_like(self.displacements)
-        found = self._balance(model, motion, film, start)
+        found = self._approach(model, motion, film, start)
         if found is None and last.any():
-            self._return(last)
-            found = self._approach(model, motion, film, start)
-        if found is None and last.any():
-            self._return(rest)
-            found = self._balance(model, motion, film, np.zeros_like(start))
-        if found is None and (self.failure or not last.any()):
             self._return(rest)
             self._pose = np.zeros(4)
             found = self._approach(model, motion, film, np.zeros_like(start))
@@ -121,8 +115,8 @@ class SolidElasticity(Elasticity):
     def _approach(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
-        """Find the balance by continuation of the pose, from that of the present displacements."""
-        reached, part = 0.0, 0.5
+        """Find the balance at once, else by continuation of the pose, from that of the present displacements."""
+        reached, part = 0.0, 1.0
         between = motion.copy()
         while part > SMALLEST_PART and self._linearised < LINEARISATIONS:
             target, before = min(1.0, reached + part), self.displacements
