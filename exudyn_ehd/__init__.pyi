@@ -28,10 +28,10 @@ from exudyn_ehd.coupling.rotor.api import SolveThreshold as SolveThreshold
 from exudyn_ehd.coupling.rotor.api import stability_map as stability_map
 from exudyn_ehd.coupling.rotor.result import RotorResult as RotorResult
 from exudyn_ehd.coupling.run.joint_state import JointState as JointState
-from exudyn_ehd.coupling.run.newton_limits import ConfigureSolver as ConfigureSolver
 from exudyn_ehd.coupling.run.periodic import LastCycle as LastCycle
 from exudyn_ehd.coupling.run.periodic import UntilPeriodic as UntilPeriodic
 from exudyn_ehd.coupling.run.restart import SystemState as SystemState
+from exudyn_ehd.coupling.run.settings import ConfigureSolver as ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SaveState as SaveState
 from exudyn_ehd.coupling.run.solve import SolveDynamic as SolveDynamic
 from exudyn_ehd.coupling.run.solve import SolveStatic as SolveStatic

@@ -13,13 +13,13 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import free_bushes, require_settings, require_time
+from exudyn_ehd.coupling.run.newton_limits import free_bushes
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
 from exudyn_ehd.coupling.run.restart import SystemState, load_state
+from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time, warn_of_misfit
 from exudyn_ehd.coupling.run.start_guess import StartGuess, refuse
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.solver_state import hooked
-from exudyn_ehd.coupling.watch.start_velocity import warn_of_misfit
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
@@ -374,25 +374,6 @@ def running(
         run_progress(mbs, settings, joints),
     ):
         yield
-
-
-def require_control(
-    where: str, settings: exu.SimulationSettings, control: StepControl | None, *, implicit: bool = True
-) -> None:
-    """Refuse a control that is none of a run, or a run that has no use for one."""
-    require_type(f"{where}.stepControl", control, StepControl, type(None))
-    if control is None:
-        return
-    if control.error is None:
-        raise InputError(
-            f"{where}.stepControl: StepControl.error is missing, the error that the steps aim at (0.02); "
-            "largest_gap_change is of a joint: CreateLubricatedJoint(stepControl=...)."
-        )
-    if not implicit or not settings.timeIntegration.adaptiveStep:
-        raise InputError(
-            f"{where}.stepControl needs an implicit solver and timeIntegration.adaptiveStep=True, with which Exudyn "
-            "can repeat steps; ConfigureSolver(simulationSettings) sets it."
-        )
 
 
 @contextmanager

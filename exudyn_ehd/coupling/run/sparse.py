@@ -38,8 +38,9 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.linear import SystemFactor
 from exudyn_ehd.coupling.contract import require_system
-from exudyn_ehd.coupling.run.newton_limits import require_settings, require_time, state_of
-from exudyn_ehd.coupling.run.solve import joints_of, require_control, require_items, running
+from exudyn_ehd.coupling.run.newton_limits import state_of
+from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time
+from exudyn_ehd.coupling.run.solve import joints_of, require_items, running
 from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import idle, user_function

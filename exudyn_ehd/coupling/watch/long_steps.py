@@ -72,7 +72,7 @@ KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
 # Loss of angular momentum in a turn that counts, and the turn of a step over 1 - rho from which vibrations may grow; no
 # smaller turn of a step than the last one counts, rad.
 LOST, GROWING, LEAST = 0.01, 0.8, 2.0 * math.pi / 200
-# That of ConfigureSolver.
+# Spectral radius for films; see `ConfigureSolver`.
 USUAL_RADIUS = 0.6
 # Largest spectral radius at which alternating velocities fade soon enough, see above; a smaller one damps whirl more.
 LARGEST_RADIUS = 0.9
