@@ -26,8 +26,8 @@ from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.status import Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization
-EDGE = [0.0, 0.0, 0.0, 1.0]
-BUSH, RING = [0.72, 0.74, 0.78, 0.35], [0.72, 0.74, 0.78, 0.2]
+# Colour of the housing's ring or the bush.
+GREY = [0.72, 0.74, 0.78, 0.3]
 # Thickness of the housing's ring, and the clearance as drawn: shares of the journal's radius.
 WALL, CLEARANCE = 0.2, 0.1
 
@@ -93,7 +93,8 @@ class FilmDisplay:
         frame, scale = self._frame(mbs), self._scale(model.bearing)
         bore, z = self._bore(scale), model.grid.z * model.grid.reference_length
         rings, closed = _points(frame, model.grid.x, bore[:, [0, -1]], z[[0, -1]]), model.bearing.arc is None
-        data = [exudyn.graphics.Lines(np.vstack([rings[:, k], rings[:closed, k]]), color=EDGE) for k in (0, 1)]
+        edges = [np.vstack([rings[:, k], rings[:closed, k]]) for k in (0, 1)]
+        data = [exudyn.graphics.Lines(edge, color=exudyn.graphics.color.black) for edge in edges]
 
         def surface(radii: np.ndarray, places: np.ndarray, color: list[float] | np.ndarray) -> None:
             """Add the surface through rings of radii (n, k) at places (k,)."""
@@ -110,14 +111,14 @@ class FilmDisplay:
             surface(np.column_stack([bore[:, -1], journal[:, -1]]), z[[-1, -1]], ends)
         if self.bush is None:
             wall = np.full(len(bore), bore.max() + WALL * model.bearing.journal_radius)
-            surface(np.column_stack([bore[:, 0], wall, wall, bore[:, -1]]), z[[0, 0, -1, -1]], RING)
+            surface(np.column_stack([bore[:, 0], wall, wall, bore[:, -1]]), z[[0, 0, -1, -1]], GREY)
         else:
             mesh = model.bore.modes.mesh
             outward = mesh.nodes * (1.0, 1.0, 0.0) / np.linalg.norm(mesh.nodes[:, :2], axis=1)[:, None]
             moved = mesh.nodes + (scale - 1.0) * model.bearing.radial_clearance * outward + scale * self.bush
             triangles = mesh.boundary[:, face_of(mesh.boundary).triangles].reshape(-1, 3)
             moved = moved @ frame[:, :3].T + frame[:, 3]
-            data.append(exudyn.graphics.FromPointsAndTrigs(moved, triangles, color=BUSH))
+            data.append(exudyn.graphics.FromPointsAndTrigs(moved, triangles, color=GREY))
         return data
 
     def _scale(self, bearing: JournalBearing) -> float:

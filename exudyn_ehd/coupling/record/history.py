@@ -17,7 +17,7 @@ from exudyn_ehd.joint.audit.samples import RecordedSteps
 from exudyn_ehd.joint.step_error import BLOCKS, LOADS
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import HistoryRecord, shown
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import ROUNDING, InputError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv
 
@@ -308,7 +308,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         """
         if not start <= end:
             raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
-        slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
+        slack = ROUNDING * float(np.ptp(self.time)) if self.time.size else 0.0
         kept = (self.time >= start - slack) & (self.time <= end + slack)
         # columns of which a part is wanted are not kept
         known, column = self.__dict__, self.__dict__.get("_column")

@@ -29,7 +29,7 @@ from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, r
 from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.step_error import NO_ERROR
-from exudyn_ehd.status import InputError, RunError, require_integer, require_number
+from exudyn_ehd.status import ROUNDING, InputError, RunError, require_integer, require_number
 from exudyn_ehd.storage import require_path
 
 # Rows in memory from which on they are settled: numbered, and thinned or written to a file.
@@ -266,8 +266,8 @@ class FilmRecorder:
         if math.isnan(self.first):
             self.first = time
         self.last = time
-        # 1e-9: a step that ends a rounding before the instant is meant to be there
-        due = math.floor((time - self.first) / self.period + 1e-9) if self.period > 0.0 else self.due + 1
+        # a step that ends a rounding before the instant is meant to be there
+        due = math.floor((time - self.first) / self.period + ROUNDING) if self.period > 0.0 else self.due + 1
         if due == self.due:
             return
         self.due = due

@@ -49,14 +49,12 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics.relative import BoreGap, levers_of
 from exudyn_ehd.joint.balance.newton import part_that_closes
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import SMALL, Status
 
 # Share of a film's gap that a step of Newton's method may close.
 SHARE = 0.5
 # Share of the relative tolerance times the films' forces.
 FORCE_SHARE = 0.1
-# Least part of the relative tolerance that is left.
-LEAST_PART = 1e-6
 
 
 class GapLimit:
@@ -195,7 +193,7 @@ class ForceTolerance:
             self.first = forces
         present = max(forces, self.level)
         part = present / self.first if self.first > present else 1.0
-        solver.newton.relativeTolerance = self.relative * max(part, LEAST_PART)
+        solver.newton.relativeTolerance = self.relative * max(part, SMALL)
 
     def _forces(self) -> float:
         return math.hypot(*(force for film in self.films for force in _force(film.last)))

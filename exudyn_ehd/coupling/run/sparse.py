@@ -40,7 +40,7 @@ import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -57,7 +57,7 @@ from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import idle, user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.solid.linear import solve_by_products, sparse_factor
-from exudyn_ehd.status import InputError, require_integer, require_number
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer
 
 # Exudyn's stubs lack the self of its solvers' methods.
 DynamicSolver: TypeAlias = Any
@@ -71,7 +71,7 @@ LARGEST_REST = 200
 
 
 @dataclass(frozen=True, kw_only=True)
-class FactorReuse:
+class FactorReuse(Checked):
     """Rules that say when `SolveDynamicSparse` computes a new factor of its Jacobian.
 
     Parameters
@@ -97,10 +97,11 @@ class FactorReuse:
     maximum_iterations: int = 10
     worth: int = 40
 
-    def __post_init__(self) -> None:
-        require_number("FactorReuse.contractivity", self.contractivity, above=0.0)
-        require_integer("FactorReuse.maximum_iterations", self.maximum_iterations, at_least=1)
-        require_integer("FactorReuse.worth", self.worth, at_least=1)
+    checks: ClassVar = {
+        "contractivity": POSITIVE,
+        "maximum_iterations": partial(require_integer, at_least=1),
+        "worth": partial(require_integer, at_least=1),
+    }
 
 
 @dataclass(kw_only=True)

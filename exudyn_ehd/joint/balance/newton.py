@@ -34,7 +34,7 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, require_oil_bears, seized
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
-from exudyn_ehd.status import FilmError, Status
+from exudyn_ehd.status import SMALL, FilmError, Status
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
@@ -44,9 +44,9 @@ if TYPE_CHECKING:
 # round-off of hot fields keeps changes from falling further, the second one does.
 SETTLED, NEARLY = 1e-11, 1e-9
 LOAD_TOLERANCE = 1e-10
-# Rounds of a search, of one from a film nearby, and those that may pass without the error falling to a share of what
+# Rounds of a search, and of one from a film nearby, or those that may pass without the error falling to a share of what
 # it was. More rounds, and a share nearer to 1, give up later.
-ROUNDS, NEARBY_ROUNDS, PATIENCE, FALLS = 300, 20, 20, 0.9
+ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping of the temperature's steps below which it gives up where they make no progress.
 WEAKEST = 0.1
 # Halvings of a step without a film, or steps of the first position towards the centre, after which there is none.
@@ -59,8 +59,6 @@ LARGEST_CHANGE, ACCELERATED, TYPICAL_CHANGE = 50.0, 5.0, 30.0
 DEPTH = 10
 # K, up to which a search goes on, far beyond what any oil bears: on its way a film is hotter than where it ends.
 DIVERGED = 2000.0
-# Least stiffness of the faces in a step, in loads over the clearance; a larger one shortens steps of soft faces.
-SOFTEST = 1e-6
 # Share of the smallest gap that a step may use up; step over the clearance where surfaces may touch or deflect.
 ROOM, FREE_STEP = 0.6, 0.3
 
@@ -112,8 +110,6 @@ class Balance:
         Films on the end faces beside the journal's.
     held : History, optional
         Memory whose temperature the film has; None: the temperature is sought.
-    effort : int
-        Film solves after which a search gives up.
 
     Attributes
     ----------
@@ -132,9 +128,8 @@ class Balance:
         size: float | None = None,
         faces: ThrustModel | None = None,
         held: History | None = None,
-        effort: int = LARGEST_EFFORT,
     ) -> None:
-        self.model, self.where, self.faces, self.held, self.effort = model, where, faces, held, effort
+        self.model, self.where, self.faces, self.held = model, where, faces, held
         self.load = np.zeros(0) if load is None else load
         self.free, self.share = [0, 1, MOTION_SIZE][: self.load.size], 1.0
         self.size = float(norm(self.load[:2])) if size is None else size
@@ -182,7 +177,7 @@ class Balance:
             unbalance += beside.wrench[:k]
             slope += beside.tangent()[:k, self.free]
             if k > 2:  # plane faces at rest press nowhere: a step goes to the face that is to carry
-                slope[2, 2] = min(slope[2, 2], -SOFTEST * self._sizes[2] / self.model.bearing.radial_clearance)
+                slope[2, 2] = min(slope[2, 2], -SMALL * self._sizes[2] / self.model.bearing.radial_clearance)
         return Place(motion.copy(), T, change, evaluation, film, unbalance, slope, beside)
 
     def residual(self, place: Place) -> float:
@@ -223,7 +218,8 @@ class Balance:
         past: list[tuple[np.ndarray, np.ndarray]] = []
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
-            if self.is_balanced(here, tolerance, SETTLED) or self._is_spent():
+            spent = self.model.parts.evaluations.count - self.first > LARGEST_EFFORT
+            if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
             if idle > PATIENCE:
                 if not here.change.size or damping < WEAKEST or (self.free and not resistance):
@@ -250,9 +246,6 @@ class Balance:
         if here.film.serial != self.model.parts.evaluations.count:
             here = self.at(here.motion, here.temperature)
         return here
-
-    def _is_spent(self) -> bool:
-        return self.model.parts.evaluations.count - self.first > self.effort
 
     def _first(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
         """The film at a motion (11,), or that of a free journal at a smaller eccentricity if there is none."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
-from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, NEARBY_ROUNDS, ROUNDS, Balance, Place
+from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, PATIENCE, ROUNDS, Balance, Place
 from exudyn_ehd.status import FilmError
 
 # Eccentricity ratio in the direction of the load of the second start of damped steps: inside, where neither a gap is
@@ -90,8 +90,8 @@ class LoadSearch(Balance):
         def reach(share: float, here: Place | None, _: bool) -> Place | None:
             self.share = share
             if here is None:
-                return self.attempt(first, self.temperature_of(None), rounds=NEARBY_ROUNDS)
-            return self.attempt(here.motion, here.temperature, rounds=NEARBY_ROUNDS)
+                return self.attempt(first, self.temperature_of(None), rounds=PATIENCE)
+            return self.attempt(here.motion, here.temperature, rounds=PATIENCE)
 
         share, found = continued(reach, FIRST_SHARE, SMALLEST_SHARE)
         self.share = 1.0

@@ -39,14 +39,15 @@ from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.solid.bush_modes import BoreModes
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.journal.harmonics import POINTS, WEIGHTS
 from exudyn_ehd.solid.journal.modes import JournalModes
 from exudyn_ehd.solid.unrolled import Surface, directed
+from exudyn_ehd.status import ROUNDING, SMALL
 
 # Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.
 STENCIL = 4
-GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
-# Share of an interval that is too short for a panel; round-off of lengths, and of values of order one.
-TOUCHING, ROUNDING, SMALLEST = 1e-3, 1e-9, 1e-14
+# Share of an interval that is too short for a panel; round-off of values of order one.
+TOUCHING, SMALLEST = 1e-3, 1e-14
 LINEAR = 0.03
 # Distance, as a share of half the length, within which an edge lies on the film's end.
 RIM = 1e-4
@@ -140,7 +141,7 @@ def _panels(start: float, width: float, cuts: np.ndarray) -> tuple[np.ndarray, n
     inside = (cuts - start) / width
     edges = np.concatenate(([0.0], inside[(inside > TOUCHING) & (inside < 1.0 - TOUCHING)], [1.0]))
     size = np.diff(edges)[:, None]
-    return (edges[:-1, None] + 0.5 * size * (1.0 + GAUSS)).ravel(), (0.5 * size * WEIGHTS).ravel()
+    return (edges[:-1, None] + 0.5 * size * (1.0 + POINTS)).ravel(), (0.5 * size * WEIGHTS).ravel()
 
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -232,10 +233,6 @@ def _with_moments(
     amount = np.linalg.lstsq(matrix, lack, rcond=1e-10)[0].reshape(changes.shape[:2])
     out: np.ndarray = L + np.einsum("p,pc,pcm->pm", 1.0 / root, amount, changes)
     return out
-
-
-# Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
-TURNED = 1e-6
 
 
 class Bore(abc.ABC):
@@ -336,7 +333,7 @@ class ModalBore(Bore):
         super().__init__(grid, whole, 0 if modes is None else modes.count)
         if isinstance(modes, BoreModes):
             turned = modes.twist(2.0 * float(grid.z[-1]) * grid.reference_length)
-            if np.abs(turned).max() * grid.reference_length > TURNED:
+            if np.abs(turned).max() * grid.reference_length > SMALL:
                 self.twist = np.concatenate((turned, np.zeros(self.size - self.own)))
 
     def end_shapes(self) -> np.ndarray:
