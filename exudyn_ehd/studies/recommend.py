@@ -48,9 +48,6 @@ LINE_COST = 1.65
 MARGIN = 1.5
 # Of the eccentricity; of bearings with supply or a profile, whose film changes with the place of these in it.
 DIRECTIONS, UNEVEN_DIRECTIONS = 12, 24
-# Multiples of it, without whole parts, spread over every column of the ladder's grids.
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-COARSEST = 2.0 * math.pi / LADDER[0][0]
 # Largest distance of eccentricity ratios at which errors are measured.
 SPACING = 0.1
 ECCENTRICITY, TILT, RATIO = (0.1, 0.95), (0.0, 0.7), (0.25, 2.0)
@@ -281,7 +278,8 @@ def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
         direction = None
     many = UNEVEN_DIRECTIONS if (bearing.supply or bearing.profiles) and direction is None else DIRECTIONS
     count = np.arange(many)
-    places = COARSEST * (GOLDEN * count % 1.0 - 0.5)
+    # multiples of the golden ratio, without whole parts, spread over every column of the ladder's grids
+    places = 2.0 * math.pi / LADDER[0][0] * (0.5 * (math.sqrt(5.0) - 1.0) * count % 1.0 - 0.5)
     return places + (2.0 * math.pi / many * count if direction is None else direction)
 
 

@@ -34,15 +34,15 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, require_oil_bears, seized
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
-from exudyn_ehd.status import SMALL, FilmError, Status
+from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
 
 
 # Change of the temperature that counts as settled, as a share of the film's rise over its coldest source; where
-# round-off of hot fields keeps changes from falling further, the second one does.
-SETTLED, NEARLY = 1e-11, 1e-9
+# round-off of hot fields keeps changes from falling further, `ROUNDING` does.
+SETTLED = 1e-11
 LOAD_TOLERANCE = 1e-10
 # Rounds of a search, and of one from a film nearby, or those that may pass without the error falling to a share of what
 # it was. More rounds, and a share nearer to 1, give up later.
@@ -188,7 +188,7 @@ class Balance:
         """The larger of the residual and of the temperature's change over a typical one."""
         return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / TYPICAL_CHANGE)
 
-    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = NEARLY) -> bool:
+    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = ROUNDING) -> bool:
         """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
         T, change = place.temperature, place.change
         if self.residual(place) > tolerance or not change.size:

@@ -17,8 +17,6 @@ from exudyn_ehd.status import FilmError
 INSIDE = 0.3
 # Continuation from small loads: first and smallest step, shares of the load.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
-# Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
-FORCE_ROUNDING = 1e-16
 
 
 class LoadSearch(Balance):
@@ -59,7 +57,8 @@ class LoadSearch(Balance):
 
     def tolerance(self, motion: np.ndarray) -> float:
         """Share of the load that may be left of it at a motion."""
-        return max(LOAD_TOLERANCE, FORCE_ROUNDING * self.model.bearing.reference_force(motion[8]) / self.size)
+        # rounding of the film's force, which a tiny load can't fall below
+        return max(LOAD_TOLERANCE, np.finfo(float).eps * self.model.bearing.reference_force(motion[8]) / self.size)
 
     def attempt(
         self, motion: np.ndarray, temperature: np.ndarray, resistance: float = 0.0, rounds: int = ROUNDS
