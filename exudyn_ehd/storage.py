@@ -1,7 +1,7 @@
 """Storage on disk: files that are either whole or absent, and arrays kept between runs.
 
-Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. Their
-file begins with a digest of key and content: a damaged or foreign one gives a warning and is replaced. Simultaneous
+Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. A
+damaged file gives a warning and is replaced. Simultaneous
 runs don't disturb each other, since a file appears under its name only when complete. If a folder can't be written,
 every run computes the arrays again. When the folder is full, the file unused for longest is deleted. numba keeps
 compiled kernels in folders of its own; where it finds none, the process gets one.
@@ -21,6 +21,7 @@ import time
 import types
 import warnings
 import zipfile
+import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -192,25 +193,43 @@ def cached_arrays(name: str, key: object, compute: Callable[[], Arrays]) -> Arra
         Makes the arrays.
     """
     path = cache_folder() / f"{name}_{fingerprint(key)}.bin"
-    try:
-        with open(path, "rb") as file, np.load(file, allow_pickle=False) as data:
-            arrays = {name: data[name] for name in data.files}
+    stored = None
+    with suppress(OSError):
+        stored = read_arrays(path, name)
+        if stored is None:
+            warnings.warn(f"exudyn_ehd: the cache file {path.name} is damaged; it is built again.", stacklevel=3)
         # files that nobody reads go first, see _make_room
-        with suppress(OSError):
-            os.utime(path)
-        return arrays
-    except OSError:
-        pass
-    except (ValueError, EOFError, zipfile.BadZipFile):
-        warnings.warn(f"exudyn_ehd: the cache file {path.name} is damaged; it is built again.", stacklevel=3)
+        os.utime(path)
+    if stored is not None:
+        return stored
     with announced(f"exudyn_ehd: computing {name.replace('_', ' ')}; later runs read them from the disk ..."):
         arrays = compute()
     with suppress(OSError):
         with replacing(path, binary=True) as file:
             # numpy's stub lets keywords be flags too
-            np.savez(file, **arrays)  # type: ignore[arg-type]
+            np.savez(file, format=name, **arrays)  # type: ignore[arg-type]
         _make_room(path)
     return arrays
+
+
+def read_arrays(path: str | pathlib.Path, form: str) -> dict[str, np.ndarray] | None:
+    """Arrays of a NumPy archive by name; None if it is damaged, or its "format" is another one."""
+    with open(path, "rb") as file:
+        try:
+            with np.load(file, allow_pickle=False) as data:
+                arrays = dict(data)
+        # whatever numpy finds in bytes that are no archive of arrays
+        except (
+            ValueError,
+            EOFError,
+            TypeError,
+            AttributeError,
+            NotImplementedError,
+            zipfile.BadZipFile,
+            zlib.error,
+        ):
+            return None
+    return arrays if str(arrays.pop("format", "")) == form else None
 
 
 def _make_room(newest: pathlib.Path) -> None:
