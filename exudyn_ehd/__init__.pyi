@@ -28,10 +28,10 @@ from exudyn_ehd.coupling.rotor.api import SolveThreshold as SolveThreshold
 from exudyn_ehd.coupling.rotor.api import stability_map as stability_map
 from exudyn_ehd.coupling.rotor.result import RotorResult as RotorResult
 from exudyn_ehd.coupling.run.joint_state import JointState as JointState
-from exudyn_ehd.coupling.run.newton_limits import ConfigureSolver as ConfigureSolver
 from exudyn_ehd.coupling.run.periodic import LastCycle as LastCycle
 from exudyn_ehd.coupling.run.periodic import UntilPeriodic as UntilPeriodic
 from exudyn_ehd.coupling.run.restart import SystemState as SystemState
+from exudyn_ehd.coupling.run.settings import ConfigureSolver as ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SaveState as SaveState
 from exudyn_ehd.coupling.run.solve import SolveDynamic as SolveDynamic
 from exudyn_ehd.coupling.run.solve import SolveStatic as SolveStatic
@@ -118,11 +118,11 @@ from exudyn_ehd.solid.loads import LineLoad as LineLoad
 from exudyn_ehd.solid.loads import SurfaceLoad as SurfaceLoad
 from exudyn_ehd.solid.mesh import BushMesh as BushMesh
 from exudyn_ehd.solid.mesh import HollowCylinder as HollowCylinder
-from exudyn_ehd.solid.mesh_files import mesh_from_file as mesh_from_file
 from exudyn_ehd.solid.mesh_import import OnCylinder as OnCylinder
 from exudyn_ehd.solid.mesh_import import OnPlane as OnPlane
 from exudyn_ehd.solid.mesh_import import mesh_from_arrays as mesh_from_arrays
 from exudyn_ehd.solid.mesh_import import mesh_from_fem as mesh_from_fem
+from exudyn_ehd.solid.mesh_import import mesh_from_file as mesh_from_file
 from exudyn_ehd.solid.total_lagrange import NeoHooke as NeoHooke
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as SaintVenantKirchhoff
 from exudyn_ehd.status import EHDError as EHDError

@@ -11,7 +11,7 @@ import shutil
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
@@ -67,25 +67,24 @@ def _stream() -> TextIO:
 
 
 class Progress:
-    """The line of one piece of work, which begins now."""
+    """The line of one run, which begins now."""
 
     def __init__(self, title: str) -> None:
-        self.title = title
-        self.begin = time.perf_counter()
+        self.title, self.width, self.steps = title, 0, 0
+        self.begin = self.last = time.perf_counter()
         self.next = self.begin + PATIENCE
-        self.width = 0
 
-    @property
-    def is_due(self) -> bool:
-        """Return whether the line is due for a new text."""
-        return time.perf_counter() >= self.next
+    def step(self, share: float, note: Callable[[float], str]) -> None:
+        """Count a step, and write the line if it is due.
 
-    def tell(self, share: float, note: str = "") -> None:
-        """Write the line: the share (0 to 1) that is done, what is left at that rate, and a note."""
-        now = time.perf_counter()
-        self.next = now + PERIOD
-        left = f", {_duration((now - self.begin) * (1.0 - share) / share)} left" if share > 0.0 else ""
-        self._write(f"{self.title}: {100.0 * share:.0f} %{left}{note}")
+        It says the share (0 to 1) that is done, what is left at that rate, and a note on the rate of steps, 1/s.
+        """
+        now, self.steps = time.perf_counter(), self.steps + 1
+        if now >= self.next:
+            rate = self.steps / (now - self.last)
+            self.steps, self.last, self.next = 0, now, now + PERIOD
+            left = f", {_duration((now - self.begin) * (1.0 - share) / share)} left" if share > 0.0 else ""
+            self._write(f"{self.title}: {100.0 * share:.0f} %{left}{note(rate)}")
 
     def close(self) -> None:
         """Take the line away."""

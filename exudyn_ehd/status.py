@@ -23,6 +23,8 @@ Hinted = TypeVar("Hinted")
 # (`FiniteLength`): 5e-8 at this limit, where the closures' tolerances dominate. A larger limit allows films that take
 # minutes and gigabytes.
 MOST_VERTICES = 20_000
+# Shares of a whole that are nothing: of what was typed, read or found by an iteration, and of what is computed.
+SMALL, ROUNDING = 1e-6, 1e-9
 
 
 class Status(enum.IntEnum):

@@ -1,7 +1,7 @@
 """Storage on disk: files that are either whole or absent, and arrays kept between runs.
 
-Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. Their
-file begins with a digest of key and content: a damaged or foreign one gives a warning and is replaced. Simultaneous
+Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. A
+damaged file gives a warning and is replaced. Simultaneous
 runs don't disturb each other, since a file appears under its name only when complete. If a folder can't be written,
 every run computes the arrays again. When the folder is full, the file unused for longest is deleted. numba keeps
 compiled kernels in folders of its own; where it finds none, the process gets one.
@@ -13,7 +13,6 @@ import atexit
 import dataclasses
 import enum
 import hashlib
-import io
 import os
 import pathlib
 import shutil
@@ -21,6 +20,8 @@ import tempfile
 import time
 import types
 import warnings
+import zipfile
+import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -178,56 +179,57 @@ def _probe() -> None:
     """A function for numba to look for a folder for."""
 
 
-def cached_arrays(name: str, key: bytes, compute: Callable[[], Arrays]) -> Arrays:
+def cached_arrays(name: str, key: object, compute: Callable[[], Arrays]) -> Arrays:
     """Arrays from the disk, or computed and stored there.
 
     Parameters
     ----------
     name : str
         Start of the file's name, of the warning about a damaged file, and what long work says that it makes.
-    key : bytes
-        Everything that determines the arrays, a number for the format and for the algorithm included.
+    key : object
+        Everything that determines the arrays, as for `fingerprint`, a number for the format and for the algorithm
+        included.
     compute : function
         Makes the arrays.
     """
-    digest = hashlib.sha256(key).digest()
-    path = cache_folder() / f"{name}_{digest.hex()[:24]}.bin"
-    stored = _read(path, digest)
+    path = cache_folder() / f"{name}_{fingerprint(key)}.bin"
+    stored = None
+    with suppress(OSError):
+        stored = read_arrays(path, name)
+        if stored is None:
+            warnings.warn(f"exudyn_ehd: the cache file {path.name} is damaged; it is built again.", stacklevel=3)
+        # files that nobody reads go first, see _make_room
+        os.utime(path)
     if stored is not None:
         return stored
     with announced(f"exudyn_ehd: computing {name.replace('_', ' ')}; later runs read them from the disk ..."):
         arrays = compute()
-    _write(path, digest, arrays)
-    return arrays
-
-
-def _read(path: pathlib.Path, digest: bytes) -> Arrays | None:
-    try:
-        raw = path.read_bytes()
-    except OSError:
-        return None
-    if hashlib.sha256(digest + raw[32:]).digest() != raw[:32]:
-        warnings.warn(f"exudyn_ehd: the cache file {path.name} is damaged; it is built again.", stacklevel=4)
-        return None
-    with np.load(io.BytesIO(raw[32:]), allow_pickle=False) as data:
-        arrays = {name: data[name] for name in data.files}
-    # files that nobody reads go first, see _make_room
     with suppress(OSError):
-        os.utime(path)
+        with replacing(path, binary=True) as file:
+            # numpy's stub lets keywords be flags too
+            np.savez(file, format=name, **arrays)  # type: ignore[arg-type]
+        _make_room(path)
     return arrays
 
 
-def _write(path: pathlib.Path, digest: bytes, arrays: Arrays) -> None:
-    buffer = io.BytesIO()
-    # numpy's stub lets keywords be flags too
-    np.savez(buffer, **arrays)  # type: ignore[arg-type]
-    payload = buffer.getvalue()
-    try:
-        with replacing(path, binary=True) as file:
-            file.write(hashlib.sha256(digest + payload).digest() + payload)
-        _make_room(path)
-    except OSError:
-        return
+def read_arrays(path: str | pathlib.Path, form: str) -> dict[str, np.ndarray] | None:
+    """Arrays of a NumPy archive by name; None if it is damaged, or its "format" is another one."""
+    with open(path, "rb") as file:
+        try:
+            with np.load(file, allow_pickle=False) as data:
+                arrays = dict(data)
+        # whatever numpy finds in bytes that are no archive of arrays
+        except (
+            ValueError,
+            EOFError,
+            TypeError,
+            AttributeError,
+            NotImplementedError,
+            zipfile.BadZipFile,
+            zlib.error,
+        ):
+            return None
+    return arrays if str(arrays.pop("format", "")) == form else None
 
 
 def _make_room(newest: pathlib.Path) -> None:

@@ -53,13 +53,3 @@ def tet_mesh(cylinder, shift=0.0, straight=False):
     """Bush mesh of the cylinder's tetrahedra."""
     nodes, elements = tetrahedra(cylinder, shift, straight)
     return ehd.mesh_from_arrays(nodes, elements, bore_radius=cylinder.inner_radius)
-
-
-def node_lines(nodes):
-    """Data lines of *Node, numbers from 1."""
-    return [f"{i + 1}, {', '.join(f'{c:.16g}' for c in x)}" for i, x in enumerate(nodes)]
-
-
-def element_lines(elements, first=1):
-    """Data lines of *Element."""
-    return [", ".join(map(str, [first + i, *(element + 1)])) for i, element in enumerate(elements)]

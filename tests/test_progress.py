@@ -131,7 +131,7 @@ def test_work_without_shares_says_what_it_does_once_it_is_long(terminal):
 def test_durations_and_long_lines(terminal):
     assert [progress._duration(s) for s in (45.2, 200.0, 7500.0)] == ["45 s", "3 min 20 s", "2 h 5 min"]
     line = progress.Progress("x")
-    line.tell(0.5, "y" * 200)
+    line.step(0.5, lambda _: "y" * 200)
     assert len(terminal.getvalue()) == 120
     with pytest.raises(ehd.InputError, match="True, False or None"):
         ehd.show_progress("yes")

@@ -20,7 +20,7 @@ contract    what the coupling asks of a film and of a side; names for Exudyn's t
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
-from exudyn_ehd.coupling.run.newton_limits import ConfigureSolver
+from exudyn_ehd.coupling.run.settings import ConfigureSolver
 
 __all__ = [
     "ConfigureSolver",

@@ -67,11 +67,10 @@ class Trial:
     """One state and the films' evaluation there; ``evaluation`` is None if the film was not evaluated.
 
     ``motion`` is the film's input. It follows from the motion of the ``bodies`` in the step from ``begin``. ``faces``
-    is the evaluation of films on end faces, whose motion is that of the bodies; None without them. ``derived`` are the
-    journal's film's derivatives, behind the factors that they are for, if they are known.
+    is the evaluation of films on end faces, whose motion is that of the bodies; None without them.
     """
 
-    __slots__ = ("begin", "bodies", "derived", "evaluation", "faces", "memory", "motion", "q", "q_t", "status", "step")
+    __slots__ = ("begin", "bodies", "evaluation", "faces", "memory", "motion", "q", "q_t", "status", "step")
 
     def __init__(
         self,
@@ -92,7 +91,6 @@ class Trial:
         self.motion = motion
         self.evaluation: JointEvaluation | None = None
         self.faces: ThrustEvaluation | None = None
-        self.derived: tuple[tuple[float, float], np.ndarray] | None = None
         # a sum is finite only if all its terms are
         self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
 
@@ -100,10 +98,6 @@ class Trial:
         """Store the evaluations of the journal's film and of the end faces."""
         self.evaluation, self.faces = evaluation, faces
         self.status = evaluation.status if faces is None else max(evaluation.status, faces.status)
-
-    def lacks(self, f_q: float, f_qt: float) -> bool:
-        """Return whether the film's derivatives for these factors are not known."""
-        return self.derived is None or self.derived[0] != (f_q, f_qt)
 
     @property
     def found(self) -> JointEvaluation:

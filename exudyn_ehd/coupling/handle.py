@@ -12,10 +12,11 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.element.display import FilmDisplay, reader
+from exudyn_ehd.coupling.element.display import FilmDisplay
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record.films import FilmRecorder
+from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
+from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.film.models import FiniteLength

@@ -23,12 +23,10 @@ from exudyn_ehd.coupling.items.bodies import MASS_POINTS, POINT_KINDS
 from exudyn_ehd.coupling.items.markers import marker_item
 from exudyn_ehd.coupling.items.object_mass import own_equations
 from exudyn_ehd.coupling.run.solve import joints_of
-from exudyn_ehd.status import InputError, require_type
+from exudyn_ehd.status import ROUNDING, InputError, require_type
 
 TYPES = ("JointRevoluteZ", "JointGeneric", "JointRevolute2D")
 _LEAVE = "leave this joint as it is (ReplaceJoints: bearing as a function that returns None for it)"
-# Sine of the angle between the axes of the two markers up to which they count as one.
-PARALLEL = 1e-9
 
 
 def ReplaceJoint(
@@ -98,7 +96,7 @@ def ReplaceJoint(
     markers, frames = zip(*(_side(mbs, joint, k, where) for k in (0, 1)), strict=True)
     axes = [frame[:, free] for frame in frames]
     # of either sense, as for Exudyn: the film takes the housing's
-    if np.linalg.norm(np.cross(*axes)) > PARALLEL:
+    if np.linalg.norm(np.cross(*axes)) > ROUNDING:
         raise InputError(
             f"{where}: the axes of its two markers, {axes[0]} and {axes[1]}, must be parallel in the reference "
             "configuration; turn one of the markers by its localHT, or of the joint by rotationMarker0 or 1."

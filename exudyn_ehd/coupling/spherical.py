@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
 from exudyn_ehd.coupling.element import outer_load
-from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, reader, ring_triangles
+from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical

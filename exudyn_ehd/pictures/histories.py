@@ -14,14 +14,16 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from exudyn_ehd.pictures.records import QUANTITIES, HistoryRecord, Target, Unit, label, unit_for
-from exudyn_ehd.pictures.rotors import RPM
+from exudyn_ehd.pictures.rotors import REACH, RPM
 from exudyn_ehd.pictures.style import (
     BLUE,
     COLUMN,
     GREY,
     PAGE,
     SKY,
+    TALL,
     VERMILION,
+    WIDE,
     headed,
     new_figure,
     picture,
@@ -31,13 +33,11 @@ from exudyn_ehd.pictures.style import (
 )
 from exudyn_ehd.status import InputError
 
-# Sizes of the pictures, and of the traces' margin, of one panel of them and of their title, inch.
-ORBIT, LOAD, WATERFALL = (COLUMN, 1.12 * COLUMN), (COLUMN, 1.15 * COLUMN), (0.62 * PAGE, 0.5 * PAGE)
+# Heights of the margin, of one panel and of the title of traces, inch.
 MARGIN, PANEL, TITLE = 0.55, 1.35, 0.2
 # Of a waterfall: duration of one spectrum over that of the history, steps that it takes at least, steps from one
-# spectrum to the next and frequencies, over those of a spectrum; smallest amplitude shown over the largest; highest
-# frequency shown over the highest speed.
-_SPECTRUM, _LEAST, _SHIFT, _FINER, _FLOOR, _REACH = 0.05, 16, 0.125, 4, 1e-3, 1.2
+# spectrum to the next and frequencies, over those of a spectrum; smallest amplitude shown over the largest.
+_SPECTRUM, _LEAST, _SHIFT, _FINER, _FLOOR = 0.05, 16, 0.125, 4, 1e-3
 # Distances of ticks on an axis of angles, degrees.
 _TICKS = [15.0, 30.0, *(45.0 * 2.0**k for k in range(40))]
 
@@ -78,7 +78,7 @@ def plot_orbit(
     c = history.radial_clearance
     unit = unit_for("length", c)
     own = ax is None
-    with picture(ax, ORBIT, path, title=title) as (figure, ax):
+    with picture(ax, TALL, path, title=title) as (figure, ax):
         draw_clearance(ax, c, unit)
         e = history.eccentricity
         if ends:
@@ -131,7 +131,7 @@ def plot_load(
     size = np.hypot(load[:, 0], load[:, 1])
     unit = unit_for("force", size)
     own = ax is None
-    with picture(ax, LOAD, path, where="plot_load", projection="polar") as (figure, ax):
+    with picture(ax, TALL, path, where="plot_load", projection="polar") as (figure, ax):
         angle = np.arctan2(load[:, 1], load[:, 0])
         (line,) = ax.plot(angle, unit(size), color=BLUE if own else None, label=text or "load on the bush")
         ax.set_rlim(bottom=0.0)
@@ -340,13 +340,13 @@ def plot_waterfall(
             f"plot_waterfall: speed must have shape {history.time.shape} as history.time and rise, or fall, "
             f"throughout, got shape {spin.shape}; leave it out for spectra over the time."
         )
-    below = frequency <= (_REACH * at.max() / (2.0 * np.pi) or np.inf)
+    below = frequency <= (REACH * at.max() / (2.0 * np.pi) or np.inf)
     words, kind = QUANTITIES.get(str(getattr(quantity, "value", quantity)), ("x of the journal", "length"))
     largest = float(amplitude[below].max()) or 1.0
     unit, along = unit_for(kind, largest), unit_for("time", time) if speed is None else RPM
     # amplitudes of a temperature without its offset
     across, shown = along(time if speed is None else at), unit.factor * np.maximum(amplitude[below].T, _FLOOR * largest)
-    with picture(ax, WATERFALL, path, title=title) as (figure, ax):
+    with picture(ax, WIDE, path, title=title) as (figure, ax):
         colours = ax.pcolormesh(frequency[below], across, shown, norm=LogNorm(), shading="nearest", rasterized=True)
         for order, style in ((1.0, ":"), (0.5, "--")):
             ax.plot(order * at / (2.0 * np.pi), across, style, color="white", label=f"{order:g} x speed")

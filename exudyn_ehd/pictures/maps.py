@@ -19,7 +19,6 @@ from exudyn_ehd.pictures.records import FilmRecord, Target, Unit, label, shown, 
 from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, headed, picture, style_ticks
 from exudyn_ehd.status import InputError
 
-TURN = 2.0 * math.pi
 SIZE = (0.75 * PAGE, 0.36 * PAGE)
 # Points of a picture around and along.
 FINE = (721, 121)
@@ -93,16 +92,16 @@ def closed_ring(theta: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.n
 
     The ring is a sequence of vertices from any start; linear between them.
     """
-    angle = np.mod(theta, TURN)
+    angle = np.mod(theta, math.tau)
     # an angle a rounding below a turn is the angle 0
-    angle[angle > TURN * (1.0 - 1e-12)] = 0.0
-    around = np.unique(np.concatenate(([0.0], angle, [TURN])))
+    angle[angle > math.tau * (1.0 - 1e-12)] = 0.0
+    around = np.unique(np.concatenate(([0.0], angle, [math.tau])))
     return around, _around(theta, values, around)
 
 
 def _around(theta: np.ndarray, values: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """Values (k, m) at angles (k,) of a field on a closed ring."""
-    return np.stack([np.interp(angles, theta, column, period=TURN) for column in values.T], axis=1)
+    return np.stack([np.interp(angles, theta, column, period=math.tau) for column in values.T], axis=1)
 
 
 def resampled(film: FilmRecord, values: np.ndarray, angles: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -123,7 +122,7 @@ def on_picture(film: FilmRecord, values: np.ndarray, *, prescribed_ends: bool = 
 
 def span(film: FilmRecord) -> tuple[float, float]:
     """First and last angle of a film, rad: those of its arc, or a turn."""
-    return (0.0, TURN) if film.bearing.arc is None else (float(film.theta[0]), float(film.theta[-1]))
+    return (0.0, math.tau) if film.bearing.arc is None else (float(film.theta[0]), float(film.theta[-1]))
 
 
 def plot_map(
@@ -231,7 +230,7 @@ def draw_rupture(ax: Axes, film: FilmRecord) -> ContourSet | None:
 
 def _draw_supply(ax: Axes, film: FilmRecord) -> bool:
     """Outlines of the supply areas that lie in the housing; whether there are any."""
-    theta = np.linspace(0.0, TURN, FINE[0])
+    theta = np.linspace(0.0, math.tau, FINE[0])
     z = np.linspace(film.z[0], film.z[-1], FINE[1])
     fixed = [area for area in placed(film.bearing.supply, film.bearing.length) if not area.rotating]
     for area in fixed:
@@ -245,7 +244,7 @@ def _extreme(film: FilmRecord, field: MapField, values: np.ndarray, unit: Unit) 
     """Title: the field's telling value with its place."""
     lowest = field.name in ("gap", "fill")
     i, j = np.unravel_index(np.argmin(values) if lowest else np.argmax(values), values.shape)
-    angle = math.degrees(math.fmod(film.theta[i] + TURN, TURN))
+    angle = math.degrees(math.fmod(film.theta[i] + math.tau, math.tau))
     size = f"{unit(values[i, j]):.4g} {unit.symbol}".removesuffix(" -")
     word = "smallest" if lowest else "largest"
     return f"{word} {size} at θ = {angle:.0f}°, z = {1e3 * film.z[j]:.3g} mm"

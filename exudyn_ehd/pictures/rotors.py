@@ -1,92 +1,33 @@
-"""Pictures of rotors in films over their speed: Campbell diagram, decrements, places, unbalance response.
-
-Beside them curves of one column of any table over another.
-"""
+"""Pictures of rotors in films over their speed: Campbell diagram, decrements, places, unbalance response."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from exudyn_ehd.pictures.records import KINDS, QUANTITIES, Target, Unit, label, unit_for
+from exudyn_ehd.pictures.records import Target, Unit, label, unit_for
 from exudyn_ehd.pictures.style import (
     BLUE,
-    COLUMN,
     GREY,
-    PAGE,
+    TALL,
     VERMILION,
+    WIDE,
     new_figure,
     picture,
     style_ticks,
     styled,
     write,
 )
-from exudyn_ehd.tables import unit_of
 
-Curve: TypeAlias = tuple[str, np.ndarray, np.ndarray]
-"""Name in the legend, x and y (n,) in SI units."""
-
-
-def plot_curves(
-    curves: Sequence[Curve],
-    names: tuple[str, str],
-    units: Mapping[str, str],
-    *,
-    ax: Axes | None = None,
-    path: Target = None,
-) -> Figure:
-    """Draw curves with a legend.
-
-    Parameters
-    ----------
-    curves : sequence of Curve
-    names : (str, str)
-        Names of the columns x and y; known quantities are shown in their usual unit.
-    units : dict
-        Units of other columns by name.
-    ax : matplotlib Axes, optional
-    path : path, optional
-
-    Returns
-    -------
-    matplotlib Figure
-    """
-    columns = [column(name, np.concatenate([curve[k + 1] for curve in curves]), units) for k, name in enumerate(names)]
-    x_unit, y_unit = (unit for _, unit in columns)
-    with picture(ax, (1.2 * COLUMN, 0.8 * COLUMN), path) as (figure, ax):
-        for text, x, y in curves:
-            order = np.argsort(x)
-            ax.plot(x_unit(x[order]), y_unit(y[order]), "o-", label=text or None)
-        xlabel, ylabel = (label(text, unit) if unit.symbol else text for text, unit in columns)
-        ax.set(xlabel=xlabel, ylabel=ylabel)
-        style_ticks(ax, grid=True)
-        if any(text for text, _, _ in curves):
-            ax.legend()
-    return figure
-
-
-def column(name: str, values: np.ndarray, units: Mapping[str, str]) -> tuple[str, Unit]:
-    """Return the label of a column and the unit in which its SI values are shown; ``units`` holds those of others."""
-    text, kind = QUANTITIES.get(name, (name.replace("_", " "), None))
-    if name in units:
-        return name.replace("_", " "), Unit(units[name])
-    symbol = unit_of(name) or ""
-    kind = kind or KINDS.get(symbol)
-    return text.replace("\n", " "), Unit(symbol) if kind is None else unit_for(kind, values)
-
-
-SIZE, PLACES, RESPONSE = (0.62 * PAGE, 0.45 * PAGE), (COLUMN, 1.12 * COLUMN), (0.62 * PAGE, 0.6 * PAGE)
 RPM, HERTZ = Unit("1/min", 30.0 / np.pi), Unit("Hz", 0.5 / np.pi)
 # Vibrations that decay faster than this share of their frequency are no resonances: shown small.
 OVERDAMPED = 0.5
-# Largest decrement and frequency, over the highest speed, that are shown.
-DAMPED, REACH = 2.0, 1.15
-TICKS = (-1.0, -0.5, 0.0, 0.5, 1.0)
+# Largest frequency, over the highest speed, that is shown.
+REACH = 1.15
 _SENSE = LinearSegmentedColormap.from_list("sense of whirl", [VERMILION, GREY, BLUE])
 
 
@@ -104,7 +45,7 @@ def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, pa
     -------
     matplotlib Figure
     """
-    with picture(ax, SIZE, path) as (figure, ax):
+    with picture(ax, WIDE, path) as (figure, ax):
         speed = np.abs(table["speed"])
         x = np.broadcast_to(RPM(speed)[:, None], table["frequency"].shape)
         y, light = HERTZ(table["frequency"]), table["damping_ratio"] < OVERDAMPED
@@ -126,10 +67,10 @@ def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, pa
 
 def plot_stability(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, path: Target = None) -> Figure:
     """Draw logarithmic decrements of what a Campbell diagram shows; arguments as `plot_campbell`."""
-    with picture(ax, SIZE, path) as (figure, ax):
+    with picture(ax, WIDE, path) as (figure, ax):
         speed, values = np.abs(table["speed"]), table["log_decrement"]
         x = np.broadcast_to(RPM(speed)[:, None], values.shape)
-        shown = (values < DAMPED) & (table["frequency"] < REACH * speed.max())
+        shown = (table["damping_ratio"] < OVERDAMPED) & (table["frequency"] < REACH * speed.max())
         ax.axhline(0.0, color="black", lw=0.6)
         for part, colour, text in ((values > 0.0, BLUE, "decays"), (values <= 0.0, VERMILION, "grows: unstable")):
             if np.any(part & shown):
@@ -144,7 +85,7 @@ def plot_positions(
     speeds: np.ndarray, places: np.ndarray, names: Sequence[str], *, ax: Axes | None = None, path: Target = None
 ) -> Figure:
     """Draw the loci of journals (k, j, 2), over their clearances, over the speeds (k,)."""
-    with picture(ax, PLACES, path) as (figure, ax):
+    with picture(ax, TALL, path) as (figure, ax):
         around = np.linspace(0.0, 2.0 * np.pi, 181)
         ax.plot(np.cos(around), np.sin(around), "--", color=GREY, lw=0.8, label="clearance")
         slowest = int(np.argmin(np.abs(speeds)))
@@ -152,7 +93,8 @@ def plot_positions(
             (line,) = ax.plot(*places[:, k].T, ("-", "--", ":")[k % 3], lw=1.4, label=name)
             text = f"slowest, {float(RPM(abs(speeds[slowest]))):.0f} {RPM.symbol}"
             ax.plot(*places[slowest, k], "o", color=line.get_color(), label=text if k == len(names) - 1 else None)
-        ax.set(xlabel="x / c [-]", ylabel="y / c [-]", aspect="equal", xticks=TICKS, yticks=TICKS)
+        ticks = np.linspace(-1.0, 1.0, 5)
+        ax.set(xlabel="x / c [-]", ylabel="y / c [-]", aspect="equal", xticks=ticks, yticks=ticks)
         figure.legend(loc="outside lower center", ncols=2)
     return figure
 
@@ -166,7 +108,7 @@ def plot_response(
 ) -> Figure:
     """Draw named amplitudes (k,) in m and phases (k,) in rad over the speeds (k,), dotted where not stable."""
     with styled():
-        figure = new_figure(RESPONSE, path)
+        figure = new_figure((WIDE[0], 1.3 * WIDE[1]), path)
         upper, lower = figure.subplots(2, 1, sharex=True)
         unit = unit_for("length", np.concatenate([amplitude for _, amplitude, _ in curves]))
         x = RPM(np.abs(speeds))
@@ -195,7 +137,7 @@ def plot_map(
     path: Target = None,
 ) -> Figure:
     """Draw threshold speeds over a parameter, stable below and unstable above, between the ``limits``."""
-    with picture(ax, SIZE, path) as (figure, ax):
+    with picture(ax, WIDE, path) as (figure, ax):
         text, unit = name
         order = np.argsort(values)
         x, y = unit(values[order]), RPM(np.clip(thresholds[order], *limits))

@@ -34,6 +34,8 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY = (
 PALETTE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 # Width of one column and of the page, inch.
 COLUMN, PAGE = 3.5, 7.2
+# Sizes of pictures that are about square, and of curves, inch.
+TALL, WIDE = (COLUMN, 1.12 * COLUMN), (0.62 * PAGE, 0.45 * PAGE)
 RESOLUTION = 200
 # Matplotlib's backends that show nothing, in lower case.
 FILES_ONLY = [name.lower() for name in backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)]

@@ -5,8 +5,7 @@ Module map
 bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
 mesh                hollow cylinders; surfaces and lines of meshes
 unrolled            faces on a cylinder: where points lie on them, where they meet and end
-mesh_import         users' meshes, from memory
-mesh_files          users' meshes, from files: Abaqus input files, and what meshio reads
+mesh_import         users' meshes, from memory and, through meshio, from files
 elements            20-node hexahedra and 10-node tetrahedra: shape functions, faces, quadratures, compiled loops
 total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures

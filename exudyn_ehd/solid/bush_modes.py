@@ -116,34 +116,19 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
             PlausibilityWarning,
         )
     length = 2.0 * float(min(-mesh.bore.z.min(), mesh.bore.z.max())) if length is None else length
-    described = _content(bush, mesh, length)
+    surfaces = mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes
+    steel = bush.material.youngs_modulus, bush.material.poisson_ratio
+    described = pressure_modes.FORMAT, steel, bush.tolerance, bush.tilted, length
+    key = described, mesh.nodes, mesh.elements, surfaces, bush.quadrature
 
     def compute() -> dict[str, np.ndarray]:
         modes = compute_modes(bush, mesh, length)
         return {"displacements": modes.displacements, "stiffness": modes.stiffness, "error": np.array(modes.error)}
 
-    data = cached_arrays("bush_modes", described, compute)
+    data = cached_arrays("bush_modes", key, compute)
     return BoreModes(
         mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
     )
-
-
-def _content(bush: ModalBush, mesh: BushMesh, length: float) -> bytes:
-    """Data that determine the modes, for their digest."""
-    material, quadrature = bush.material, bush.quadrature
-    assert quadrature is not None
-    described = (
-        pressure_modes.FORMAT,
-        material.youngs_modulus,
-        material.poisson_ratio,
-        bush.tolerance,
-        bush.tilted,
-        length,
-    )
-    surfaces = (mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes)
-    arrays = (mesh.nodes, mesh.elements, *surfaces, quadrature.points, quadrature.weights)
-    stored = (repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)
-    return b"".join([repr(described).encode(), *stored])
 
 
 def film_surface(bore: Surface, length: float) -> FilmSurface:

@@ -31,16 +31,14 @@ from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.elements.kinds import boundary_faces
 from exudyn_ehd.solid.linear import held_solution
 from exudyn_ehd.solid.mesh import frame_of
-from exudyn_ehd.solid.pressure_modes import FilmSurface, film_modes, film_points
+from exudyn_ehd.solid.pressure_modes import ALONG, AROUND, FilmSurface, film_modes, film_points
 from exudyn_ehd.solid.unrolled import Surface, patch
-from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
+from exudyn_ehd.status import SMALL, InputError, require_bool, require_number, require_vector
 
 # Largest angle between neighbouring nodes of a bore, rad.
 LARGEST_SPACING = 0.6
 # Spread of the radii of nodes on one surface, over the radius: facets.
 SURFACE = 5e-3
-# Largest distance of a film's end beyond the outermost nodes, over the length: round-off.
-BEYOND_END = 1e-6
 # Largest distance of a point beyond a face, in natural coordinates: facets, and films as long as the bore.
 OUTSIDE = 0.02
 
@@ -173,18 +171,12 @@ def find_bore(
             "are allowed; give a closed bore, or a finer mesh."
         )
     z = positions[chosen, 2]
-    if max(z.min() + 0.5 * length, 0.5 * length - z.max()) > BEYOND_END * length:
+    if max(z.min() + 0.5 * length, 0.5 * length - z.max()) > SMALL * length:
         raise InputError(
             f"{where}: the bore's nodes must span the film, z = -{0.5 * length:g} to {0.5 * length:g} m about the "
             f"mid-plane, got {z.min():.6g} to {z.max():.6g} m; check position and bearing length."
         )
     return chosen
-
-
-# Vertices around and along of the quadrature over a bore, for its mean rigid motion.
-AROUND, ALONG = 144, 16
-# Share of its energy that a new mode must have beyond the modes before it.
-NEW_ENERGY = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -474,4 +466,4 @@ def _beyond(K: csr_matrix, old: np.ndarray, new: np.ndarray) -> np.ndarray:
         return new
     energy = np.einsum("ij,ij->j", new, K @ new)
     rest = new - old @ np.linalg.lstsq(old.T @ (K @ old), old.T @ (K @ new), rcond=None)[0]
-    return rest[:, np.einsum("ij,ij->j", rest, K @ rest) > NEW_ENERGY * energy]
+    return rest[:, np.einsum("ij,ij->j", rest, K @ rest) > SMALL * energy]

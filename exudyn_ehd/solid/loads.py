@@ -11,18 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from exudyn_ehd.solid.journal.harmonics import SHAPES, SLOPES, WEIGHTS
 from exudyn_ehd.solid.mesh import BushMesh, Line
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.solid.unrolled import Surface
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 LoadHistory = Callable[[float], float]
-
-_EDGE_POINTS, _EDGE_WEIGHTS = np.polynomial.legendre.leggauss(3)
-_EDGE_SHAPES = np.stack(
-    [_EDGE_POINTS * (_EDGE_POINTS - 1) / 2, _EDGE_POINTS * (_EDGE_POINTS + 1) / 2, 1 - _EDGE_POINTS**2], axis=1
-)
-_EDGE_SLOPES = np.stack([_EDGE_POINTS - 0.5, _EDGE_POINTS + 0.5, -2 * _EDGE_POINTS], axis=1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,11 +50,13 @@ class LineLoad:
 
     def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
         """Return int N_a q ds as nodal forces, shape (n, 3) [N]."""
-        tangent = np.einsum("qa,eai->eqi", _EDGE_SLOPES, mesh.nodes[self.line.edges])
-        weight = _EDGE_WEIGHTS * np.linalg.norm(tangent, axis=2)
-        share = np.einsum("eq,qa->ea", weight, _EDGE_SHAPES)
+        # nodes of a quadratic edge: its ends, then its middle
+        nodes = self.line.edges[:, [0, 2, 1]]
+        tangent = np.einsum("qa,eai->eqi", SLOPES, mesh.nodes[nodes])
+        weight = WEIGHTS * np.linalg.norm(tangent, axis=2)
+        share = np.einsum("eq,qa->ea", weight, SHAPES)
         forces = np.zeros((len(mesh.nodes), 3))
-        np.add.at(forces, self.line.edges, share[..., None] * np.asarray(self.force_per_length, dtype=float))
+        np.add.at(forces, nodes, share[..., None] * np.asarray(self.force_per_length, dtype=float))
         return forces
 
 

@@ -1,7 +1,9 @@
-"""Users' meshes of a bush: from arrays and from Exudyn's ``FEMinterface``."""
+"""Users' meshes of a bush: from arrays, from Exudyn's ``FEMinterface``, and through meshio from files."""
 
 from __future__ import annotations
 
+import pathlib
+import re
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -136,7 +138,7 @@ def mesh_from_fem(
         )
     sets = [np.asarray(block[kinds[0]], dtype=int) for block in fem.elements if len(block.get(kinds[0], ()))]
     nodes, elements = fem.nodes["Position"], np.concatenate(sets)
-    return bush_mesh(nodes, elements, None, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
+    return mesh_from_arrays(nodes, elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
 
 
 def mesh_from_arrays(
@@ -191,20 +193,6 @@ def mesh_from_arrays(
     >>> own.outer.nodes.size == bush.outer.nodes.size
     True
     """
-    return bush_mesh(nodes, elements, None, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
-
-
-def bush_mesh(
-    nodes: np.ndarray,
-    elements: np.ndarray,
-    numbers: np.ndarray | None,
-    *,
-    bore_radius: float,
-    held: HeldNodes | None,
-    origin: tuple,
-    axis: tuple,
-) -> BushMesh:
-    """Return the mesh of `mesh_from_arrays`; ``numbers`` (m,) name elements in messages, by default by their rows."""
     radius = require_number("mesh_from_arrays bore_radius", bore_radius, "m", above=0.0)
     try:
         nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)
@@ -224,7 +212,7 @@ def bush_mesh(
         require_number("mesh_from_arrays elements", number, at_least=0, at_most=len(nodes) - 1, hint=counts)
     used, own = np.unique(elements, return_inverse=True)
     nodes, elements = nodes[used], own.reshape(elements.shape)
-    _check_volume(nodes, elements, numbers)
+    _check_volume(nodes, elements)
     boundary = boundary_faces(elements)
     r, z = np.hypot(nodes[:, 0], nodes[:, 1]), nodes[:, 2]
     flat = 1e-4 * np.ptp(z)
@@ -241,7 +229,7 @@ def bush_mesh(
         warnings.warn(
             f"mesh_from_arrays: {reaching} nodes of the bore belong to held faces (a chamfer, a groove or a hole) and "
             "are clamped; name the held faces, e.g. held=OnCylinder(radius=...) for the outer cylinder alone.",
-            stacklevel=3,
+            stacklevel=2,
         )
     return BushMesh(
         nodes=nodes,
@@ -277,7 +265,7 @@ def _held_faces(
         warnings.warn(
             f"mesh_from_arrays held: {left} faces have their corners, but not all of their nodes among the held ones, "
             "and are left free; raise the tolerance (nodes on straight edges lie off a cylinder), or name all nodes.",
-            stacklevel=4,
+            stacklevel=3,
         )
     if len(faces) == 0:
         r = np.hypot(nodes[:, 0], nodes[:, 1])
@@ -303,15 +291,127 @@ def _frame(axis: np.ndarray) -> np.ndarray:
     return frame_of(z, np.eye(3)[0 if abs(z[0]) < 1 - 1e-9 else 1]).T
 
 
-def _check_volume(nodes: np.ndarray, elements: np.ndarray, numbers: np.ndarray | None) -> None:
+def _check_volume(nodes: np.ndarray, elements: np.ndarray) -> None:
     element = element_of(elements)
     jacobian = np.einsum("qar,eai->eqir", element.shapes(element.exact.points)[1], nodes[elements])
     volume = np.linalg.det(jacobian).min(axis=1)
     if volume.min() <= 0:
         bad = np.flatnonzero(volume <= 0)
-        first = bad[0] if numbers is None else numbers[bad[0]]
         raise InputError(
             f"mesh_from_arrays elements must have a positive volume everywhere, got {len(bad)} inverted or degenerate "
-            f"ones, the first is element {first}; check the node order (Abaqus {element.abaqus[0]}) and the mesh's "
+            f"ones, the first is element {bad[0]}; check the node order (Abaqus {element.abaqus}) and the mesh's "
             "quality."
         )
+
+
+_WHERE = "mesh_from_file"
+# First letters of the names of solid elements in meshio.
+_SOLIDS = ("tetra", "hexahedron", "wedge", "pyramid", "VTK_LAGRANGE")
+# Parts of an Abaqus input file that meshio passes over: what moves or makes nodes and elements, names in node sets.
+_PASSED_OVER = re.compile(
+    r"^\*(?:(?:include|system|ngen|nfill|ncopy|nmap|elgen|elcopy)\b|node\b.*(?:system|input) *="
+    r"|instance\b.*\n *[-+.\d]|nset\b.*\n(?:[-+\d ,]*\n)*? *[a-z_])",
+    re.IGNORECASE | re.MULTILINE,
+)
+
+
+def mesh_from_file(
+    path: str | pathlib.Path,
+    *,
+    bore_radius: float,
+    held: str | HeldNodes | None = None,
+    instance: str | None = None,
+    scale: float = 1.0,
+    origin: tuple = (0.0, 0.0, 0.0),
+    axis: tuple = (0.0, 0.0, 1.0),
+) -> BushMesh:
+    """Return the bush mesh in a file whose elements are all 20-node hexahedra or all 10-node tetrahedra.
+
+    Parameters
+    ----------
+    path : path
+        File of any format with these elements that meshio reads (``pip install 'exudyn-ehd[mesh]'``), such as vtu, msh,
+        or an Abaqus input file (``.inp``) of one body. Elements on surfaces and lines are ignored.
+    held : str, or as in `mesh_from_arrays`, or None, default None
+        Where the housing holds the bush. A string names a node set of the file.
+    instance : None, default None
+        Not supported any more: save the bush as a file of its own.
+    scale : float, default 1.0
+        Metres per unit of the file: 1e-3 for millimetres.
+    bore_radius : float
+        Radius of the bore in metres, after scaling, as in `mesh_from_arrays`, where the surfaces of the result are
+        explained.
+    origin, axis : three numbers, default (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+        As in `mesh_from_arrays`, in metres after scaling, in the frame of the file.
+
+    Returns
+    -------
+    BushMesh
+
+    Raises
+    ------
+    InputError
+        No such file or set, several bodies, other or mixed elements, and as `mesh_from_arrays`.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> rows = ["*Node", *(", ".join(map(str, [k, *x])) for k, x in enumerate(bush.nodes.tolist(), 1))]
+    >>> rows += ["*Element, type=C3D20", *(", ".join(map(str, [k, *(e + 1)])) for k, e in enumerate(bush.elements, 1))]
+    >>> with open("bush.inp", "w") as file:
+    ...     print(*rows, sep=chr(10), file=file)
+    >>> ehd.mesh_from_file("bush.inp", bore_radius=0.03).elements.shape
+    (32, 20)
+    """
+    path = pathlib.Path(path)
+    if not path.is_file():
+        raise InputError(f"{_WHERE}.path: there is no file {str(path)!r}.")
+    scale = require_number(f"{_WHERE}.scale", scale, "m", above=0.0)
+    if instance is not None:
+        raise InputError(
+            f"{_WHERE}.instance is not supported any more, got {instance!r}; save the bush alone, or give "
+            "mesh_from_fem(fem, ...) the first part of an Abaqus file, read by fem.ImportFromAbaqusInputFile(path)."
+        )
+    nodes, elements, sets = _read(path)
+    if isinstance(held, str):
+        if (named := {name.lower(): own for name, own in sets.items()}.get(held.lower())) is None:
+            raise InputError(
+                f"{_WHERE}.held: {path.name} has no node set {held!r}, it has {sorted(sets) or 'none'}; name one "
+                "of these, or give nodes, OnCylinder(...), OnPlane(...) or a function of the positions."
+            )
+        held = named
+    return mesh_from_arrays(scale * nodes, elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
+
+
+def _read(path: pathlib.Path) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """Positions (n, 3) in the file's unit, elements (m, 20) or (m, 10), and nodes by the names of node sets."""
+    try:
+        import meshio
+    except ImportError:
+        raise InputError(
+            f"{_WHERE}: meshio reads {path.suffix or 'such'} files and is not installed; pip install "
+            "'exudyn-ehd[mesh]'."
+        ) from None
+    text = path.read_text(errors="replace") if path.suffix.lower() == ".inp" else ""
+    other, blocks = _PASSED_OVER.search(text), len(re.findall(r"(?im)^\*node\b(?! *(?:output|print|file))", text))
+    if other or blocks > 1:
+        raise InputError(
+            f"{_WHERE}: meshio reads one body from an Abaqus file, with all nodes in one *Node block and node sets of "
+            f"numbers; {path.name} has {blocks} such blocks{f' and {other[0]!r}' if other else ''}; save the bush "
+            "alone, nodes and elements written out, or give mesh_from_fem(fem, ...) the first part of the file, read "
+            "by fem.ImportFromAbaqusInputFile(path)."
+        )
+    try:
+        data = meshio.read(path)
+    except (Exception, SystemExit) as error:
+        raise InputError(f"{_WHERE}: meshio can't read {path.name}: {error!r}.") from None
+    types = {block.type for block in data.cells}
+    solid = {name for name in types if name.startswith(_SOLIDS)}
+    if len(solid) != 1 or not solid <= {element.meshio for element in ELEMENTS}:
+        known = " or ".join(f"{element.name} ({element.abaqus}, {element.meshio})" for element in ELEMENTS)
+        got = sorted(solid or types) or "none"
+        raise InputError(f"{_WHERE}: {path.name} must hold {known}, of one kind, got {got}; mesh the bush with them.")
+    elements = np.concatenate([block.data for block in data.cells if block.type in solid])
+    sets = {name: np.asarray(nodes, dtype=int) for name, nodes in data.point_sets.items()}
+    return np.asarray(data.points, dtype=float), elements, sets

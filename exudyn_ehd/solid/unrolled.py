@@ -10,12 +10,10 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.elements.element import Face, face_of
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import SMALL, InputError
 
 # Share of the faces that are smaller than a small one.
 SMALL_FACES = 0.1
-# Largest distance of a surface's point beyond its faces, in natural coordinates: round-off.
-OUTSIDE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,7 +38,7 @@ class Surface:
     nodes: np.ndarray
     faces: np.ndarray
     local_faces: np.ndarray
-    tolerance: float = OUTSIDE
+    tolerance: float = SMALL
 
     @cached_property
     def theta(self) -> np.ndarray:

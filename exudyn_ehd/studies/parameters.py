@@ -130,7 +130,7 @@ class StudyTable(Table):
         InputError
             For names that the study does not have, or more than ten curves.
         """
-        from exudyn_ehd.pictures.rotors import column, plot_curves
+        from exudyn_ehd.pictures.curves import column, plot_curves
 
         along = along or self.parameters[0]
         if name not in self.columns or along not in self.parameters:

@@ -27,7 +27,15 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.solid.bush import ANCFBush
-from exudyn_ehd.status import EHDError, FilmError, InputError, PlausibilityWarning, require_number, require_vector
+from exudyn_ehd.status import (
+    SMALL,
+    EHDError,
+    FilmError,
+    InputError,
+    PlausibilityWarning,
+    require_number,
+    require_vector,
+)
 from exudyn_ehd.studies.film_errors import SCALES, converged, measure_motions, motion_at, scale_of, time_of_sweep
 from exudyn_ehd.tables import format_seconds
 
@@ -38,13 +46,8 @@ LEVELS = ((64, 6), (128, 12), (256, 24))
 # Time of a film with its line inside the cells over one without.
 LINE_COST = 1.65
 MARGIN = 1.5
-# Of a film, over L D mu omega / psi^2.
-LEAST_LOAD = 1e-6
 # Of the eccentricity; of bearings with supply or a profile, whose film changes with the place of these in it.
 DIRECTIONS, UNEVEN_DIRECTIONS = 12, 24
-# Multiples of it, without whole parts, spread over every column of the ladder's grids.
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-COARSEST = 2.0 * math.pi / LADDER[0][0]
 # Largest distance of eccentricity ratios at which errors are measured.
 SPACING = 0.1
 ECCENTRICITY, TILT, RATIO = (0.1, 0.95), (0.0, 0.7), (0.25, 2.0)
@@ -275,7 +278,8 @@ def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
         direction = None
     many = UNEVEN_DIRECTIONS if (bearing.supply or bearing.profiles) and direction is None else DIRECTIONS
     count = np.arange(many)
-    places = COARSEST * (GOLDEN * count % 1.0 - 0.5)
+    # multiples of the golden ratio, without whole parts, spread over every column of the ladder's grids
+    places = 2.0 * math.pi / LADDER[0][0] * (0.5 * (math.sqrt(5.0) - 1.0) * count % 1.0 - 0.5)
     return places + (2.0 * math.pi / many * count if direction is None else direction)
 
 
@@ -328,7 +332,7 @@ def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]
     for n, m in LEVELS:
         model = _model(dataclasses.replace(bearing, film=FiniteLength(n_theta=n, n_z=m), **options))
         values = measure_motions(model, motions)
-        if float(values["load"].min()) < LEAST_LOAD * bearing.reference_force(motions[0][8]):
+        if float(values["load"].min()) < SMALL * bearing.reference_force(motions[0][8]):
             raise FilmError(
                 "the film carries nothing, and errors relative to nothing mean nothing. With ElrodAdams a film that "
                 "nothing feeds runs dry: give the bearing supply=(...) or end_pressures."

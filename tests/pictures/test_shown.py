@@ -13,9 +13,9 @@ from matplotlib import pyplot as plt
 from matplotlib.backend_bases import FigureManagerBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from exudyn_ehd.pictures.curves import plot_curves
 from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.maps import PRESSURE, plot_map
-from exudyn_ehd.pictures.rotors import plot_curves
 from exudyn_ehd.studies.parameters import StudyTable
 
 
@@ -91,7 +91,7 @@ shell.run_line_magic("matplotlib", "inline")
 shell.run_cell('''
 import numpy as np
 from matplotlib import pyplot as plt
-from exudyn_ehd.pictures.rotors import plot_curves
+from exudyn_ehd.pictures.curves import plot_curves
 draw = lambda ax=None: plot_curves([("a", np.arange(3.0), np.arange(3.0))], ("speed", "load"), {}, ax=ax)
 ''')
 counts = []

@@ -4,5 +4,4 @@ Module map
 ----------
 object     CreateFlexibleBush
 equations  its forces, matrices and Jacobians, what Exudyn asks of it, and what its housing has of it
-linear     the factor of a system with bushes
 """

@@ -9,6 +9,6 @@ presence        items of the joint, still in the system
 failures        messages of films that can't go on
 nodal           bore by nodes or by modes
 outer_load      load on a film from everything else, also of functions of time
-side_by_side    films of one system on several threads
-display         drawing in Exudyn's renderer; Exudyn sensors
+display         drawing in Exudyn's renderer
+sensors         Exudyn sensors
 """

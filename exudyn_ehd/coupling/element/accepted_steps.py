@@ -23,9 +23,8 @@ from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Sid
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.record import summary
-from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
-from exudyn_ehd.coupling.record.record import Record
+from exudyn_ehd.coupling.record.record import FilmRecorder, Record
 from exudyn_ehd.coupling.watch import poor_films, solver_state
 from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, warn_of_radius
 from exudyn_ehd.coupling.watch.step_control import GapWatch

@@ -122,21 +122,21 @@ class ModalFilmElement(BoreFilmElement):
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         evaluation = self._evaluation(trial)
-        n, k = self.rigid_size, self.stiffness.size
-        force = np.empty(len(trial.q))
-        self._rigid_force(evaluation.wrench, force[:n])
-        force[n:] = evaluation.bore_load - self.stiffness * trial.motion[MOTION_SIZE : MOTION_SIZE + k]
-        return force
+        held = self.stiffness * trial.motion[MOTION_SIZE:][: self.stiffness.size]
+        return np.concatenate((self._wrench_map() @ evaluation.wrench, evaluation.bore_load - held))
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6 + k, 10 + k) of wrench and loads on the modes, combined by f_q and f_qt."""
         return self._evaluation(trial).combined_tangent(f_q, f_qt)
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        T, n, k = self._tangent(trial, f_q, f_qt), self.rigid_size, self.stiffness.size
-        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :MOTION_SIZE]))
-        whole = np.empty((n + k, n + k))
-        relative.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
+        T, n, k = self._film_tangent(trial, f_q, f_qt), self.rigid_size, self.stiffness.size
+        own, whole = np.ascontiguousarray(T[:6, :MOTION_SIZE]), np.empty((n + k, n + k))
+        stiffness, damping, by_place, by_rate = self._rigid_derivatives(mbs, trial, own)
+        whole[:n, :n] = -(f_q * stiffness + f_qt * damping)
+        whole[:n, n:] = -self._wrench_map() @ T[:6, MOTION_SIZE:]
+        whole[n:, :n] = -T[6:, :MOTION_SIZE] @ (f_q * by_place + f_qt * by_rate)
+        whole[n:, n:] = f_q * np.diag(self.stiffness) - T[6:, MOTION_SIZE:]
         return whole
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:
@@ -229,12 +229,10 @@ class NodalFilmElement(BoreFilmElement):
         return out
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
-        evaluation, housing, n = self._evaluation(trial), self.sides[0], self.rigid_size
-        force = np.empty(len(trial.q))
-        self._rigid_force(evaluation.wrench, force[:n])
-        force[: housing.size] = 0.0
-        force[n:] = (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()
-        return force
+        evaluation, housing = self._evaluation(trial), self.sides[0]
+        rigid = self._wrench_map() @ evaluation.wrench
+        rigid[: housing.size] = 0.0
+        return np.concatenate((rigid, (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()))
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         return NodalJacobian(self, mbs, trial, f_q, f_qt).matrix()

@@ -48,6 +48,7 @@ from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, SUDDEN, departure
+from exudyn_ehd.status import SMALL
 
 UNKNOWN = np.full(LOADS, np.nan)
 _LoadState: TypeAlias = tuple[float, np.ndarray, np.ndarray]
@@ -57,8 +58,6 @@ JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
 SAMPLES = 16
 # Halvings of the part with the largest change: with 6 a jump is found to 1 / (16 * 2^6) of the step.
 BISECTIONS = 6
-# Departure from a line over the largest value, above which it is none of round-off.
-SMALLEST_DEPARTURE = 1e-6
 # Departure over the largest value from which steps do not resolve a load, 14 steps in a period: (2 pi / 14)^2. Larger
 # values leave more of the ends of short pulses to the estimate of jumps at unknown places.
 UNRESOLVED = 0.2
@@ -100,7 +99,7 @@ class LoadFunctions:
             return math.nan, math.nan
         times, values = self._states(mbs, time)
         off = departure(times, values)[-1]
-        is_straight = np.abs(off).max() <= SMALLEST_DEPARTURE * np.abs(values).max()
+        is_straight = np.abs(off).max() <= SMALL * np.abs(values).max()
         if is_straight or not (self.departed or self._departs(times, values)):
             return math.nan, math.nan
         beyond, _, _, lasting = self._impulse(mbs, time)
@@ -145,7 +144,7 @@ class LoadFunctions:
         times = start + step * np.array([0.0, *(np.arange(SAMPLES) + 0.5) / SAMPLES, 1.0])
         values = np.array([self._at(mbs, float(t)) for t in times])
         sizes = np.abs(values).max(axis=0)
-        sizes = np.maximum(sizes, SMALLEST_DEPARTURE * sizes.max() or 1.0)
+        sizes = np.maximum(sizes, SMALL * sizes.max() or 1.0)
         change = np.diff(values, axis=0)
         part, which = np.unravel_index(int((np.abs(change) / sizes).argmax()), change.shape)
         (left, right), middle = times[part : part + 2].tolist(), values[part : part + 2, which].mean()

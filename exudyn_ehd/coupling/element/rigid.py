@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from types import ModuleType
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -39,16 +39,6 @@ if TYPE_CHECKING:
 
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
-
-
-class Crew(Protocol):
-    """Evaluates the films of several joints at once."""
-
-    def evaluate(self, mbs: exu.MainSystem, t: float, asked: FilmElement, trial: Trial) -> None:
-        """Evaluate the film that is asked for its force at a trial, and others with it."""
-
-    def derive(self, asked: FilmElement, f_q: float, f_qt: float) -> None:
-        """Derive the film that is asked for its Jacobian, and others with it."""
 
 
 class FilmElement:
@@ -83,8 +73,6 @@ class FilmElement:
         The state evaluated last, if it is still known.
     kinematics : module
         Of the motion that the film knows.
-    crew : Crew or None
-        Evaluates it with the films of other joints.
     """
 
     kinematics: ModuleType = relative
@@ -99,7 +87,6 @@ class FilmElement:
         self.evaluations = 0
         self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
-        self.crew: Crew | None = None
         self.steps = AcceptedSteps(self)
         self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
         self.presence: Presence
@@ -110,14 +97,13 @@ class FilmElement:
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
-        steps, trial = self.steps, self.arrive(mbs, t, q, q_t)
+        start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
+        if start != steps.start or solvers != steps.solvers:
+            steps.accept(mbs, start, solvers)
+        trial = self._try(mbs, q, q_t, CURRENT, t, stepping=not steps.is_idle)
         if steps.solver is None or not steps.is_idle:
             self.failures.ask(steps.start, t, steps.asked[0])
             steps.asked = t, q
-        if self.crew is not None:
-            self.crew.evaluate(mbs, t, self, trial)
-        if trial is not self.last:
-            self.evaluate(trial)
         if self._refuses(t, trial):
             self.failures.blame(steps.start, t, trial.status.advice.partition(";")[0])
             return np.full(len(q), np.nan)
@@ -136,26 +122,11 @@ class FilmElement:
         trial = self._try(mbs, q, q_t, CURRENT, t, stepping=not self.steps.is_idle)
         if self._refuses(t, trial):
             return np.full((len(q), len(q)), np.nan)
-        if self.crew is not None:
-            self.crew.derive(self, f_q, f_qt)
         jacobian = self._jacobian(mbs, trial, f_q, f_qt)
         if trial.faces is not None:
             n = self.rigid_size
             jacobian[:n, :n] += self.faces_jacobian(mbs, trial, f_q, f_qt)
         return jacobian
-
-    def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
-        """Take the last step as accepted if the solver has moved on; return the trial at a state, the last one or new.
-
-        Raises
-        ------
-        FilmError
-            If the film of the accepted step is none that can go on.
-        """
-        start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
-        if start != steps.start or solvers != steps.solvers:
-            steps.accept(mbs, start, solvers)
-        return self._prepare(mbs, q, q_t, CURRENT, t, not steps.is_idle)
 
     def _refuses(self, t: float, trial: Trial) -> bool:
         """Return whether the solver shall reject the step; raise if there is no film and the step can't be repeated.
@@ -173,16 +144,7 @@ class FilmElement:
     def _try(
         self, mbs: exu.MainSystem, q: _Values, q_t: _Values, where: _Configuration, time: float, stepping: bool = True
     ) -> Trial:
-        """The film at a state, evaluated unless it is the last one; the sides' arrays are brought there."""
-        trial = self._prepare(mbs, q, q_t, where, time, stepping)
-        if trial is not self.last:
-            self.evaluate(trial)
-        return trial
-
-    def _prepare(
-        self, mbs: exu.MainSystem, q: _Values, q_t: _Values, where: _Configuration, time: float, stepping: bool
-    ) -> Trial:
-        """The last trial if it is the state's, else a new one for `evaluate`; the sides' arrays are brought there.
+        """The film at a state, evaluated unless it is the last one; the sides' arrays are brought there.
 
         ``stepping`` says that the state ends a step; else the film takes the velocities as they are (a linearisation
         after a run).
@@ -206,10 +168,7 @@ class FilmElement:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own
         self.last = None
-        return Trial(q, q_t, memory, step, begin, bodies, motion)
-
-    def evaluate(self, trial: Trial) -> None:
-        """Evaluate the film at a new trial, to which the sides' arrays belong."""
+        trial = Trial(q, q_t, memory, step, begin, bodies, motion)
         # a sum is finite only if all its terms are
         if math.isfinite(trial.motion.dot(trial.motion)):
             spin = relative.angle_of(self.sides[0].frame, self.sides[1].frame) if self.model.needs_spin else 0.0
@@ -217,21 +176,11 @@ class FilmElement:
             trial.take(found, None if self.faces is None else self.faces.evaluate(self.faces_motion(trial.bodies)))
             self.evaluations += 1
         self.last = trial
+        return trial
 
     def faces_motion(self, motion: np.ndarray) -> np.ndarray:
         """Motion (11,) of the end faces' films at the state to which the sides' arrays and a motion (10,) belong."""
         return np.append(motion[:10], centre_of(self.sides[0].frame, self.sides[1].frame, self.offset)[2])
-
-    def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
-        """Keep the derivatives of the film at the last trial, as its kind has them, for `jacobian`."""
-        trial.derived = (f_q, f_qt), self._film_tangent(trial, f_q, f_qt)
-
-    def _tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivatives of the film at the last trial, see `derive`."""
-        if trial.lacks(f_q, f_qt):
-            self.derive(trial, f_q, f_qt)
-        assert trial.derived is not None
-        return trial.derived[1]
 
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion."""
@@ -270,14 +219,7 @@ class FilmElement:
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
-        force = np.empty(len(trial.q))
-        self._rigid_force(trial.found.wrench, force)
-        return force
-
-    def _rigid_force(self, wrench: np.ndarray, force_out: np.ndarray) -> None:
-        """Generalized force (n,) of a wrench on housing and journal."""
-        housing, journal = self.sides
-        relative.wrench_force(housing.frame, journal.frame, housing.jac, journal.jac, wrench, force_out)
+        return self._wrench_map() @ trial.found.wrench
 
     def _wrench_map(self) -> np.ndarray:
         """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
@@ -287,7 +229,7 @@ class FilmElement:
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) of the journal's film at the trial."""
-        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, self._tangent(trial, f_q, f_qt))
+        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, self._film_tangent(trial, f_q, f_qt))
         return -(f_q * stiffness + f_qt * damping)
 
     def faces_jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide, slope_rotation
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, node_side
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import SMALL, InputError
 
 SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
 """Node types that hold a position and a slope, and their dimension."""
@@ -20,8 +20,6 @@ EXACT_BEAMS = ("BeamGeometricallyExact2D", "BeamGeometricallyExact3D", "BeamGeom
 # |cos| between cable and joint axis up to which the axis counts as across the cable, and from which as along it (8
 # degrees)
 ACROSS, ALONG = math.sin(math.radians(8.0)), math.cos(math.radians(8.0))
-# How far a joint point may lie beyond an element's end, in lengths; positions are typed with few digits.
-BEYOND_END = 1e-6
 
 
 def node_coordinates(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -132,7 +130,7 @@ def _place_on_cable(where: str, dimension: int, reference: np.ndarray, length: f
 
 
 def _within(where: str, x: float, low: float, high: float) -> float:
-    margin = BEYOND_END * (high - low)
+    margin = SMALL * (high - low)
     if not low - margin <= x <= high + margin:
         raise InputError(
             f"CreateLubricatedJoint.position must lie on the element of {where}, which spans {low:g} to {high:g} m "

@@ -122,11 +122,9 @@ def check_start(
         if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
             raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
         side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
-    motion = np.empty(10)
-    cosine = relative.relative_motion(housing[1].frame, journal[1].frame, motion)
-    bore, length = BoreGap(bearing), bearing.length
-    tilt = math.hypot(motion[2], motion[3]) if cosine > 0.1 else math.inf
-    gap = bore.smallest(motion) if cosine > 0.1 else -math.inf
+    motion, bore, length = relative.motion_of(housing[1].frame, journal[1].frame), BoreGap(bearing), bearing.length
+    gap = bore.smallest(motion)
+    tilt = math.hypot(motion[2], motion[3]) if math.isfinite(motion[2]) else math.inf
     if gap > 0.0 or (math.isfinite(gap) and yields(motion)):
         return
     if tilt * length >= 2.0 * bore.widest:

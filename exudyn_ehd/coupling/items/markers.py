@@ -36,7 +36,7 @@ from exudyn_ehd.coupling.items.bodies import (
 from exudyn_ehd.coupling.kinematics.relative import skew, skews
 from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever
 from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, FloatingSide, MarkerSide, TreeSide, node_side
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import SMALL, InputError
 
 # Smallest extent of the nodes normal to a line, over that along it (both squared), that fixes a rotation.
 SLENDER = 1e-8
@@ -150,8 +150,6 @@ def fitted_rotation(weights: np.ndarray, spokes: np.ndarray, x: np.ndarray) -> n
 
 
 _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeRigid")
-# How far weights may be from adding up to one; they are typed, or sums of many.
-WEIGHTS = 1e-6
 
 
 def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
@@ -265,7 +263,7 @@ def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: 
     moving = np.array([node["nodeType"] == "Point" for node in own])
     nodes = tuple(numbers[int(i)] for i, moves in zip(data["meshNodeNumbers"], moving, strict=True) if moves)
     weights = np.array(data["weightingFactors"], dtype=float)
-    if not abs(weights.sum() - 1.0) <= WEIGHTS:
+    if not abs(weights.sum() - 1.0) <= SMALL:
         raise InputError(
             f"{where}: weightingFactors of the marker must add up to 1, got {weights.sum():.9g}; divide them by it."
         )

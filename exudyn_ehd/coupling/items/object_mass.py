@@ -23,10 +23,7 @@ from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
 from exudyn_ehd.coupling.kinematics.sides import node_side
-from exudyn_ehd.status import InputError
-
-# Negative eigenvalue of a scaled mass matrix that is none of rounding.
-INDEFINITE = -1e-6
+from exudyn_ehd.status import ROUNDING, SMALL, InputError
 
 
 def own_equations(mbs: exu.MainSystem, body: Index) -> Index:
@@ -219,9 +216,9 @@ def warn_if_indefinite(
         if matrix is not None:
             whole[np.ix_(there, there)] += matrix[here][:, here]
     size = np.sqrt(np.maximum(np.diag(whole), np.abs(np.diag(change))))
-    moved = size > 1e-9 * size.max()
+    moved = size > ROUNDING * size.max()
     scaled = (whole + change)[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
-    if np.linalg.eigvalsh(scaled)[0] < INDEFINITE:
+    if np.linalg.eigvalsh(scaled)[0] < -SMALL:
         warnings.warn(
             f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the {kind} of "
             f"{own:.4g} kg is lighter than it there, or has less rotary inertia, but must contain the bush's: add them "

@@ -33,17 +33,18 @@ from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCI
 _JP, _JR, _VQ, _WQ = (np.int64(k) for k in range(4))
 
 
+# Cross products: component [i, j, k] of e_i . (e_k x e_j).
+_CROSS = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(2, 1, 0).copy()
+
+
 def skew(v: np.ndarray) -> np.ndarray:
     """Matrix (3, 3) of the cross product with v (3,)."""
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    return np.asarray(_CROSS @ v)
 
 
 def skews(vectors: np.ndarray) -> np.ndarray:
     """Matrices (n, 3, 3) of the cross products with the columns of ``vectors`` (3, n)."""
-    out = np.zeros((vectors.shape[1], 3, 3))
-    out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -vectors[2], vectors[1], -vectors[0]
-    out[:, 1, 0], out[:, 2, 0], out[:, 2, 1] = vectors[2], -vectors[1], vectors[0]
-    return out
+    return np.moveaxis(_CROSS @ vectors, -1, 0)
 
 
 @njit(cache=True)
@@ -63,17 +64,14 @@ def _jac_column(jac, which, k):
 
 
 @njit(cache=True)
-def relative_motion(frame_h, frame_j, motion_out):
+def motion_of(frame_h, frame_j):
     """Motion (10,) of the journal axis in the joint frame of the housing; see `exudyn_ehd.joint.solved_film`.
 
     The journal axis is the line (x + bx z, y + by z). All ten components are independent of where along the axis the
     journal's marker sits; w is the velocity along z of the journal's axis point in the mid-plane.
-
-    Returns
-    -------
-    float
-        Cosine of the angle between the axes; the motion is nan if it is below 0.1 (no bearing any more).
+    The motion is nan where the cosine of the angle between the axes is below 0.1 (no bearing any more).
     """
+    out = np.empty(10)
     r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
     omega_h = column(frame_h, SPIN)
     d = in_frame(frame_h, r)
@@ -81,20 +79,19 @@ def relative_motion(frame_h, frame_j, motion_out):
     spin = in_frame(frame_h, _minus(column(frame_j, SPIN), omega_h))
     a = in_frame(frame_h, column(frame_j, AXIS))
     if not a[2] > 0.1:
-        for i in range(10):
-            motion_out[i] = np.nan
-        return a[2]
+        out.fill(np.nan)
+        return out
     a_t = cross(spin, a)
     for i in range(2):
         b = a[i] / a[2]
         b_t = (a_t[i] - b * a_t[2]) / a[2]
-        motion_out[i] = d[i] - b * d[2]
-        motion_out[2 + i] = b
-        motion_out[4 + i] = d_t[i] - b_t * d[2] - b * d_t[2]
-        motion_out[6 + i] = b_t
-    motion_out[8] = spin[0] * a[0] + spin[1] * a[1] + spin[2] * a[2]
-    motion_out[9] = d_t[2] - a_t[2] * d[2] / a[2]
-    return a[2]
+        out[i] = d[i] - b * d[2]
+        out[2 + i] = b
+        out[4 + i] = d_t[i] - b_t * d[2] - b * d_t[2]
+        out[6 + i] = b_t
+    out[8] = spin[0] * a[0] + spin[1] * a[1] + spin[2] * a[2]
+    out[9] = d_t[2] - a_t[2] * d[2] / a[2]
+    return out
 
 
 @njit(cache=True)
@@ -118,7 +115,7 @@ def _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, out):
 
 
 @njit(cache=True)
-def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out):
+def variation_of(frame_h, frame_j, jac_h, jac_j):
     """Derivatives (10, n) of the motion with respect to q and q_t, columns in the order housing, journal."""
     axis, omega_h = column(frame_j, AXIS), column(frame_h, SPIN)
     r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
@@ -126,8 +123,9 @@ def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out
     spin_g = _minus(column(frame_j, SPIN), omega_h)
     d, d_t, spin, a = in_frame(frame_h, r), in_frame(frame_h, u), in_frame(frame_h, spin_g), in_frame(frame_h, axis)
     a_t, zero = cross(spin, a), (0.0, 0.0, 0.0)
-    n_h = jac_h.shape[2]
-    for c in range(n_h + jac_j.shape[2]):
+    n_h, n = jac_h.shape[2], jac_h.shape[2] + jac_j.shape[2]
+    motion_q, motion_qt = np.empty((10, n)), np.empty((10, n))
+    for c in range(n):
         with_housing = c < n_h
         jac, k = (jac_h, c) if with_housing else (jac_j, c - n_h)
         jp, jr, vq, wq = (
@@ -146,31 +144,16 @@ def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out
             sign, place, rate, spun = 1.0, jp, _minus(vq, moved), wq
         dd, dd_t, dspin = in_frame(frame_h, place), in_frame(frame_h, rate), in_frame(frame_h, spun)
         da, dspin_rate = in_frame(frame_h, cross(jr, axis)), in_frame(frame_h, jr)
-        _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, motion_q_out)
+        _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, motion_q)
         # the velocity changes with the rates as the place does with the coordinates
-        _motion_variation(sign, d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, c, motion_qt_out)
+        _motion_variation(sign, d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, c, motion_qt)
+    return motion_q, motion_qt
 
 
 def angle_of(frame_h: np.ndarray, frame_j: np.ndarray) -> float:
     """Angle of the journal against the housing about the bearing's axis [rad], 0 in the reference configuration."""
     turn = frame_h[:, :3].T @ frame_j[:, 0]
     return math.atan2(turn[1], turn[0])
-
-
-def motion_of(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
-    """Return the motion (10,) of `relative_motion`."""
-    motion = np.empty(10)
-    relative_motion(frame_h, frame_j, motion)
-    return motion
-
-
-def variation_of(
-    frame_h: np.ndarray, frame_j: np.ndarray, jac_h: np.ndarray, jac_j: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the derivatives of `motion_variation`, two (10, n)."""
-    motion_q, motion_qt = np.empty((2, 10, jac_h.shape[2] + jac_j.shape[2]))
-    motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q, motion_qt)
-    return motion_q, motion_qt
 
 
 @njit(cache=True)
@@ -185,16 +168,6 @@ def global_loads(frame_h, frame_j, wrench, loads_out):
     for i in range(3):
         loads_out[0, i], loads_out[1, i] = -force[i], -moment[i]
         loads_out[2, i], loads_out[3, i] = force[i], moment[i] - arm[i]
-
-
-@njit(cache=True)
-def wrench_force(frame_h, frame_j, jac_h, jac_j, wrench, force_out):
-    """Generalized force (n,) of both sides, order housing, journal, for a wrench (6,) on the journal, joint frame."""
-    loads = wrench_map(frame_h, frame_j, jac_h, jac_j)
-    for k in range(loads.shape[0]):
-        force_out[k] = 0.0
-        for c in range(6):
-            force_out[k] += loads[k, c] * wrench[c]
 
 
 @njit(cache=True)
@@ -214,43 +187,6 @@ def wrench_map(frame_h, frame_j, jac_h, jac_j):
             out[n_h + k, c] = dot(_jac_column(jac_j, _JP, k), a) + dot(turn, m)
             out[n_h + k, 3 + c] = dot(turn, a)
     return out
-
-
-@njit(cache=True)
-def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f_q, f_qt, stiffness, out):
-    """Derivative ``-(f_q dQ/dq + f_qt dQ/dq_t)`` (n + k, n + k) of the forces on two sides and on k modes.
-
-    Parameters
-    ----------
-    tangent : (6 + k, 10 + k) array
-        Wrench and loads on the modes to the motion and, combined by f_q and f_qt, to the modes; without their stiffness
-        (k,).
-    k_rigid, d_rigid, motion_q, motion_qt : (n, n), (n, n), (10, n), (10, n) arrays
-        Matrices of the sides, see `tangent_matrices`.
-    wrench_map : (n, 6) array
-    """
-    n, k = wrench_map.shape[0], stiffness.size
-    for i in range(n):
-        for j in range(n):
-            out[i, j] = -(f_q * k_rigid[i, j] + f_qt * d_rigid[i, j])
-        row = out[i, n:]
-        row[:] = 0.0
-        for c in range(6):
-            w, known = wrench_map[i, c], tangent[c, 10:]
-            if w != 0.0:
-                for b in range(k):
-                    row[b] -= w * known[b]
-    motion = f_q * motion_q + f_qt * motion_qt
-    for a in range(k):
-        known = tangent[6 + a]
-        for i in range(n):
-            total = 0.0
-            for c in range(10):
-                total += known[c] * motion[c, i]
-            out[n + a, i] = -total
-        for b in range(k):
-            out[n + a, n + b] = -known[10 + b]
-        out[n + a, n + a] += f_q * stiffness[a]
 
 
 @njit(cache=True)
@@ -300,6 +236,12 @@ def axial_variation(wrench_map: np.ndarray, centre: np.ndarray) -> np.ndarray:
     ``wrench_map`` (n, 6) as in `relative`.
     """
     return np.asarray(wrench_map @ [0.0, 0.0, 1.0, centre[1], -centre[0], 0.0])
+
+
+def levers_of(bearing: JournalBearing) -> np.ndarray:
+    """Lengths (4,) that turn a motion's places, or their rates, into distances: a tilt counts at the ends, m."""
+    half = 0.5 * bearing.length
+    return np.array(getattr(bearing, "levers", (1.0, 1.0, half, half)))
 
 
 # Points around and along a bore that is no circular cylinder.

@@ -20,7 +20,7 @@ from numba import njit
 
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import global_loads, motion_variation, relative_motion, tangent_matrices
+from exudyn_ehd.coupling.kinematics.relative import global_loads, motion_of, tangent_matrices, variation_of
 from exudyn_ehd.coupling.kinematics.rigid_nodes import node_change, node_frame, vary
 
 NODE_KINDS = {
@@ -245,9 +245,7 @@ def motion_between(
     """Bring two sides to q and q_t (n,), housing's first; the motion as `relative`, or another one, has it."""
     housing, journal = sides
     if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
-        motion = np.empty(10)
-        move_nodes(housing.arrays, journal.arrays, q, q_t, motion)
-        return motion
+        return np.asarray(move_nodes(housing.arrays, journal.arrays, q, q_t))
     n = housing.size
     housing.update(mbs, q[:n], q_t[:n], configuration)
     journal.update(mbs, q[n:], q_t[n:], configuration)
@@ -296,14 +294,14 @@ def derivatives_between(
 
 
 @njit(cache=True)
-def move_nodes(housing, journal, q, q_t, motion_out):
-    """Fill the frames and Jp, Jr of both sides, and the motion (10,)."""
+def move_nodes(housing, journal, q, q_t):
+    """Fill the frames and Jp, Jr of both sides; return the motion (10,)."""
     n = housing[1].size
     if n > 0:
         node_frame(housing[0], q[:n], q_t[:n], housing[1], housing[2], housing[3], housing[4], housing[5])
     if q.size > n:
         node_frame(journal[0], q[n:], q_t[n:], journal[1], journal[2], journal[3], journal[4], journal[5])
-    relative_motion(housing[4], journal[4], motion_out)
+    return motion_of(housing[4], journal[4])
 
 
 @njit(cache=True)
@@ -312,13 +310,12 @@ def derive_nodes(housing, journal, q, q_t, wrench, tangent):
     n, size = housing[1].size, q.size
     frame_h, frame_j, jac_h, jac_j = housing[4], journal[4], housing[5], journal[5]
     loads, stiffness, damping = np.empty((4, 3)), np.zeros((size, size)), np.empty((size, size))
-    motion_q, motion_qt = np.empty((10, size)), np.empty((10, size))
     global_loads(frame_h, frame_j, wrench, loads)
     for first, end, side, load in ((0, n, housing, loads[:2]), (n, size, journal, loads[2:])):
         if end > first:
             change = np.empty((6, end - first, end - first))
             node_change(side[0], q[first:end], side[1], side[2], change)
             vary(change, q_t[first:end], load.reshape(6), side[5], stiffness[first:end, first:end])
-    motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q, motion_qt)
+    motion_q, motion_qt = variation_of(frame_h, frame_j, jac_h, jac_j)
     tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, stiffness, damping)
     return stiffness, damping, motion_q, motion_qt

@@ -3,10 +3,9 @@
 Module map
 ----------
 history      quantities over accepted steps
-record       the rows of a joint's accepted steps, and histories back from files
+record       the rows and films of a joint's accepted steps, and histories back from files
 thinning     numbers and errors of steps; some of the steps, with the worst ones
 on_disk      a history in a file, for long runs
-films        films over accepted steps
 summary      a run in one line
 revolutions  extremes by revolution
 """

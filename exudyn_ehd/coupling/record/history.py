@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import itertools
 import math
 import pathlib
 from collections.abc import Callable, Mapping
@@ -16,7 +17,7 @@ from exudyn_ehd.joint.audit.samples import RecordedSteps
 from exudyn_ehd.joint.step_error import BLOCKS, LOADS
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import HistoryRecord, shown
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import ROUNDING, InputError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv
 
@@ -85,28 +86,24 @@ class Quantity(enum.Enum):
 
 # Scalar quantities of the film: those behind motion, eccentricities and loads.
 _SCALARS = tuple(member.value for member in Quantity)[6:]
-TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
-FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
-LOAD = slice(FIRST_BLOCK + BLOCKS.size, FIRST_BLOCK + BLOCKS.size + LOADS)
-WIDTH = LOAD.stop
-# Tangent's blocks in a row, of a ball what `pack_of_ball` keeps, and the numbers behind a row that is settled.
-TANGENT, PACK = slice(FIRST_BLOCK, LOAD.start), slice(FIRST_BLOCK, FIRST_BLOCK + 15)
-STEP_COUNT, STEP_ERROR = WIDTH, WIDTH + 1
-_BLOCKS = BLOCKS.ravel()
-# Places in a row.
-MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
-FORCE = slice(_WRENCH, _WRENCH + 3)
+# Numbers in a row: columns, the tangent's blocks and the load on the film, then those of a row that is settled.
+_SIZES = {"time": 1, "motion": 10, "eccentricity": 2, "eccentricity_ratio": 1, "largest_eccentricity_ratio": 1}
+_SIZES |= {"force": 3, "moment": 3, **dict.fromkeys(_SCALARS, 1), "tangent": BLOCKS.size, "load": LOADS}
+_SIZES |= {"step_count": 1, "step_error": 1}
+_PLACES = {
+    name: slice(end - size, end)
+    for (name, size), end in zip(_SIZES.items(), itertools.accumulate(_SIZES.values()), strict=True)
+}
+TANGENT, LOAD, FORCE = (_PLACES[name] for name in ("tangent", "load", "force"))
+FIRST_BLOCK, WIDTH, _BLOCKS = TANGENT.start, LOAD.stop, BLOCKS.ravel()
+# Numbers that `pack_of_ball` keeps of a ball's tangent.
+PACK = slice(FIRST_BLOCK, FIRST_BLOCK + 15)
+TIME, MINIMUM_GAP, PEAK_PRESSURE, STEP_COUNT, STEP_ERROR = (
+    _PLACES[name].start for name in ("time", "minimum_gap", "peak_pressure", "step_count", "step_error")
+)
 COLUMNS: dict[str, int | slice] = {
-    "time": TIME,
-    "motion": slice(_MOTION, _MOTION + 10),
-    "eccentricity": slice(_ECCENTRICITY, _ECCENTRICITY + 2),
-    "eccentricity_ratio": _RATIO,
-    "largest_eccentricity_ratio": _RATIO_MAX,
-    "force": slice(_WRENCH, _WRENCH + 3),
-    "moment": slice(_WRENCH + 3, _WRENCH + 6),
-    **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
-    "step_error": STEP_ERROR,
-    "step_count": STEP_COUNT,
+    name: _PLACES[name] if _SIZES[name] > 1 else _PLACES[name].start
+    for name in (*tuple(_SIZES)[:-4], "step_error", "step_count")
 }
 # Columns that are written as text.
 _NAMES = tuple(COLUMNS)[:-1]
@@ -311,7 +308,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         """
         if not start <= end:
             raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
-        slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
+        slack = ROUNDING * float(np.ptp(self.time)) if self.time.size else 0.0
         kept = (self.time >= start - slack) & (self.time <= end + slack)
         # columns of which a part is wanted are not kept
         known, column = self.__dict__, self.__dict__.get("_column")

@@ -1,4 +1,4 @@
-"""Rows of a record on disk, for runs whose records are too long for memory, and archives of arrays.
+"""Rows of a record on disk, for runs whose records are too long for memory.
 
 A file begins with a line of JSON that says what it is, padded to `HEAD` bytes; rows of doubles follow, each written
 whole and in order. What is there can be read at any time, also after the program was killed: a row that was cut off
@@ -13,8 +13,6 @@ import json
 import os
 import pathlib
 import secrets
-import zipfile
-import zlib
 from collections.abc import Mapping
 from typing import Any, BinaryIO, NamedTuple
 
@@ -161,26 +159,6 @@ def require_own(path: pathlib.Path) -> None:
             f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
             "another path in File(...)."
         )
-
-
-def read_arrays(path: str | pathlib.Path, form: str) -> dict[str, np.ndarray] | None:
-    """Arrays of a NumPy archive by name; None if it is damaged, or its "format" is another one."""
-    with open(path, "rb") as file:
-        try:
-            with np.load(file, allow_pickle=False) as data:
-                arrays = dict(data)
-        # whatever numpy finds in bytes that are no archive of arrays
-        except (
-            ValueError,
-            EOFError,
-            TypeError,
-            AttributeError,
-            NotImplementedError,
-            zipfile.BadZipFile,
-            zlib.error,
-        ):
-            return None
-    return arrays if str(arrays.pop("format", "")) == form else None
 
 
 def open_rows(path: str | pathlib.Path) -> RowsOnDisk:

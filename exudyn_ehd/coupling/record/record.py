@@ -1,5 +1,5 @@
 """The rows of a joint's accepted steps: all of them in memory, or some of them, or the last ones with a file;
-and back from files."""
+and back from files. Films of them, kept while a run goes on; the memory they take is bounded."""
 
 from __future__ import annotations
 
@@ -25,11 +25,12 @@ from exudyn_ehd.coupling.record.history import (
     JointHistory,
     has_gaps,
 )
-from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_arrays, read_head, require_own
+from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_head, require_own
 from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
+from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.step_error import NO_ERROR
-from exudyn_ehd.status import InputError, RunError
-from exudyn_ehd.storage import require_path
+from exudyn_ehd.status import ROUNDING, InputError, RunError, require_integer, require_number
+from exudyn_ehd.storage import read_arrays, require_path
 
 # Rows in memory from which on they are settled: numbered, and thinned or written to a file.
 MOST_ROWS = 256
@@ -230,3 +231,48 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     # files of before records could be thinned have all steps
     fields.setdefault("step_count", np.arange(fields["time"].size))
     return JointHistory(**fields).between(start, end)
+
+
+class FilmRecorder:
+    """Films at regular instants.
+
+    Parameters
+    ----------
+    period : float
+        Time between two films, s; 0 keeps every accepted step.
+    frames : int
+        Most films that are kept, at least 2. When they are full, every second one is dropped, and from then on only
+        every second instant is kept: the films always span the whole run evenly.
+    """
+
+    def __init__(self, period: float, frames: int) -> None:
+        where = "LubricatedJoint.record_films"
+        self.period = require_number(f"{where}: period", period, "s", at_least=0.0)
+        self.frames = require_integer(f"{where}: frames", frames, at_least=2)
+        self.begin_anew()
+
+    def begin_anew(self) -> None:
+        """Drop all films."""
+        self.films: list[FilmFields] = []
+        self.stride, self.due = 1, -1
+        self.first = self.last = math.nan
+
+    def offer(self, time: float, take: Callable[[], FilmFields]) -> None:
+        """Keep the film of an accepted step if its instant has come; time that runs back starts a new record."""
+        if time == self.last:
+            return
+        if time < self.last:
+            self.begin_anew()
+        if math.isnan(self.first):
+            self.first = time
+        self.last = time
+        # a step that ends a rounding before the instant is meant to be there
+        due = math.floor((time - self.first) / self.period + ROUNDING) if self.period > 0.0 else self.due + 1
+        if due == self.due:
+            return
+        self.due = due
+        if due % self.stride == 0 and len(self.films) == self.frames:
+            self.films = self.films[::2]
+            self.stride *= 2
+        if due % self.stride == 0:
+            self.films.append(take())

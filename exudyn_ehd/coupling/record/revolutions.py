@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+import math
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 import numpy as np
 
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import ROUNDING, InputError, require_number
 from exudyn_ehd.tables import Table
 
 Columns: TypeAlias = Mapping[str, np.ndarray]
 """The columns of a `JointHistory` by name."""
-TURN = 2.0 * np.pi
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -95,11 +95,11 @@ def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
     One way or the other counts. The angle is the integral of the relative spin, by the trapezoidal rule; linear between
     steps.
     """
-    angle = np.abs(np.concatenate(([0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(time)))) / TURN)
+    angle = np.abs(np.concatenate(([0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(time)))) / math.tau)
     # a journal that swings back counts when it comes by for the first time
     reached = np.maximum.accumulate(angle)
     # a run of whole revolutions ends a rounding short of the last one
-    whole = int(np.floor(reached[-1] + 1e-9))
+    whole = int(np.floor(reached[-1] + ROUNDING))
     turns = np.minimum(np.arange(1.0, whole + 1.0), reached[-1])
     at = np.searchsorted(reached, turns)
     share = (turns - angle[at - 1]) / (angle[at] - angle[at - 1])
@@ -120,8 +120,8 @@ def revolutions(history: Columns, period: float | None = None) -> Revolutions:
             )
     else:
         length = require_number("JointHistory.revolutions: period", period, "s", above=0.0)
-        # 1e-9: a run of whole periods ends a rounding short of the last one
-        whole = int(np.floor((time[-1] - time[0]) / length + 1e-9))
+        # a run of whole periods ends a rounding short of the last one
+        whole = int(np.floor((time[-1] - time[0]) / length + ROUNDING))
         if whole == 0:
             raise InputError(
                 f"JointHistory.revolutions: period must not exceed the history's {time[-1] - time[0]:g} s, got "
@@ -135,7 +135,7 @@ def revolutions(history: Columns, period: float | None = None) -> Revolutions:
 def _summary(history: Columns, start: float, end: float) -> dict[str, float]:
     time = history["time"]
     # edges are sums of many steps: a step on an edge belongs to both sides, to rounding
-    slack = 1e-9 * (end - start)
+    slack = ROUNDING * (end - start)
     inside = np.flatnonzero((time >= start - slack) & (time <= end + slack))
     if inside.size == 0:
         raise InputError(

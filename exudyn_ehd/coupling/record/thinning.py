@@ -14,7 +14,8 @@ from __future__ import annotations
 import dataclasses
 import itertools
 from collections.abc import Callable
-from typing import TypeAlias
+from functools import partial
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
@@ -36,15 +37,13 @@ from exudyn_ehd.coupling.record.history import (
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind, errors_of_ball
-from exudyn_ehd.status import require_integer, require_number
+from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, require_integer
 
 Errors: TypeAlias = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-# A span ends where a time meets its end to this share of it.
-ROUNDING = 1e-9
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class Every:
+class Every(Checked):
     """``record`` of a joint: every n-th accepted step is kept, and the worst ones between them.
 
     Of each n successive steps the record keeps the last one and those with the smallest ``minimum_gap``, the largest
@@ -66,8 +65,7 @@ class Every:
 
     steps: int
 
-    def __post_init__(self) -> None:
-        require_integer("Every.steps", self.steps, at_least=2)
+    checks: ClassVar = {"steps": partial(require_integer, at_least=2)}
 
     def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return the numbers of the spans of steps by ``count`` and time (n,): the initial state, ``steps`` each."""
@@ -75,7 +73,7 @@ class Every:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class Period:
+class Period(Checked):
     """``record`` of a joint: one step in every period of time is kept, and the worst ones between them; see `Every`.
 
     Parameters
@@ -90,8 +88,7 @@ class Period:
 
     seconds: float
 
-    def __post_init__(self) -> None:
-        require_number("Period.seconds", self.seconds, "s", above=0.0)
+    checks: ClassVar = {"seconds": partial(POSITIVE, unit="s")}
 
     def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return the number of each step's span; spans end at multiples of ``seconds``."""

@@ -16,9 +16,9 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import allowed_part
+from exudyn_ehd.coupling.run.newton_limits import SHARE
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.newton import FREE_STEP, ROOM, part_that_closes, settled_history
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
@@ -211,8 +211,8 @@ class RotorFilm:
         change = relative.variation_of(*self.frames, *self.jacobians)[0] @ x[self.places]
         c, part = self.bearing.radial_clearance, self.room_of_faces(x)
         if self.model.effects.contacts:
-            return min(part, 0.3 * c / max(float(np.hypot(*change[:2])), 1e-300))
-        return min(part, float(allowed_part(self.motion, self.motion + change, c, self.bearing.length)))
+            return min(part, FREE_STEP * c / max(float(np.hypot(*change[:2])), 1e-300))
+        return min(part, part_that_closes(SHARE, self.motion, self.motion + change, c, self.bearing.length))
 
     def room_of_faces(self, x: np.ndarray) -> float:
         """Largest part of a step x (size,) that uses up at most 60 % of the gaps of the end faces; `update` has run."""
@@ -222,7 +222,7 @@ class RotorFilm:
         along = axial_variation(self._wrench_map(), self.centre) @ x[self.places]
         turn = relative.variation_of(*self.frames, *self.jacobians)[0][2:4] @ x[self.places]
         closed = abs(float(along)) + thrust.outer_radius * float(np.hypot(*turn))
-        allowed = 0.6 * self._on_faces.minimum_gap if thrust.contact is None else 0.3 * thrust.clearance
+        allowed = ROOM * self._on_faces.minimum_gap if thrust.contact is None else FREE_STEP * thrust.clearance
         return min(1.0, allowed / max(closed, 1e-300))
 
     def found(self, evaluation: Evaluation, tangent: np.ndarray) -> dict[str, np.ndarray | float]:

@@ -26,12 +26,11 @@ from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.model.rigid import Evaluation
-from exudyn_ehd.status import FilmError, InputError
+from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
 # Unbalance over the loads of the films that counts as none, steps of Newton's method that may pass, and rounding of
 # places over their distance from the origin.
-TOLERANCE, STEPS, ROUNDING = 1e-8, 40, 1e-15
-RANK = 1e-9
+TOLERANCE, STEPS, EXACT = 1e-8, 40, 1e-15
 FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
 # Angle by which rotors are turned to see that they are the same in all directions, rad, and how far they may differ.
 TURN, ISOTROPIC = 1.0, 1e-4
@@ -204,14 +203,14 @@ class EquilibriumSearch:
             K[own, own] -= self.torques[k] * skew(system.axis(k))
         held = np.vstack((system.constraints(), system.drives()))
         left, values, right = np.linalg.svd(held)
-        rank = int(np.sum(values > RANK * values[0]))
+        rank = int(np.sum(values > ROUNDING * values[0]))
         inverse = right[:rank].T / values[:rank] @ left[:, :rank].T
         free = right[rank:].T
         mend = -inverse[:, : error.size] @ error
         scale = max(math.sqrt(size), 1e-300)
         residual = float(np.abs(self.weights * (free @ (free.T @ r))).max()) / scale
         reach = max(float(np.abs(node.position(system.q)).max()) for node in system.nodes.values())
-        rounding = ROUNDING * reach * float(np.abs(np.outer(self.weights, self.weights) * K).max()) / scale
+        rounding = EXACT * reach * float(np.abs(np.outer(self.weights, self.weights) * K).max()) / scale
         return ForceBalance(r, K, r_u, free, mend, -inverse.T @ r, residual, rounding)
 
     def _step(self, balance: ForceBalance) -> np.ndarray:

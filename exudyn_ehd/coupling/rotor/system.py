@@ -40,7 +40,6 @@ from exudyn_ehd.status import InputError
 
 # Steps of the differences: m or rad, and m/s or rad/s, in which the forces of bodies are quadratic.
 STEP, RATE_STEP = 1e-6, 1e-2
-UNIT = np.eye(3)
 
 
 NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -83,7 +82,7 @@ class TurningNode:
             inverse = turns.T / (turns[0] @ turns[0])
         rates[3:] = inverse @ omega
         B = np.zeros((own.size, 6))
-        B[:3, :3], B[3:, 3:] = UNIT, inverse
+        B[:3, :3], B[3:, 3:] = np.eye(3), inverse
         return B, rates[3:], -inverse @ (self.side.change(None, own)[3:] @ rates @ rates)
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:

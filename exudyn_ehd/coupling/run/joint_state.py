@@ -11,9 +11,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, require_system
-from exudyn_ehd.coupling.element.display import add_sensor
 from exudyn_ehd.coupling.element.nodal import ModalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.element.sensors import add_sensor
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK
@@ -22,12 +22,12 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.status import InputError, require_number, require_type, warn_user
+from exudyn_ehd.status import SMALL, InputError, require_number, require_type, warn_user
 from exudyn_ehd.storage import fingerprint
 
 FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
-# Points at which modes of a bore are compared: angles [rad], shares of the length; relative round-off of equal modes.
-_ANGLES, _PLACES, _SAME_MODES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37]), 1e-6
+# Points at which modes of a bore are compared: angles [rad], shares of the length.
+_ANGLES, _PLACES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37])
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -267,7 +267,7 @@ def _same_modes(own: np.ndarray | None, stored: np.ndarray | None) -> bool:
     if own is None or stored is None or own.shape != stored.shape:
         return own is stored
     scale = np.max(np.abs(own), axis=1, keepdims=True)
-    return bool(np.all(np.abs(own - stored) <= _SAME_MODES * scale))
+    return bool(np.all(np.abs(own - stored) <= SMALL * scale))
 
 
 def _check_memory(joint: Joint, state: JointState) -> None:

@@ -1,4 +1,4 @@
-"""Newton's method kept within the films, its tolerances, and the settings of a solver.
+"""Newton's method kept within the films, and its tolerances.
 
 Exudyn's Newton method takes its steps whole. A film hardens towards the wall as 1 / gap^3 and more, and where it is
 hollow, or opens, it has hardly any stiffness: a step from there goes through the wall, where the film can't be
@@ -31,8 +31,6 @@ a film or not, have the rounding of its displacements times the stiffness of its
 Where no start is known, as in the first step, the first positions may lie deep in a contact, with forces of films and a
 residual millions of times those at the end: a share of it would let any state pass. As the films' forces fall below
 their first ones in a step, the relative tolerance shrinks alike. Residuals of other parts do not count.
-
-`ConfigureSolver` sets what a lubricated joint needs.
 """
 
 from __future__ import annotations
@@ -43,22 +41,20 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
-from numba import njit
 
 from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, ObjectIndex, Trial
 from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import InputError, Status, require_bool, require_number
+from exudyn_ehd.coupling.kinematics.relative import BoreGap, levers_of
+from exudyn_ehd.joint.balance.newton import part_that_closes
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
+from exudyn_ehd.status import SMALL, Status
 
 # Share of a film's gap that a step of Newton's method may close.
 SHARE = 0.5
 # Share of the relative tolerance times the films' forces.
 FORCE_SHARE = 0.1
-# Least part of the relative tolerance that is left.
-LEAST_PART = 1e-6
 
 
 class GapLimit:
@@ -96,12 +92,8 @@ class GapLimit:
         for film in self.films:
             last = film.last
             if last is not None:
-                bearing = film.model.bearing
-                bore, after = self.bores[film], film.motion(mbs, CURRENT)
-                if bore.depth.size:
-                    allowed = _allowed_in_profile(bore, last.bodies, after)
-                else:
-                    allowed = allowed_part(last.bodies, after, bearing.radial_clearance, bearing.length)
+                after = film.motion(mbs, CURRENT)
+                allowed = allowed_part(self.bores[film], last.bodies, after)
                 part = min(part, allowed, self._allowed_at_end(film, last, after))
         state = state_of(mbs)
         if part < 1.0:
@@ -118,52 +110,21 @@ class GapLimit:
         if last.status == Status.NO_PRESSURE and bearing.yielding is None:
             self.behind[film] = last.bodies
         elif film in self.behind:
-            half = 0.5 * bearing.length
-            levers = np.array(getattr(bearing, "levers", (1.0, 1.0, half, half)))
-            return _allowed_towards(self.behind[film], last.bodies, after, levers)
+            return _allowed_towards(self.behind[film], last.bodies, after, levers_of(bearing))
         return 1.0
 
 
-@njit(cache=True)
-def _at_end(motion, z):
-    """Square of the eccentricity at z."""
-    x, y = motion[0] + z * motion[2], motion[1] + z * motion[3]
-    return x * x + y * y
-
-
-@njit(cache=True)
-def allowed_part(before, after, clearance, length):
+def allowed_part(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
     """Part of a step between two motions that closes the film of the rigid surfaces by `SHARE`, 1 if none does.
 
-    Parameters
-    ----------
-    before, after : (10,) array
-        Motion of the journal's axis, m and rad first.
-    clearance, length : float
-        m.
+    Gaps of a bore with profiles are linear in the motion.
     """
-    half, part = 0.5 * length, 1.0
-    gap = clearance - math.sqrt(max(_at_end(before, -half), _at_end(before, half)))
-    farthest = clearance - SHARE * gap
-    reached = max(_at_end(after, -half), _at_end(after, half))
-    # not true for what is not finite
-    if not (gap > SMALLEST_GAP_SHARE * clearance and reached > farthest * farthest):
-        return part
-    for z in (-half, half):
-        px, py = before[0] + z * before[2], before[1] + z * before[3]
-        dx, dy = after[0] + z * after[2] - px, after[1] + z * after[3] - py
-        along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest * farthest - _at_end(before, z)
-        if 2.0 * along + square > rest:
-            part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
-    return part
-
-
-def _allowed_in_profile(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
-    """Return the part of a step like `allowed_part`, for a bore with profiles; its gaps are linear in the motion."""
-    gaps, ends = bore.values(before), bore.values(after)
-    smallest = float(gaps.min())
-    if not (smallest > SMALLEST_GAP_SHARE * bore.clearance and np.isfinite(ends).all()):
+    smallest = bore.smallest(before)
+    if not (smallest > SMALLEST_GAP_SHARE * bore.clearance and np.isfinite(after[:4]).all()):
         return 1.0
+    if not bore.depth.size:
+        return part_that_closes(SHARE, before, after, bore.clearance, 2.0 * bore.half)
+    gaps, ends = bore.values(before), bore.values(after)
     beyond = ends < SHARE * smallest
     return float(np.min((gaps - SHARE * smallest)[beyond] / (gaps - ends)[beyond], initial=1.0))
 
@@ -232,7 +193,7 @@ class ForceTolerance:
             self.first = forces
         present = max(forces, self.level)
         part = present / self.first if self.first > present else 1.0
-        solver.newton.relativeTolerance = self.relative * max(part, LEAST_PART)
+        solver.newton.relativeTolerance = self.relative * max(part, SMALL)
 
     def _forces(self) -> float:
         return math.hypot(*(force for film in self.films for force in _force(film.last)))
@@ -253,117 +214,3 @@ def _force(trial: Trial | None) -> list[float]:
     if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:
         return []
     return trial.evaluation.wrench[:3].tolist()
-
-
-# Spectral radius: Exudyn's default, and the one for films.
-EXUDYNS_RADIUS, RADIUS = 0.9, 0.6
-# Newton's absolute tolerance, N.
-ABSOLUTE = 1e-8
-
-
-def require_settings(where: str, settings: object) -> None:
-    """Refuse what are no settings of Exudyn."""
-    if not isinstance(settings, exu.SimulationSettings):
-        raise InputError(
-            f"{where}.simulationSettings must be exudyn.SimulationSettings(), got {type(settings).__name__}."
-        )
-
-
-def require_time(where: str, settings: exu.SimulationSettings) -> None:
-    """Refuse a run that ends before it starts, and an integrator that lets every vibration grow."""
-    time = settings.timeIntegration
-    if not time.endTime > time.startTime:
-        raise InputError(
-            f"{where}.simulationSettings.timeIntegration.endTime must be after startTime = {time.startTime:.9g} s, got "
-            f"{time.endTime:.9g} s."
-        )
-    radius = time.generalizedAlpha.spectralRadius
-    if not radius <= 1.0:
-        raise InputError(
-            f"{where}.simulationSettings.timeIntegration.generalizedAlpha.spectralRadius must be between 0 and 1, got "
-            f"{radius:g}; beyond 1 vibrations grow in every step, ConfigureSolver sets {RADIUS:g}."
-        )
-
-
-def ConfigureSolver(
-    simulationSettings: exu.SimulationSettings,
-    relativeTolerance: float = 1e-6,
-    useModifiedNewton: bool = False,
-    absoluteTolerance: float | None = None,
-    spectralRadius: float | None = None,
-) -> exu.SimulationSettings:
-    """Set the tolerances, Newton's method and the spectral radius that lubricated joints need; all else stays.
-
-    Time integration and static solver get the same values:
-
-    - Newton's relative tolerance: 1e-6 in place of Exudyn's 1e-8. A film's force is itself the result of an iteration
-      and carries relative noise of about 1e-10, so that residuals can't always fall by eight orders of magnitude.
-    - Newton's absolute tolerance: at least 1e-8 N; Exudyn has 1e-10. On a contact wall of 1e11 N/m the round-off of a
-      position alone makes 1e-9 N, so that a journal at rest on it would never converge.
-    - ``adaptInitialResidual`` off: the tolerance is relative to the first residual only. An iterate deep in a contact
-      has a residual of millions of times the step's forces; a tolerance relative to that accepts a wrong state.
-    - Full Newton: the Jacobian of the film is exact and cheap, and saves film evaluations. Set
-      ``useModifiedNewton=True`` for models with large flexible bodies, where a new factorisation costs more than
-      several film evaluations.
-    - Spectral radius of generalized alpha: 0.6, where Exudyn's 0.9 is still set. After a halved step the force of a
-      stiff film alternates from step to step; at 0.9 this lasts until the next disturbance. Example: a gudgeon pin at
-      3000 rpm with a peak pressure of 208 MPa and 360 steps a turn. At 0.9 halved steps make 820 rows instead of 361,
-      and the peak pressure is 3.5 % too high; at 0.6 no step is halved, and the error is 0.02 %. Motions that the steps
-      resolve are hardly damped: a vibration of 80 steps per period loses 2e-5 of its amplitude per period (2e-7 at 0.9,
-      2e-4 at 0.3). For the growth of a whirl over thousands of turns set 0.9. A run above 0.9 warns: velocities of
-      journals then alternate from step to step, and the growth may be wrong.
-    - ``adaptiveStep`` on, as by default: Exudyn repeats a step with half its size if a film can't be evaluated.
-
-    Parameters
-    ----------
-    simulationSettings : exudyn.SimulationSettings
-        Changed in place.
-    relativeTolerance : float, default 1e-6
-        Newton's relative tolerance.
-    absoluteTolerance : float or None, default None
-        Newton's absolute tolerance, N. None: 1e-8, or the value already set if that is larger. For films that carry
-        less than 1e-5 N give 1e-6 of their load.
-    useModifiedNewton : bool, default False
-        True: keep the Jacobian over several steps.
-    spectralRadius : float or None, default None
-        Spectral radius of generalized alpha, 0 to 1; smaller damps more. None: 0.6 if Exudyn's default 0.9 is set; any
-        other value stays.
-
-    Returns
-    -------
-    exudyn.SimulationSettings
-        The same object.
-
-    Raises
-    ------
-    InputError
-        For an object that is no SimulationSettings, tolerances that are not positive, or a spectral radius outside 0 to
-        1.
-
-    Examples
-    --------
-    >>> settings = exu.SimulationSettings()
-    >>> settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 2e-3, 20
-    >>> settings.solution.file.write, settings.staticSolver.verboseMode = False, 0
-    >>> settings = ehd.ConfigureSolver(settings)
-    >>> settings.timeIntegration.generalizedAlpha.spectralRadius
-    0.6
-    """
-    require_settings("ConfigureSolver", simulationSettings)
-    modified = require_bool("ConfigureSolver.useModifiedNewton", useModifiedNewton)
-    tolerance = require_number("ConfigureSolver.relativeTolerance", relativeTolerance, above=0.0)
-    if absoluteTolerance is not None:
-        require_number("ConfigureSolver.absoluteTolerance", absoluteTolerance, "N", above=0.0)
-    alpha = simulationSettings.timeIntegration.generalizedAlpha
-    if spectralRadius is not None:
-        radius = require_number("ConfigureSolver.spectralRadius", spectralRadius, at_least=0.0, at_most=1.0)
-        alpha.spectralRadius = radius
-    elif alpha.spectralRadius == EXUDYNS_RADIUS:
-        alpha.spectralRadius = RADIUS
-    for solver in (simulationSettings.timeIntegration, simulationSettings.staticSolver):
-        solver.newton.relativeTolerance = tolerance
-        solver.newton.absoluteTolerance = absoluteTolerance or max(ABSOLUTE, solver.newton.absoluteTolerance)
-        solver.newton.adaptInitialResidual = False
-        solver.newton.useModifiedNewton = modified
-        solver.adaptiveStep = True
-    return simulationSettings

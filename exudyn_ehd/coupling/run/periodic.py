@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
+from typing import ClassVar
 
 import exudyn as exu
 import numpy as np
@@ -25,18 +26,16 @@ from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.progress import Progress, is_shown
-from exudyn_ehd.status import InputError, RunError, require_number
+from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, RunError, require_number
 
 # Largest number of differences that may be left, also of those that do not shrink: rounding never does.
 MOST_LEFT = 100.0
 # Rise of the temperature from which on its changes count as shares of it, K.
 SMALLEST_RISE = 1.0
-# Times that count as the same, share of a period.
-SAME = 1e-9
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class UntilPeriodic:
+class UntilPeriodic(Checked):
     """End a run as soon as the orbits of all joints repeat themselves: ``SolveDynamic(..., until_periodic=...)``.
 
     ``endTime`` of the settings limits the run; leave room for at least three periods. Choose the step size so that a
@@ -67,9 +66,10 @@ class UntilPeriodic:
     period: float
     tolerance: float = 0.01
 
-    def __post_init__(self) -> None:
-        require_number("UntilPeriodic.period", self.period, "s", above=0.0)
-        require_number("UntilPeriodic.tolerance", self.tolerance, at_least=1e-6, at_most=0.5)
+    checks: ClassVar = {
+        "period": partial(POSITIVE, unit="s"),
+        "tolerance": partial(require_number, at_least=1e-6, at_most=0.5),
+    }
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -140,7 +140,7 @@ class Closing:
                     f"{where} compares all steps of a cycle, and joint '{joint.name}' keeps some of them; leave out "
                     "Every and Period of its record (File alone keeps memory small, too)."
                 )
-        if run.endTime - run.startTime < (3.0 - SAME) * aim.period:
+        if run.endTime - run.startTime < (3.0 - ROUNDING) * aim.period:
             raise InputError(
                 f"{where}: the run must have room for three periods of {aim.period:.6g} s, got {run.startTime:.6g} to "
                 f"{run.endTime:.6g} s; endTime says how long it may take."
@@ -171,7 +171,7 @@ class Closing:
     def look(self, mbs: exu.MainSystem, time: float, *, complete: bool = False) -> None:
         """Compare the cycle that has ended by ``time``, if one has; its end is the state now if ``complete``."""
         period, cycles = self.aim.period, self.cycles + 1
-        if self.closed or time < self.begin + (cycles - SAME) * period:
+        if self.closed or time < self.begin + (cycles - ROUNDING) * period:
             return
         end = self.begin + cycles * period
         histories = [steps.history(mbs, complete=complete) for steps in self.films.values()]
@@ -233,58 +233,31 @@ def _change(history: JointHistory, begin: float, end: float, period: float) -> f
     return max(change, float(np.abs(last.film_temperature - np.interp(before, history.time, warm)).max()) / rise)
 
 
-class RunProgress:
-    """Function after a step of Exudyn that tells how far a run is.
-
-    Parameters
-    ----------
-    settings : exudyn.SimulationSettings
-    joints : sequence of Joint
-    """
-
-    def __init__(self, settings: exu.SimulationSettings, joints: Sequence[Joint]) -> None:
-        run = settings.timeIntegration
-        self.joints = joints
-        self.start, self.span = run.startTime, run.endTime - run.startTime
-        self.line: Progress | None = None
-        self.steps, self.last = 0, (0, 0.0)
-
-    def after_step(self, own: Callable[..., object], mbs: exu.MainSystem, t: float) -> bool:
-        """Return whether the run goes on after the step to ``t``, as the user's function says."""
-        goes_on = bool(own(mbs, t))
-        if self.line is None:
-            # kernels are compiled before the first call, which is behind the initial state
-            self.line, self.last = Progress("exudyn_ehd"), (0, time.perf_counter())
-            return goes_on
-        self.steps += 1
-        if self.line.is_due:
-            now = time.perf_counter()
-            rate = (self.steps - self.last[0]) / (now - self.last[1])
-            self.last = self.steps, now
-            self.line.tell((t - self.start) / self.span, f", t = {t:.4g} s, {rate:.3g} steps/s{self._worst()}")
-        return goes_on
-
-    def close(self) -> None:
-        """Take the line away."""
-        if self.line is not None:
-            self.line.close()
-
-    def _worst(self) -> str:
-        """The thinnest film, in words."""
-        films = ((joint.element.steps.record.thinnest, joint.name) for joint in self.joints)
-        gap, name = min(films, default=(math.inf, ""))
-        return f", minimum film thickness {shown('length', gap)} in '{name}'" if math.isfinite(gap) else ""
-
-
 @contextmanager
 def run_progress(mbs: exu.MainSystem, settings: exu.SimulationSettings, joints: Sequence[Joint]) -> Iterator[None]:
     """Show the progress of the run within, unless Exudyn's own does; the user's function comes back then."""
     if not is_shown() or settings.timeIntegration.verboseMode > 0:
         yield
         return
-    progress = RunProgress(settings, joints)
-    with hooked(mbs, "PostStep", progress.after_step):
+    start, end, lines = settings.timeIntegration.startTime, settings.timeIntegration.endTime, list[Progress]()
+
+    def after_step(own: Callable[..., object], mbs: exu.MainSystem, t: float) -> bool:
+        goes_on = bool(own(mbs, t))
+        for line in lines:
+            line.step((t - start) / (end - start), lambda rate: f", t = {t:.4g} s, {rate:.3g} steps/s{_worst(joints)}")
+        # kernels are compiled before the first call, which is behind the initial state
+        lines[:] = lines or [Progress("exudyn_ehd")]
+        return goes_on
+
+    with hooked(mbs, "PostStep", after_step):
         try:
             yield
         finally:
-            progress.close()
+            for line in lines:
+                line.close()
+
+
+def _worst(joints: Sequence[Joint]) -> str:
+    """The thinnest film, in words."""
+    gap, name = min(((joint.element.steps.record.thinnest, joint.name) for joint in joints), default=(math.inf, ""))
+    return f", minimum film thickness {shown('length', gap)} in '{name}'" if math.isfinite(gap) else ""

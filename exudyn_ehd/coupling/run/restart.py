@@ -18,7 +18,6 @@ from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, JointM
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
-from exudyn_ehd.coupling.record.on_disk import read_arrays
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.balance.newton import settled_history
@@ -27,7 +26,7 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
-from exudyn_ehd.storage import replacing, require_path
+from exudyn_ehd.storage import read_arrays, replacing, require_path
 
 _FORMAT = "exudyn_ehd SystemState 6"
 Part = TypeVar("Part", History, StepStart)

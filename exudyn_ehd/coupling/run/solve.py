@@ -12,15 +12,14 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
-from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import free_bushes, require_settings, require_time
+from exudyn_ehd.coupling.run.newton_limits import free_bushes
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
 from exudyn_ehd.coupling.run.restart import SystemState, load_state
+from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time, warn_of_misfit
 from exudyn_ehd.coupling.run.start_guess import StartGuess, refuse
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.solver_state import hooked
-from exudyn_ehd.coupling.watch.start_velocity import warn_of_misfit
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
@@ -123,9 +122,7 @@ def SolveDynamic(
     until_periodic : UntilPeriodic or None, default None
         Ends the run as soon as the orbits of all joints repeat themselves. None: the run ends at ``endTime``.
     threads : int or None, default 1
-        Number of threads that evaluate the films of all joints in parallel; results are bit-identical to those of one
-        thread. None: one for each core of the process. It pays from two joints on fine grids on, see
-        coupling/README.md.
+        Not supported any more: films are evaluated one after the other.
     **options
         As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; storeSolver is always True.
 
@@ -360,38 +357,23 @@ def running(
 ) -> Iterator[None]:
     """Let a solver run within, with this package's errors.
 
-    Films are on ``threads``, steps chosen as by ``control``, those without a film refused, and progress is shown.
+    Steps are chosen as by ``control``, those without a film refused, and progress is shown.
     """
+    if threads not in (1, None):
+        raise InputError(
+            f"{where}.threads is not supported any more, got {threads!r}: films are evaluated one after the other; let "
+            "several runs take a core each, as parameter_study(processes=...) does."
+        )
     joints = joints_of(mbs)
     films = [joint.element for joint in joints]
     aim = None if control is None else control.error
     with (
-        side_by_side(where, films, threads),
         nullcontext() if aim is None else steps_by_error(mbs, settings, films, aim),
         hooked(mbs, "PostNewton", partial(refuse, films)),
         own_errors(mbs, where),
         run_progress(mbs, settings, joints),
     ):
         yield
-
-
-def require_control(
-    where: str, settings: exu.SimulationSettings, control: StepControl | None, *, implicit: bool = True
-) -> None:
-    """Refuse a control that is none of a run, or a run that has no use for one."""
-    require_type(f"{where}.stepControl", control, StepControl, type(None))
-    if control is None:
-        return
-    if control.error is None:
-        raise InputError(
-            f"{where}.stepControl: StepControl.error is missing, the error that the steps aim at (0.02); "
-            "largest_gap_change is of a joint: CreateLubricatedJoint(stepControl=...)."
-        )
-    if not implicit or not settings.timeIntegration.adaptiveStep:
-        raise InputError(
-            f"{where}.stepControl needs an implicit solver and timeIntegration.adaptiveStep=True, with which Exudyn "
-            "can repeat steps; ConfigureSolver(simulationSettings) sets it."
-        )
 
 
 @contextmanager

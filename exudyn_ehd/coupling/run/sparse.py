@@ -17,8 +17,16 @@ with their exact tangent costs one film solve. With J0 everything else and F the
 zero at the films' coordinates alone, solves ``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r; the bush
 deflects little under a film's short waves, so that some seven products do. Newton then takes the iterations it takes
 with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as
-a journal that turns, is small and has its factor anew in every iteration where only films join the two
-(`exudyn_ehd.coupling.bush.linear`). The matrix is put together in `system_matrix`.
+a journal that turns, is small and has its factor anew in every iteration where only films join the two:
+its factor is sparse of the meshes, dense of all the rest. The matrix is put together in `system_matrix`.
+
+With the coordinates b of meshes and r of all the rest, the iteration matrix is solved by
+
+    W = J_bb^-1 J_br,    S = J_rr - J_rb W,
+    y = J_bb^-1 f_b,   x_r = S^-1 (f_r - J_rb y),   x_b = y - W x_r.
+
+Meshes hardly change, bodies that turn do in every step. Where a mesh meets the rest in films only, W = 0 and S = J_rr,
+which a Newton iteration can have anew while the factor of the meshes lasts.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
 Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend on coordinates.
@@ -27,25 +35,29 @@ Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend 
 from __future__ import annotations
 
 import time
+import warnings
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import exudyn as exu
 import numpy as np
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.coupling.bush.linear import SystemFactor
 from exudyn_ehd.coupling.contract import require_system
-from exudyn_ehd.coupling.run.newton_limits import require_settings, require_time, state_of
-from exudyn_ehd.coupling.run.solve import joints_of, require_control, require_items, running
+from exudyn_ehd.coupling.run.newton_limits import state_of
+from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time
+from exudyn_ehd.coupling.run.solve import joints_of, require_items, running
 from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import idle, user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
-from exudyn_ehd.solid.linear import solve_by_products
-from exudyn_ehd.status import InputError, require_integer, require_number
+from exudyn_ehd.solid.linear import solve_by_products, sparse_factor
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer
 
 # Exudyn's stubs lack the self of its solvers' methods.
 DynamicSolver: TypeAlias = Any
@@ -54,10 +66,12 @@ DynamicSolver: TypeAlias = Any
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
 # Iterations of a step that are slow for its films' sake, not for an old factor of meshes that only films load.
 FILMS_FIRST = 4
+# Coordinates and multipliers beside the meshes at most, which are solved for as dense.
+LARGEST_REST = 200
 
 
 @dataclass(frozen=True, kw_only=True)
-class FactorReuse:
+class FactorReuse(Checked):
     """Rules that say when `SolveDynamicSparse` computes a new factor of its Jacobian.
 
     Parameters
@@ -83,10 +97,11 @@ class FactorReuse:
     maximum_iterations: int = 10
     worth: int = 40
 
-    def __post_init__(self) -> None:
-        require_number("FactorReuse.contractivity", self.contractivity, above=0.0)
-        require_integer("FactorReuse.maximum_iterations", self.maximum_iterations, at_least=1)
-        require_integer("FactorReuse.worth", self.worth, at_least=1)
+    checks: ClassVar = {
+        "contractivity": POSITIVE,
+        "maximum_iterations": partial(require_integer, at_least=1),
+        "worth": partial(require_integer, at_least=1),
+    }
 
 
 @dataclass(kw_only=True)
@@ -229,6 +244,62 @@ def _require_offered(integration: Any) -> None:
                 f"SolveDynamicSparse.simulationSettings.timeIntegration.{name} must be {only}, got {value}; this "
                 "solver offers no other, use exudyn_ehd.SolveDynamic."
             )
+
+
+class SystemFactor:
+    """Factor of an iteration matrix.
+
+    Parameters
+    ----------
+    system : csc_matrix
+    mesh : (n,) array of bool
+        Coordinates of meshes; one factor of all where there are none, or much beside them.
+    pivoting : float
+        As in `sparse_factor`, of that one.
+
+    Raises
+    ------
+    RuntimeError
+        If the matrix is singular.
+    """
+
+    def __init__(self, system: csc_matrix, mesh: np.ndarray, *, pivoting: float) -> None:
+        self.places, self.rest = np.flatnonzero(mesh), np.flatnonzero(~mesh)
+        self.whole: SuperLU | None = None
+        if not len(self.places) or len(self.rest) > LARGEST_REST:
+            self.whole = sparse_factor(system, pivoting=pivoting)
+            self.nbytes, self.coupled = 12 * self.whole.nnz, True
+            return
+        # columns first: rows of compressed columns take twenty times as long
+        own, along = (system[:, columns][self.places] for columns in (self.places, self.rest))
+        self.factor = factor = sparse_factor(own)
+        self.nbytes = 12 * factor.nnz
+        self.across = system[self.rest][:, self.places].tocsr()
+        self.coupled = bool(along.nnz or self.across.nnz)
+        self.moved = factor.solve(along.toarray()) if self.coupled else np.zeros(along.shape)
+        self.renew_rest(system)
+
+    def renew_rest(self, system: csc_matrix) -> None:
+        """Factorise what is beside the meshes."""
+        own = system[self.rest][:, self.rest].toarray() - self.across @ self.moved
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", LinAlgWarning)
+            try:
+                self.own = lu_factor(own) if len(own) else None
+            except (LinAlgWarning, ValueError) as error:
+                raise RuntimeError("singular") from error
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Solution (n,) for a right-hand side (n,)."""
+        if self.whole is not None:
+            return self.whole.solve(right)
+        out = np.empty(len(right))
+        y, rest = self.factor.solve(right[self.places]), right[self.rest]
+        if self.own is not None:
+            out[self.rest] = x = lu_solve(self.own, rest - self.across @ y)
+            y -= self.moved @ x
+        out[self.places] = y
+        return out
 
 
 @dataclass(kw_only=True, eq=False)

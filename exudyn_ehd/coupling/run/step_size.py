@@ -31,7 +31,7 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.step_error import NO_BALL_ERROR, NO_ERROR, OFFSET, REFUSED, SMALLEST_GAP_SHARE, next_error
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import SMALL, Status
 
 # First and largest step, in steps of the settings.
 FIRST, LARGEST = 0.125, 4.0
@@ -45,8 +45,6 @@ CANCELLED = 1.5
 LEAST_OF_STEP, MOST_OF_STEP = 0.25, 0.75
 # Least share of the error asked for that a jump may make beside the error that is left from earlier ones.
 LEAST_OF_ERROR = 0.5
-# Shares of a step: one that ended so early was repeated; rounding.
-SHORTENED, ROUNDING = 0.99, 1e-6
 # Steps that Exudyn never takes before it doubles one of itself.
 NEVER = 10**9
 
@@ -164,7 +162,7 @@ class StepSize:
         self.used = max(known, default=None)
         step = time - mbs.systemData.GetTime(START_OF_STEP)
         smallest = mbs.sys["dynamicSolver"].it.minStepSize
-        if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + ROUNDING):
+        if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + SMALL):
             return [error, wanted]
         step = min(step * max(SHRINK, self.used**-0.5), *(joint.wanted for joint in self.joints))
         return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
@@ -183,7 +181,7 @@ class StepSize:
 
     def _adapt(self, step: float) -> None:
         """The size to go on with, behind an accepted step."""
-        if step < SHORTENED * self.planned:
+        if step < (1.0 - SMALL) * self.planned:
             # repeated, here or by Exudyn
             self.size, self.demand = step, max(self.demand, 1.0 / step)
         elif self.used is not None:
@@ -197,10 +195,10 @@ class StepSize:
         """The next step, which ends at the next time that is asked for or is at most half the way there."""
         stops = [self.end]
         for period in self.periods:
-            if period > ROUNDING * self.usual:
-                stops.append(self.begin + period * (math.floor((time - self.begin) / period + ROUNDING) + 1))
+            if period > SMALL * self.usual:
+                stops.append(self.begin + period * (math.floor((time - self.begin) / period + SMALL) + 1))
         rest = min(stops) - time
-        if self.size >= rest * (1.0 - ROUNDING):
+        if self.size >= rest * (1.0 - SMALL):
             return rest
         return min(self.size, 0.5 * rest)
 

@@ -3,7 +3,6 @@
 Module map
 ----------
 solver_state  which solver runs, with which step
-start_velocity  initial velocities that throw a journal across its bore
 step_control  implicit steps too coarse for a film, rejected
 long_steps    explicit steps beyond their stability limit; meshes on absolute coordinates that turn too far in a step
 poor_films    films that run dry, are thinner than the surfaces are rough, or carry less than Newton's tolerance

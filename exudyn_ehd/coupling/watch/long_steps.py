@@ -52,17 +52,19 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.kinematics.relative import levers_of
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.status import RingingWarning
+from exudyn_ehd.joint.audit.ringing import FADING
+from exudyn_ehd.status import SMALL, RingingWarning
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
 UNRESOLVED = 0.25
-# Position error below which a step counts as resolved, share of the gap (or of a hundredth of the clearance), and m:
+# Position error below which a step counts as resolved, a small share of the gap or of this one of the clearance, and m:
 # rounding of positions some metres from the origin stays below.
-SMALLEST_SHARE, SMALLEST_GAP_SHARE, ROUNDING = 1e-6, 1e-2, 1e-14
-# A step counts if its error is still so large a share of the largest one before, which fades by so much per step.
-LASTING_SHARE, FADING = 0.15, 0.99
+SMALLEST_GAP_SHARE, ROUNDING = 1e-2, 1e-14
+# A step counts if its error is still so large a share of the largest one before, which fades.
+LASTING_SHARE = 0.15
 # A step that counts adds two, any other takes one.
 LIMIT = 32
 # A step is a kick if it makes the journal faster by this factor; a kick adds seven and any other step takes one, so
@@ -71,7 +73,7 @@ KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
 # Loss of angular momentum in a turn that counts, and the turn of a step over 1 - rho from which vibrations may grow; no
 # smaller turn of a step than the last one counts, rad.
 LOST, GROWING, LEAST = 0.01, 0.8, 2.0 * math.pi / 200
-# That of ConfigureSolver.
+# Spectral radius for films; see `ConfigureSolver`.
 USUAL_RADIUS = 0.6
 # Largest spectral radius at which alternating velocities fade soon enough, see above; a smaller one damps whirl more.
 LARGEST_RADIUS = 0.9
@@ -92,8 +94,7 @@ class ChatterWatch:
 
     def __init__(self, bearing: JournalBearing) -> None:
         self.clearance = bearing.radial_clearance
-        self.lever = 0.5 * bearing.length
-        self.levers = np.array(getattr(bearing, "levers", (1.0, 1.0, self.lever, self.lever)))
+        self.length, self.levers = bearing.length, levers_of(bearing)
         self.time = np.inf
         self.place = self.rate = np.zeros(4)
         self.error = self.largest = 0.0
@@ -117,8 +118,8 @@ class ChatterWatch:
         mismatch = place - before - 0.5 * step * (rate + rate_before)
         self.error = float(np.sqrt(mismatch @ mismatch))
         speed, speed_before = float(np.sqrt(rate @ rate)), float(np.sqrt(rate_before @ rate_before))
-        gap = 1.0 - eccentricity_ratios(motion, self.clearance, 2.0 * self.lever)[1]
-        smallest = max(ROUNDING, SMALLEST_SHARE * self.clearance * max(gap, SMALLEST_GAP_SHARE))
+        gap = 1.0 - eccentricity_ratios(motion, self.clearance, self.length)[1]
+        smallest = max(ROUNDING, SMALL * self.clearance * max(gap, SMALLEST_GAP_SHARE))
         self.largest = max(self.error, FADING * self.largest)
         unresolved = self.error > max(UNRESOLVED * step * max(speed, speed_before), smallest)
         counts = unresolved and self.error > LASTING_SHARE * self.largest

@@ -29,7 +29,7 @@ from exudyn_ehd.coupling.watch.solver_state import Solver
 from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
-from exudyn_ehd.status import GridWarning, StarvationWarning, ThinFilmWarning
+from exudyn_ehd.status import ROUNDING, SMALL, GridWarning, StarvationWarning, ThinFilmWarning
 
 # Void of a starved film over ``1 - smallest gap / mean gap``, and the least one that counts: shares of the volume.
 STARVED, LEAST = 0.6, 0.1
@@ -37,9 +37,8 @@ STARVED, LEAST = 0.6, 0.1
 GOOD_SURFACE, CLEARANCE_SHARE = 0.2e-6, 0.05
 # Pressure over the highest one yet from which on the grid is looked at again. Larger: of a lower peak; smaller: dearer.
 HIGHER = 1.02
-# Tolerance over the mean force of a run from which on it is told, one to take, and the force that is rounding, as a
-# share of the film's unit.
-LOOSE, CLOSE, ROUNDING = 1e-3, 1e-6, 1e-8
+# Tolerance over the mean force of a run from which on it is told.
+LOOSE = 1e-3
 
 
 def lost_share(history: History) -> float:
@@ -126,6 +125,6 @@ def warn_of_tiny_forces(
         warnings.warn(
             f"LubricatedJoint '{name}': Newton's absolute tolerance of {left:.2g} N is {100.0 * left / force:.2g} % of "
             f"the film's mean load of {force:.2g} N, so that its forces may be off by as much; use "
-            f"ConfigureSolver(simulationSettings, absoluteTolerance={CLOSE * force:.0e}).",
+            f"ConfigureSolver(simulationSettings, absoluteTolerance={SMALL * force:.0e}).",
             stacklevel=2,
         )

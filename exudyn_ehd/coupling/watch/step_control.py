@@ -13,11 +13,9 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
 from exudyn_ehd.coupling.watch import solver_state
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import InputError, require_number, require_type
 
-# Gap against which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the
-# clearance.
-SMALLEST_GAP_SHARE = 1e-3
 ROUGHNESSES = 4.0
 LARGEST_GAP_CHANGE = 0.25
 

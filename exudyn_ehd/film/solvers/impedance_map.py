@@ -285,8 +285,6 @@ def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
 def impedance_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
     """Nodes of the map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
     condition = type(closure).__name__ + " in cells" * bool(closure.line_in_cells)
-    key = repr((FORMAT, film, condition, float(length_to_radius)))
-    data = cached_arrays(
-        "impedance_maps", key.encode(), lambda: {"nodes": build_nodes(film, closure, length_to_radius)}
-    )
+    key = FORMAT, film, condition, length_to_radius
+    data = cached_arrays("impedance_maps", key, lambda: {"nodes": build_nodes(film, closure, length_to_radius)})
     return data["nodes"]

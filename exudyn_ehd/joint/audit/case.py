@@ -38,15 +38,13 @@ from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
-from exudyn_ehd.status import FilmError, InputError, Status, require_type
+from exudyn_ehd.status import SMALL, FilmError, InputError, Status, require_type
 
 # From this change on an effect matters; below the second one nobody needs it.
 MATTERS, NOTHING = 0.03, 0.02
 # Search for the same load: largest number of films; longest step as a share of the minimum film thickness or, where
-# surfaces may touch, of the clearance; step, as a share of the clearance, that is not halved again.
-MOST_FILMS, LONGEST, SHORTEST = 60, 0.6, 1e-6
-# Loads below it, over L D mu omega / psi^2, have no relative changes.
-NO_LOAD = 1e-6
+# surfaces may touch, of the clearance.
+MOST_FILMS, LONGEST = 60, 0.6
 # Rounds of a time measurement; the best of them counts.
 ROUNDS = 5
 
@@ -243,7 +241,8 @@ class Case:
         force, own, motion = film.wrench[: self.axes].copy(), self.compared(film), mine.motion[None]
         size, b, reached = float(np.linalg.norm(force)), self.bearing, None
         rates = np.linalg.norm(self.sources(motion)[1], axis=2).max() / b.radial_clearance
-        if not size > NO_LOAD * b.reference_force(float(self.slide(motion)[0] + rates)):
+        # smaller loads have no relative changes
+        if not size > SMALL * b.reference_force(float(self.slide(motion)[0] + rates)):
             return None
         if remembers:
             reached = other.evaluate_steady(its.motion[: self.entries], its.history, its.step, its.spin)
@@ -285,7 +284,7 @@ class Case:
                 share = float(np.linalg.norm(reached.wrench[:k])) / size if count == 0 else share
             if reached is None or not np.abs(left).max() < error:
                 step = 0.5 * step
-                if np.linalg.norm(step) < SHORTEST * b.radial_clearance:
+                if np.linalg.norm(step) < SMALL * b.radial_clearance:
                     break
                 continue
             place, error = motion[:k].copy(), float(np.abs(left).max())

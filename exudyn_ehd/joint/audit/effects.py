@@ -16,7 +16,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
-from exudyn_ehd.joint.audit.samples import SMALLEST_GAP_SHARE, adiabatic_rise, time_mean
+from exudyn_ehd.joint.audit.samples import adiabatic_rise, time_mean
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
     TYPICAL_PRESSURE_COEFFICIENT,
@@ -46,6 +46,7 @@ from exudyn_ehd.joint.audit.switches import (
     warmer,
 )
 from exudyn_ehd.joint.balance.limits import COOLER
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 
 # Radial deflection of a free solid steel pin under the peak pressure, over R p / E.
 PIN_COMPLIANCE = 0.6

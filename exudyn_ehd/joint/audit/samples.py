@@ -12,6 +12,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.audit.switches import STEEL
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import Status
 
 # Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started: the
@@ -24,8 +25,6 @@ AMPLITUDE = 0.1
 TENSION = -1e5
 # Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
 RING_COMPLIANCE = 0.7
-# Gap of touching surfaces against which deflections count, share of the clearance.
-SMALLEST_GAP_SHARE = 1e-3
 
 Sources = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Sources of Reynolds' equation by motions (n, k), at both ends of a journal or in the centre of a ball: position and

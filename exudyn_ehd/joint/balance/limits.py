@@ -12,6 +12,7 @@ from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, Status, warn_user
 
 # Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
@@ -35,8 +36,6 @@ WAY_OUT = (
     "let oil flow through (end pressures, eccentricity, supply) or give the thermal effect heat transfer to the "
     "surfaces (housing_conductance, bush_coefficient, journal_coefficient)."
 )
-# Minimum film thickness below which a film closes, share of the clearance.
-CLOSED = 1e-3
 Temperature = float | np.ndarray | None
 
 
@@ -186,7 +185,7 @@ def _without_a_shape(evaluation: ElasticEvaluation) -> str:
         return f"{kind}: {evaluation.model.elasticity.failure}"
     surface = "surface" if bearing.bush is None else "bore"
     missing = f"no shape of the {kind}'s {surface} was found in balance with a film"
-    if last is None or last.gap > CLOSED * bearing.radial_clearance or evaluation.model.effects.contacts:
+    if last is None or last.gap > SMALLEST_GAP_SHARE * bearing.radial_clearance or evaluation.model.effects.contacts:
         return (
             f"{missing}, neither by Newton's method nor by a slow deformation from the undeformed shape; thicken "
             "what is thin in it, name a contact=RegularisedWall(...) if the surfaces touch, or refine the "

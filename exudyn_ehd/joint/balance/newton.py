@@ -34,19 +34,19 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, require_oil_bears, seized
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
-from exudyn_ehd.status import FilmError, Status
+from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
 
 
 # Change of the temperature that counts as settled, as a share of the film's rise over its coldest source; where
-# round-off of hot fields keeps changes from falling further, the second one does.
-SETTLED, NEARLY = 1e-11, 1e-9
+# round-off of hot fields keeps changes from falling further, `ROUNDING` does.
+SETTLED = 1e-11
 LOAD_TOLERANCE = 1e-10
-# Rounds of a search, of one from a film nearby, and those that may pass without the error falling to a share of what
+# Rounds of a search, and of one from a film nearby, or those that may pass without the error falling to a share of what
 # it was. More rounds, and a share nearer to 1, give up later.
-ROUNDS, NEARBY_ROUNDS, PATIENCE, FALLS = 300, 20, 20, 0.9
+ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping of the temperature's steps below which it gives up where they make no progress.
 WEAKEST = 0.1
 # Halvings of a step without a film, or steps of the first position towards the centre, after which there is none.
@@ -59,8 +59,6 @@ LARGEST_CHANGE, ACCELERATED, TYPICAL_CHANGE = 50.0, 5.0, 30.0
 DEPTH = 10
 # K, up to which a search goes on, far beyond what any oil bears: on its way a film is hotter than where it ends.
 DIVERGED = 2000.0
-# Least stiffness of the faces in a step, in loads over the clearance; a larger one shortens steps of soft faces.
-SOFTEST = 1e-6
 # Share of the smallest gap that a step may use up; step over the clearance where surfaces may touch or deflect.
 ROOM, FREE_STEP = 0.6, 0.3
 
@@ -112,8 +110,6 @@ class Balance:
         Films on the end faces beside the journal's.
     held : History, optional
         Memory whose temperature the film has; None: the temperature is sought.
-    effort : int
-        Film solves after which a search gives up.
 
     Attributes
     ----------
@@ -132,9 +128,8 @@ class Balance:
         size: float | None = None,
         faces: ThrustModel | None = None,
         held: History | None = None,
-        effort: int = LARGEST_EFFORT,
     ) -> None:
-        self.model, self.where, self.faces, self.held, self.effort = model, where, faces, held, effort
+        self.model, self.where, self.faces, self.held = model, where, faces, held
         self.load = np.zeros(0) if load is None else load
         self.free, self.share = [0, 1, MOTION_SIZE][: self.load.size], 1.0
         self.size = float(norm(self.load[:2])) if size is None else size
@@ -182,7 +177,7 @@ class Balance:
             unbalance += beside.wrench[:k]
             slope += beside.tangent()[:k, self.free]
             if k > 2:  # plane faces at rest press nowhere: a step goes to the face that is to carry
-                slope[2, 2] = min(slope[2, 2], -SOFTEST * self._sizes[2] / self.model.bearing.radial_clearance)
+                slope[2, 2] = min(slope[2, 2], -SMALL * self._sizes[2] / self.model.bearing.radial_clearance)
         return Place(motion.copy(), T, change, evaluation, film, unbalance, slope, beside)
 
     def residual(self, place: Place) -> float:
@@ -193,7 +188,7 @@ class Balance:
         """The larger of the residual and of the temperature's change over a typical one."""
         return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / TYPICAL_CHANGE)
 
-    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = NEARLY) -> bool:
+    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = ROUNDING) -> bool:
         """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
         T, change = place.temperature, place.change
         if self.residual(place) > tolerance or not change.size:
@@ -223,7 +218,8 @@ class Balance:
         past: list[tuple[np.ndarray, np.ndarray]] = []
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
-            if self.is_balanced(here, tolerance, SETTLED) or self._is_spent():
+            spent = self.model.parts.evaluations.count - self.first > LARGEST_EFFORT
+            if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
             if idle > PATIENCE:
                 if not here.change.size or damping < WEAKEST or (self.free and not resistance):
@@ -250,9 +246,6 @@ class Balance:
         if here.film.serial != self.model.parts.evaluations.count:
             here = self.at(here.motion, here.temperature)
         return here
-
-    def _is_spent(self) -> bool:
-        return self.model.parts.evaluations.count - self.first > self.effort
 
     def _first(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
         """The film at a motion (11,), or that of a free journal at a smaller eccentricity if there is none."""
@@ -304,22 +297,33 @@ def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float) -> np.nd
 
 
 def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end.
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap, or a part of the clearance.
 
-    A wall or a flexible bush limits nothing.
+    Where surfaces may touch or deflect, gaps of rigid surfaces limit nothing.
     """
+    c = model.bearing.radial_clearance
     if model.effects.contacts or model.flexible:
-        longest = FREE_STEP * model.bearing.radial_clearance
-        return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
-    c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
-    scale = 1.0
-    for s in (-half, half):
-        e = motion[:2] + s * motion[2:4]
-        allowed = float(np.hypot(*e)) + ROOM * (c - float(np.hypot(*e)))
-        a, b, d = float(step @ step), float(e @ step), float(e @ e) - allowed**2
-        if a > 0.0:
-            scale = min(scale, (-b + math.sqrt(b * b - a * d)) / a)
-    return scale * step
+        return step * min(1.0, FREE_STEP * c / float(np.hypot(*step) + 1e-300))
+    after = np.concatenate((motion[:2] + step, motion[2:4]))
+    return step * part_that_closes(ROOM, motion, after, c, model.bearing.length)
+
+
+def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
+    """Part of a step between two motions that closes a share of the film of the rigid surfaces, 1 if none does.
+
+    With the ends of the journal's axis at p, moved by d, and the smallest gap g = c - max |p|, the part s of the step
+    holds ``|p + s d| <= c - (1 - share) g``.
+    """
+    (x, y, bx, by), (to_x, to_y, to_bx, to_by), part = before[:4].tolist(), after[:4].tolist(), 1.0
+    ends = [(x + z * bx, y + z * by, to_x + z * to_bx, to_y + z * to_by) for z in (-0.5 * length, 0.5 * length)]
+    farthest = clearance - (1.0 - share) * (clearance - max(math.hypot(px, py) for px, py, _, _ in ends))
+    for px, py, to_px, to_py in ends:
+        dx, dy = to_px - px, to_py - py
+        along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest**2 - px * px - py * py
+        # not true for what is not finite; a gap that is closed limits nothing
+        if 2.0 * along + square > rest >= 0.0:
+            part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
+    return part
 
 
 def limited_shift(faces: ThrustEvaluation, step: float) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
-from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, NEARBY_ROUNDS, ROUNDS, Balance, Place
+from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, PATIENCE, ROUNDS, Balance, Place
 from exudyn_ehd.status import FilmError
 
 # Eccentricity ratio in the direction of the load of the second start of damped steps: inside, where neither a gap is
@@ -17,8 +17,6 @@ from exudyn_ehd.status import FilmError
 INSIDE = 0.3
 # Continuation from small loads: first and smallest step, shares of the load.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
-# Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
-FORCE_ROUNDING = 1e-16
 
 
 class LoadSearch(Balance):
@@ -59,7 +57,8 @@ class LoadSearch(Balance):
 
     def tolerance(self, motion: np.ndarray) -> float:
         """Share of the load that may be left of it at a motion."""
-        return max(LOAD_TOLERANCE, FORCE_ROUNDING * self.model.bearing.reference_force(motion[8]) / self.size)
+        # rounding of the film's force, which a tiny load can't fall below
+        return max(LOAD_TOLERANCE, np.finfo(float).eps * self.model.bearing.reference_force(motion[8]) / self.size)
 
     def attempt(
         self, motion: np.ndarray, temperature: np.ndarray, resistance: float = 0.0, rounds: int = ROUNDS
@@ -90,8 +89,8 @@ class LoadSearch(Balance):
         def reach(share: float, here: Place | None, _: bool) -> Place | None:
             self.share = share
             if here is None:
-                return self.attempt(first, self.temperature_of(None), rounds=NEARBY_ROUNDS)
-            return self.attempt(here.motion, here.temperature, rounds=NEARBY_ROUNDS)
+                return self.attempt(first, self.temperature_of(None), rounds=PATIENCE)
+            return self.attempt(here.motion, here.temperature, rounds=PATIENCE)
 
         share, found = continued(reach, FIRST_SHARE, SMALLEST_SHARE)
         self.share = 1.0

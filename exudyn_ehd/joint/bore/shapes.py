@@ -32,7 +32,6 @@ from __future__ import annotations
 
 import abc
 from math import ceil
-from typing import Protocol
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
@@ -40,14 +39,15 @@ from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.solid.bush_modes import BoreModes
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.journal.harmonics import POINTS, WEIGHTS
 from exudyn_ehd.solid.journal.modes import JournalModes
 from exudyn_ehd.solid.unrolled import Surface, directed
+from exudyn_ehd.status import ROUNDING, SMALL
 
 # Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.
 STENCIL = 4
-GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
-# Share of an interval that is too short for a panel; round-off of lengths, and of values of order one.
-TOUCHING, ROUNDING, SMALLEST = 1e-3, 1e-9, 1e-14
+# Share of an interval that is too short for a panel; round-off of values of order one.
+TOUCHING, SMALLEST = 1e-3, 1e-14
 LINEAR = 0.03
 # Distance, as a share of half the length, within which an edge lies on the film's end.
 RIM = 1e-4
@@ -55,26 +55,7 @@ RIM = 1e-4
 LARGEST_BLOCK = 2e7
 
 
-class Faces(Protocol):
-    """Faces of a bore."""
-
-    @property
-    def cuts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Angles [rad] from 0 to 2 pi, and places z [m], ascending, at which they meet."""
-
-    @property
-    def rims(self) -> np.ndarray:
-        """Edges at which they end: middle and half of their angle [rad], lowest and highest z [m], (r, 4)."""
-
-    @property
-    def count(self) -> int:
-        """Number of faces."""
-
-    def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
-        """Values at points (p,) from values at the bore's nodes."""
-
-
-def vertex_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
+def vertex_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
     """S (n m, nodes) of a bore for an (n, m) film grid, without directions; rows add up to one."""
     z, along, _ = _along(grid, faces.cuts[1] / grid.reference_length)
     theta, around = _around(grid, faces.cuts[0])
@@ -91,7 +72,7 @@ def vertex_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
     return _pruned(sound + own @ _values(faces, grid, grid.x, grid.z, places))
 
 
-def end_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
+def end_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
     """Return S (2 n, nodes) of the loads ``int p N dA`` of p = (1 - zeta) / 2 and (1 + zeta) / 2, zeta = 2 z / L.
 
     Rows follow the n lines of vertices one after the other. They are divided by the integral of p, half the length.
@@ -121,7 +102,7 @@ def _end_courses(z: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 
 def _values(
-    faces: Faces, grid: FilmGrid, theta: np.ndarray, z: np.ndarray, chosen: np.ndarray | None = None
+    faces: Surface, grid: FilmGrid, theta: np.ndarray, z: np.ndarray, chosen: np.ndarray | None = None
 ) -> csr_matrix:
     """Values (p, nodes) at points theta x z, scaled z, or at those with the flat numbers ``chosen``."""
     at = np.arange(theta.size * z.size) if chosen is None else chosen
@@ -137,7 +118,7 @@ def _pruned(matrix: csr_matrix) -> csr_matrix:
     return matrix
 
 
-def _near_rims(faces: Faces, grid: FilmGrid) -> np.ndarray:
+def _near_rims(faces: Surface, grid: FilmGrid) -> np.ndarray:
     """Vertices (n m,) that share an interval of their interpolation with an edge at which faces end.
 
     There a bore may be torn. Edges on the ends of the film or beyond do not count.
@@ -160,7 +141,7 @@ def _panels(start: float, width: float, cuts: np.ndarray) -> tuple[np.ndarray, n
     inside = (cuts - start) / width
     edges = np.concatenate(([0.0], inside[(inside > TOUCHING) & (inside < 1.0 - TOUCHING)], [1.0]))
     size = np.diff(edges)[:, None]
-    return (edges[:-1, None] + 0.5 * size * (1.0 + GAUSS)).ravel(), (0.5 * size * WEIGHTS).ravel()
+    return (edges[:-1, None] + 0.5 * size * (1.0 + POINTS)).ravel(), (0.5 * size * WEIGHTS).ravel()
 
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -252,10 +233,6 @@ def _with_moments(
     amount = np.linalg.lstsq(matrix, lack, rcond=1e-10)[0].reshape(changes.shape[:2])
     out: np.ndarray = L + np.einsum("p,pc,pcm->pm", 1.0 / root, amount, changes)
     return out
-
-
-# Mean displacement of a mode around the bore, over its largest radial one, that counts as rounding.
-TURNED = 1e-6
 
 
 class Bore(abc.ABC):
@@ -356,7 +333,7 @@ class ModalBore(Bore):
         super().__init__(grid, whole, 0 if modes is None else modes.count)
         if isinstance(modes, BoreModes):
             turned = modes.twist(2.0 * float(grid.z[-1]) * grid.reference_length)
-            if np.abs(turned).max() * grid.reference_length > TURNED:
+            if np.abs(turned).max() * grid.reference_length > SMALL:
                 self.twist = np.concatenate((turned, np.zeros(self.size - self.own)))
 
     def end_shapes(self) -> np.ndarray:

@@ -18,18 +18,18 @@ from numpy.linalg import LinAlgError
 from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.joint.bore.equilibrium import Elasticity, FilmOnBore, Newton, NodalEvaluation
+from exudyn_ehd.joint.bore.equilibrium import SETTLING_TOLERANCE, Elasticity, FilmOnBore, Newton, NodalEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.solid.linear import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import Status
 
-# Residual over the film's forces that counts as balanced, and that counts so if round-off lets it fall no more.
-TOLERANCE, ROUNDING = 1e-11, 1e-8
+# Residual over the film's forces that counts as balanced if round-off lets it fall no more.
+ROUNDING = 1e-8
 # Largest ratio of successive residuals of the corrections, and those up to which their K serves a search and a tangent.
 SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
-# Corrections by one K; states at which the solid is made linear in a search, and parts of a step that lead to one.
-CORRECTIONS, LINEARISATIONS, HALVINGS = 40, 40, 8
+# Corrections by one K, or states at which the solid is made linear in a search, and parts of a step that lead to one.
+CORRECTIONS, HALVINGS = 40, 8
 SMALLEST_PART = 0.05
 # Unit loads that the solid answers at a time.
 COLUMNS = 256
@@ -100,14 +100,8 @@ class SolidElasticity(Elasticity):
         if self._factor is None:
             self._renew()
         last, pose, rest = self.displacements, self._pose, np.zeros_like(self.displacements)
-        found = self._balance(model, motion, film, start)
+        found = self._approach(model, motion, film, start)
         if found is None and last.any():
-            self._return(last)
-            found = self._approach(model, motion, film, start)
-        if found is None and last.any():
-            self._return(rest)
-            found = self._balance(model, motion, film, np.zeros_like(start))
-        if found is None and (self.failure or not last.any()):
             self._return(rest)
             self._pose = np.zeros(4)
             found = self._approach(model, motion, film, np.zeros_like(start))
@@ -121,10 +115,10 @@ class SolidElasticity(Elasticity):
     def _approach(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
-        """Find the balance by continuation of the pose, from that of the present displacements."""
-        reached, part = 0.0, 0.5
+        """Find the balance at once, else by continuation of the pose, from that of the present displacements."""
+        reached, part = 0.0, 1.0
         between = motion.copy()
-        while part > SMALLEST_PART and self._linearised < LINEARISATIONS:
+        while part > SMALLEST_PART and self._linearised < CORRECTIONS:
             target, before = min(1.0, reached + part), self.displacements
             between[:4] = (1.0 - target) * self._pose + target * motion[:4]
             near = self._balance(model, between, film, start)
@@ -152,7 +146,7 @@ class SolidElasticity(Elasticity):
                     if balanced is not None:
                         self.failure = self.solid.inversion(self.displacements)
                         return None if self.failure else balanced
-                if self._linearised >= LINEARISATIONS:
+                if self._linearised >= CORRECTIONS:
                     break
                 self._renew()
                 start = self._coordinates(self.displacements)
@@ -199,7 +193,7 @@ class SolidElasticity(Elasticity):
         error, last = float(np.linalg.norm(lack)), np.inf
         for _ in range(CORRECTIONS):
             rounded = error <= ROUNDING * size
-            if error <= TOLERANCE * size or (rounded and error > 0.5 * last):
+            if error <= SETTLING_TOLERANCE * size or (rounded and error > 0.5 * last):
                 return evaluation
             if not rounded and error > SLOWEST * last:
                 break

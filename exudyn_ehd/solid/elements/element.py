@@ -91,8 +91,8 @@ class Element(Cell):
     ----------
     name : str
         In messages, in the plural.
-    abaqus : tuple of str
-        Types of Abaqus with these nodes in this order.
+    abaqus : str
+        Type of Abaqus with these nodes in this order.
     meshio : str
         Its name in meshio and VTK.
     fem : str
@@ -116,7 +116,7 @@ class Element(Cell):
     """
 
     name: str
-    abaqus: tuple[str, ...]
+    abaqus: str
     meshio: str
     fem: str
     edges: np.ndarray

@@ -148,7 +148,7 @@ def hex_shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 HEX20 = Element(
     name="20-node hexahedra",
-    abaqus=("C3D20", "C3D20R", "C3D20H", "C3D20RH"),
+    abaqus="C3D20",
     meshio="hexahedron20",
     fem="Hex20",
     nodes=HEX_NODES,
@@ -204,7 +204,7 @@ TET_NODES = np.concatenate([_CORNERS, 0.5 * (_CORNERS[TET_EDGES[:, 0]] + _CORNER
 
 TET10 = Element(
     name="10-node tetrahedra",
-    abaqus=("C3D10", "C3D10H", "C3D10HS", "C3D10I", "C3D10M", "C3D10MH"),
+    abaqus="C3D10",
     meshio="tetra10",
     fem="Tet10",
     nodes=TET_NODES,

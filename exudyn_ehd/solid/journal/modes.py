@@ -188,8 +188,6 @@ FORMAT = 4
 FINE, COARSE, COARSE_FROM = (8, 16, films.LARGEST_WAVE), (5, 8, 20), 0.1
 # Growth of the elements inwards and away from the film.
 GROWTH_INWARDS, GROWTH_OUTWARDS = 1.25, 1.8
-# Angles at which sampled films are taken apart into waves.
-ANGLES = 256
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -243,7 +241,7 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
     InputError
         If the tolerance takes more waves than the search allows.
     """
-    described = (FORMAT, journal.material.lame, journal.span, repr(journal.held), journal.inner_radius)
+    described = (FORMAT, journal.material.lame, journal.span, journal.held, journal.inner_radius)
     choice = (
         journal.tolerance,
         journal.tilted,
@@ -257,7 +255,7 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
     )
     data = cached_arrays(
         "journal_modes",
-        repr((*described, *choice, ANGLES, films.FORMAT)).encode(),
+        (*described, *choice, films.FIT, films.FORMAT),
         lambda: _Reduction(journal, radius, length).modes(),
     )
     error = float(data.pop("error"))
@@ -367,9 +365,11 @@ class _Reduction:
 
     def _measuring(self) -> np.ndarray:
         """Parts (waves, 2 t, elements, 3) of the t measuring films with cos(n theta) and sin(n theta)."""
-        theta, zeta = 2.0 * np.pi * np.arange(ANGLES) / ANGLES, np.where(self.loaded, self.zeta, 0.0)
+        # angles at which sampled films are taken apart into waves
+        angles = films.FIT[0]
+        theta, zeta = 2.0 * np.pi * np.arange(angles) / angles, np.where(self.loaded, self.zeta, 0.0)
         pressures = films.measuring_pressures(theta, zeta[..., None], self.journal.tilted)
-        parts = np.fft.rfft(pressures)[..., : self.waves + 1] * (2.0 / ANGLES) * self.loaded[..., None]
+        parts = np.fft.rfft(pressures)[..., : self.waves + 1] * (2.0 / angles) * self.loaded[..., None]
         parts[..., 0] *= 0.5
         return np.moveaxis(np.concatenate((parts.real, -parts.imag)), -1, 0)
 

@@ -24,14 +24,14 @@ from functools import cached_property
 
 import numpy as np
 
-from exudyn_ehd.solid.fe_bore import AROUND, FESurface, ReducedBore
+from exudyn_ehd.solid.fe_bore import FESurface, ReducedBore
 from exudyn_ehd.solid.journal.harmonics import with_middles
 from exudyn_ehd.solid.journal.modes import JournalModes
-from exudyn_ehd.status import InputError
+from exudyn_ehd.solid.pressure_modes import AROUND
+from exudyn_ehd.status import ROUNDING, InputError
 
-# Waves around, of AROUND angles; share of a mode's largest residual displacement on the film; share of its whole
-# displacement there below which the residual is rounding of the rigid fit.
-LARGEST_WAVE, NEGLIGIBLE, ROUNDING = 36, 2e-4, 1e-9
+# Waves around, of AROUND angles; share of a mode's largest residual displacement on the film.
+LARGEST_WAVE, NEGLIGIBLE = AROUND // 4, 2e-4
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,6 +107,7 @@ class TurningJournal:
         z, theta = with_middles(edges), 2.0 * np.pi * np.arange(AROUND) / AROUND
         # inward displacement opens the gap
         inward = -self.surface.radial(theta, z)
+        # below it the residual is rounding of the rigid fit
         floor = ROUNDING * np.abs(self.surface.displacements).max(axis=(0, 1))
         size = np.maximum(np.abs(inward).max(axis=(0, 1)), np.maximum(floor, np.finfo(float).tiny))
         spectrum = np.fft.rfft(inward, axis=0)[: LARGEST_WAVE + 1] * (2.0 / AROUND)

@@ -11,6 +11,7 @@ import scenes
 import toy
 
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics.relative import motion_of
 from exudyn_ehd.coupling.kinematics.sides import derivatives_between, motion_between
 
 ALL = [pair for pair in itertools.product(("ground", "EP", "Rxyz", "RotVec"), repeat=2) if pair != ("ground",) * 2]
@@ -76,12 +77,6 @@ def moved(frame, matrix, shift, spin, velocity):
     out[:, 5] = matrix @ frame[:, 5] + spin
     out[:, 4] = matrix @ frame[:, 4] + velocity + np.cross(spin, out[:, 3] - shift)
     return out
-
-
-def motion_of(housing, journal):
-    motion = np.empty(10)
-    relative.relative_motion(housing, journal, motion)
-    return motion
 
 
 def test_motion_does_not_see_a_superposed_rigid_motion():
@@ -157,8 +152,7 @@ def test_pair_of_nodes_in_one_call_is_what_its_kernels_are_one_by_one(housing, j
     motion = motion_between(mbs, sides, q, q_t, None)
     wrench, tangent = rng.normal(size=6), rng.normal(size=(6, 10))
     together = derivatives_between(mbs, sides, (q, q_t), wrench, tangent)
-    force = np.empty(q.size)
-    relative.wrench_force(*(s.frame for s in sides), *(s.jac for s in sides), wrench, force)
+    force = relative.wrench_map(*(s.frame for s in sides), *(s.jac for s in sides)) @ wrench
     n, (a, b) = sides[0].size, (copy.deepcopy(side) for side in sides)
     loads, own, (stiffness, damping) = np.empty((4, 3)), np.empty(q.size), np.zeros((2, q.size, q.size))
     for side, part in ((a, slice(n)), (b, slice(n, None))):

@@ -11,7 +11,7 @@ from rotor import CLEARANCE, LENGTH, RADIUS, rotor, run, steel_bush
 from springs import joined
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.element.display import ring_triangles
+from exudyn_ehd.coupling.element.display import GREY, ring_triangles
 
 TURN = scenes.rotation([0.4, -0.3, 0.5])
 
@@ -39,7 +39,7 @@ def test_film_is_a_layer_between_journal_and_bore_in_a_ring(share):
     (points, colors), (edges, _) = drawn(mbs, joint.objectNumber)
     film = joint.film()
     n, m = film.pressure.shape
-    ring = np.isclose(colors[:, 0, 3], 0.2)
+    ring = np.isclose(colors[:, 0, 3], GREY[3])
     assert edges.size > 0 and ring.sum() == 6 * n and (~ring).sum() == 2 * n * (m + 1)
     radius = (RADIUS + factor * CLEARANCE) / np.cos(np.pi / n)
     r, z = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
@@ -164,7 +164,7 @@ def test_modal_bush_is_drawn_around_the_film():
     drawn(mbs, joint.objectNumber)
     run(mbs, steps=4)
     (points, colors), _ = drawn(mbs, joint.objectNumber)
-    bush = np.isclose(colors[:, 0, 3], 0.35)
+    bush = np.isclose(colors[:, 0, 3], GREY[3])
     mesh = joint.element.model.bore.modes.mesh
     assert bush.sum() == 6 * len(mesh.boundary)
     r = np.hypot(points[bush][..., 0], points[bush][..., 1])

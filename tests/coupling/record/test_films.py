@@ -11,7 +11,7 @@ from PIL import Image
 from rotor import CLEARANCE, LENGTH, RADIUS, rotor, run, steel_bush
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.record.films import FilmRecorder
+from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.pictures import animation
 from exudyn_ehd.status import InputError

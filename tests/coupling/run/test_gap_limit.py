@@ -10,10 +10,15 @@ import scenes
 from turning import spinning_ring
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.kinematics.relative import BoreGap
 from exudyn_ehd.coupling.run import newton_limits
 from exudyn_ehd.coupling.run.newton_limits import SHARE, SMALLEST_GAP_SHARE, allowed_part
 
 C, LENGTH, CYCLE = 25e-6, 0.02, 0.02
+BEARING = ehd.JournalBearing(
+    journal_radius=0.01, length=LENGTH, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.01)
+)
+BORE = BoreGap(BEARING)
 
 
 def smallest_gap(motion):
@@ -31,7 +36,7 @@ def test_part_of_a_step():
         before[:4] = rng.normal(size=4) * scale * rng.choice([[1, 1, 0, 0], [1, 1, 1, 1]])
         before[:4] *= C * rng.uniform(0.0, 0.9999) / (C - smallest_gap(before))
         after[:4] = before[:4] + rng.normal(size=4) * scale * C * 10.0 ** rng.uniform(-3.0, 2.0)
-        gap, part = smallest_gap(before), allowed_part(before, after, C, LENGTH)
+        gap, part = smallest_gap(before), allowed_part(BORE, before, after)
         if smallest_gap(after) >= (1.0 - SHARE) * gap or gap <= SMALLEST_GAP_SHARE * C:
             assert part == 1.0
             continue
@@ -44,11 +49,7 @@ def test_part_of_a_step():
 class Axis:
     """Film of a journal whose first two coordinates are its place."""
 
-    model = SimpleNamespace(
-        bearing=ehd.JournalBearing(
-            journal_radius=0.01, length=LENGTH, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.01)
-        )
-    )
+    model = SimpleNamespace(bearing=BEARING)
 
     def __init__(self, old, new):
         self.last = SimpleNamespace(bodies=self.of(old), status=None)
@@ -96,8 +97,8 @@ def test_a_journal_of_finite_elements_goes_on_turning_where_newtons_method_diver
 @pytest.mark.parametrize("motion", [np.full(10, np.nan), np.r_[C, np.zeros(9)], np.r_[2.0 * C, np.zeros(9)]])
 def test_nothing_to_keep(motion):
     """Journals on the wall, behind it, or nowhere."""
-    assert allowed_part(motion, np.zeros(10), C, LENGTH) == 1.0
-    assert allowed_part(np.zeros(10), np.full(10, np.nan), C, LENGTH) == 1.0
+    assert allowed_part(BORE, motion, np.zeros(10)) == 1.0
+    assert allowed_part(BORE, np.zeros(10), np.full(10, np.nan)) == 1.0
 
 
 def thrown(planar_rotor, steps):

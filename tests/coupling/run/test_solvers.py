@@ -8,7 +8,7 @@ import scenes
 import toy
 
 from exudyn_ehd.coupling import api
-from exudyn_ehd.coupling.run.newton_limits import ConfigureSolver
+from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.status import InputError
 from tests.sampling import sample
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import block_diag, csc_matrix, random_array
 
-from exudyn_ehd.coupling.bush.linear import LARGEST_REST, SystemFactor
+from exudyn_ehd.coupling.run.sparse import LARGEST_REST, SystemFactor
 
 
 def system(rng, *, coupled, mesh=40, rest=9):
