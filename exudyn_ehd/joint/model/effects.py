@@ -20,6 +20,7 @@ from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.reynolds.links import LinkLaw
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.supply.cuts import SupplyMap
+from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, AverageGap
 from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, LandContact, WallContact
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -41,6 +42,16 @@ from exudyn_ehd.joint.solved_film import ContactFields, Evaluations, FilmParts, 
 def _supply_map(bearing: JournalBearing, grid: FilmGrid) -> SupplyMap | None:
     around = getattr(bearing.film, "circumferential_pressure_flow", True)
     return SupplyMap(bearing.supply, grid, around) if bearing.supply else None
+
+
+def _reservoirs(bearing: JournalBearing, supply: SupplyMap) -> Reservoirs:
+    """Supply areas with a restrictor, whose oil has the viscosity of the supply temperature."""
+    oil, thermal, viscosity = bearing.lubricant, bearing.thermal, bearing.lubricant.viscosity
+    if thermal is not None and oil.temperature_law is not None:
+        viscosity = float(oil.temperature_law.viscosity(thermal.supply_temperature, oil.density))
+    fed = [(area.supply, mask) for area, mask in zip(bearing.supply, supply.masks, strict=True) if area.supply]
+    scale = bearing.radial_clearance * bearing.journal_radius**2
+    return Reservoirs(*zip(*fed, strict=True), (viscosity, oil.density), scale)
 
 
 def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool = False) -> FilmGrid:
@@ -78,6 +89,8 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         if effects.liner is None
         else Liner(next(iter(touching), None), effects.limiter, effects.pressure_law),
     )
+    if supply is not None and any(area.supply is not None for area in bearing.supply):
+        solver.reservoirs = _reservoirs(bearing, supply)
     liner = None if effects.liner is None else solver.elements
     contacts = None
     if touching:

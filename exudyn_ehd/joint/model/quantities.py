@@ -137,8 +137,20 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
     if p.supply is None:
         return np.zeros(0)
     # that of a turning area would change at once where an edge passes a column
-    inflow = p.solver.inflow(ended=not p.supply.rotating)
-    return p.supply.flows(inflow) * flow_scale
+    flows = p.supply.flows(p.solver.inflow(ended=not p.supply.rotating))
+    if p.solver.reservoirs is not None:  # what their balances count
+        flows = np.where(p.supply.fed, p.supply.flows(p.solver.inflow()), flows)
+    return flows * flow_scale
+
+
+def supply_pressures(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure of every area of ``bearing.supply``, Pa, and flow through its restrictor, m3/s, nan without one."""
+    supply, reservoirs = film.parts.supply, film.solver.reservoirs
+    pressures = np.zeros(0) if supply is None else supply.pressures()
+    flows = np.full(pressures.size, np.nan)
+    if supply is not None and reservoirs is not None:
+        pressures[supply.fed], flows[supply.fed] = reservoirs.pressures, reservoirs.flows()
+    return pressures, flows
 
 
 def leakages(film: SolvedFilm) -> tuple[float, float]:
