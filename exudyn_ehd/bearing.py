@@ -24,7 +24,7 @@ from exudyn_ehd.film.models import (
 )
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
+from exudyn_ehd.film.supply.areas import SupplyArea, require_areas, source_pressure
 from exudyn_ehd.film.supply.rows import check_depths, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
@@ -125,7 +125,7 @@ class JournalBearing(Checked):
         Smooth wall that carries load before the gap vanishes; not with ``asperity`` or ``roughness``. None: a
         vanishing gap ends the run with an error, unless there is an ``asperity``.
     supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket, default ()
-        Areas with a prescribed supply pressure; empty: none.
+        Areas with a prescribed supply pressure, or fed through a restrictor; empty: none.
     thermal : LumpedThermal, FilmEnergy or None, default None
         Temperature of the film; needs a lubricant with a ``temperature_law``, such as those of `oil`. None: isothermal,
         at ``lubricant.temperature``.
@@ -256,7 +256,7 @@ class JournalBearing(Checked):
                 "grooves; use inlet=Periodic()."
             )
         check_depths(self.supply, self.radial_clearance)
-        lowest, pc = min(area.pressure for area in self.supply), self.cavitation.cavity_pressure
+        lowest, pc = min(map(source_pressure, self.supply)), self.cavitation.cavity_pressure
         if pc > lowest:
             raise InputError(
                 f"JournalBearing.supply: pressures must not be below {type(self.cavitation).__name__}.cavity_pressure "

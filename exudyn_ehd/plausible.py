@@ -87,6 +87,7 @@ KINDS: dict[str, Kind] = {
     "expansion": Kind("1/K", 0.0, 0.0, 1e-3, 0.1),
     "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
     "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, (("microseconds", 1e-6),)),
+    "flow": Kind("m3/s", 0.0, 0.0, 0.1, 100.0, (("l/min", 1e-3 / 60.0), ("mm3/s", 1e-9))),
     "time": Kind("s", 0.0, 0.0, 1e7, 1e12),
     "rate": Kind("1/s", 0.0, 0.0, 1e7, 1e12),
     "damping time": Kind("s", 0.0, 0.0, 1.0, 1e3),
@@ -132,6 +133,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "CircumferentialGroove.width",
         "Hole.diameter",
         "Pocket.length",
+        "Capillary.length",
+        *(f"{restrictor}.diameter" for restrictor in ("Orifice", "Capillary")),
         *(f"{area}.depth" for area in ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")),
         "EdgeRelief.relief_length",
     ),
@@ -222,6 +225,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "CircumferentialGroove.pressure",
         "Hole.pressure",
         "Pocket.pressure",
+        *(f"{restrictor}.supply_pressure" for restrictor in ("Orifice", "Capillary")),
         "solve_film.boundary",
     ),
     "cavity pressure": (
@@ -245,6 +249,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "expansion": ("Conduction.expansion",),
     "pole": ("VogelTemperature.pole",),
     "relaxation time": ("CarreauShear.relaxation_time",),
+    "flow": ("GivenFlow.flow",),
     "time": (
         "JointHistory.revolutions.period",
         "LubricatedJoint.revolutions.period",

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
+from exudyn_ehd.film.supply.restrictors import GivenFlow
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.annulus import BearingOptions
 from exudyn_ehd.status import InputError
@@ -28,6 +29,7 @@ def check_combinations(bearing: BearingOptions) -> None:
     if bearing["arc"] is not None:
         _check_arc(bearing)
     _check_turbulence(bearing)
+    _check_restrictors(bearing)
     if bearing["thermal"] is not None:
         _check_heat(bearing)
     if bearing["wear"] is not None and bearing["asperity"] is None:
@@ -70,6 +72,26 @@ def _check_arc(bearing: BearingOptions) -> None:
             f"JournalBearing.arc=Arc(...) does not go with JournalBearing.{others[0]}={bearing[others[0]]!r}: the film "
             "of an arc is one of FiniteLength(...) between rigid cylinders of one temperature, fed at its edges; leave "
             "one of the two out."
+        )
+
+
+def _check_restrictors(bearing: BearingOptions) -> None:
+    """Refuse films whose conductances, gaps or density follow a pressure that is itself unknown."""
+    fed = [k for k, area in enumerate(bearing["supply"]) if area.supply is not None]
+    if not fed:
+        return
+    others = [f"Lubricant.{law}" for law in ("density_law", "shear_law") if getattr(bearing["lubricant"], law)]
+    others += [f"JournalBearing.{side}" for side in ("bush", "journal") if bearing[side] is not None]
+    if others:
+        raise InputError(
+            f"JournalBearing.supply[{fed[0]}] with a restrictor does not go with {others[0]}: the pressure of the area "
+            "is unknown, which needs rigid surfaces and an oil whose density and viscosity do not follow pressure or "
+            "shear, but for a pressure_law; give the area a pressure, or leave the other out."
+        )
+    if isinstance(bearing["film"], LongBearing) and any(isinstance(a.supply, GivenFlow) for a in bearing["supply"]):
+        raise InputError(
+            "JournalBearing.supply: GivenFlow(...) does not go with film=LongBearing(...), out of which no oil flows; "
+            "use film=FiniteLength(...)."
         )
 
 

@@ -68,7 +68,8 @@ class FilmAnswers(FilmArrays):
         balances = sum(flow - np.roll(flow, 1, q + 1) for q, flow in enumerate(flows))
         taken = [E - np.roll(E, -1, q + 1) for q in range(2)]
         drawn = sum(slopes[2 * q] * t + np.roll(slopes[2 * q + 1] * t, 1, q + 1) for q, t in enumerate(taken))
-        B, C, E = (np.reshape(x, (len(E), self.area.size)) for x in (balances / self.pressure_scale, drawn, E))
+        B, C, E = (np.reshape(x, (len(E), self.area.size)) for x in (balances, drawn, E))
+        B *= r.transformed()[1][r.live, None] / self.pressure_scale
         weights = r.weights()[:, None]
         of_areas = weights * (E @ B.T) + np.diag(r.by_pressure[r.live])
         return B[:, at], np.ascontiguousarray(weights * C[:, at]), of_areas

@@ -121,7 +121,7 @@ class FilmSolver(FilmAnswers):
         base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
         for _ in range(MOST_BALANCES):
             r.pressures, error = np.maximum(base + change, floor), np.inf
-            for at, p in zip(r.masks, r.pressures, strict=True):
+            for at, p in zip(r.masks, r.transformed()[0], strict=True):
                 self.pressure[at] = p / self.pressure_scale
             status, count = solve()
             steps += count

@@ -244,6 +244,11 @@ def require_areas(supply: object) -> None:
         )
 
 
+def source_pressure(area: SupplyArea) -> float:
+    """Pressure from which an area is fed, Pa; infinite with a `GivenFlow`."""
+    return area.pressure if area.supply is None else getattr(area.supply, "supply_pressure", math.inf)
+
+
 def placed(supply: tuple[SupplyArea, ...], length: float) -> tuple[SupplyArea, ...]:
     """Areas with the lengths that they have in a bearing of this length, m."""
     whole = WHOLE_GROOVE * length

@@ -35,6 +35,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.status import POSITIVE, Checked, require_number
 
 
@@ -151,6 +152,8 @@ class Reservoirs:
         Viscosity, Pa s, and density, kg/m3, of the oil in the restrictors.
     flow_scale : float
         m3/s per scaled flow of the film.
+    law : PressureTransform or None
+        By which the film's unknown follows the pressure; None: it is the pressure.
 
     Attributes
     ----------
@@ -168,13 +171,22 @@ class Reservoirs:
         masks: list[np.ndarray],
         oil: tuple[float, float],
         flow_scale: float,
+        law: PressureTransform | None = None,
     ) -> None:
-        self.masks, self.flow_scale = masks, flow_scale
+        self.masks, self.flow_scale, self.law = masks, flow_scale, law
         self.coefficients = np.array([restrictor.coefficients(*oil) for restrictor in restrictors]).T
         a, _, _, c = self.coefficients
         self.pressures = 0.5 * a * c
         self.live = np.ones(len(masks), dtype=bool)
         self.by_pressure, self.by_flow, self.size = np.zeros((3, len(masks)))
+
+    def transformed(self) -> tuple[np.ndarray, np.ndarray]:
+        """Pressures (k,) as the film's unknown, Pa, and their derivatives to the pressures."""
+        if self.law is None:
+            return self.pressures, np.ones(self.pressures.size)
+        q, (ratio, rest) = self.law.transform(self.pressures)[None], np.empty((2, 1, self.pressures.size))
+        self.law.inverse(q, np.empty(q.shape), ratio, rest)
+        return q[0], 1.0 / ratio[0]
 
     def fields(self, shape: tuple[int, int]) -> np.ndarray:
         """Fields (., n, m) of the areas with a balance, one at their vertices."""
@@ -191,13 +203,13 @@ class Reservoirs:
         ``inflow`` (n, m): scaled, from the vertices into the film; ``cavity_pressure`` in Pa.
         """
         (a, b, k, c), p = self.coefficients, self.pressures
-        flows, sizes = (
-            self.flow_scale * np.array([(x.sum(), np.abs(x).sum()) for x in (inflow[at] for at in self.masks)]).T
-        )
+        flows, sizes = np.zeros((2, p.size))
+        for q, at in enumerate(self.masks):
+            flows[q], sizes[q] = self.flow_scale * inflow[at].sum(), self.flow_scale * np.abs(inflow[at]).sum()
         self.by_pressure, self.by_flow = a, b + 2.0 * k * np.abs(flows)
         g = a * p + (b + k * np.abs(flows)) * flows - c
         self.size = np.abs(a * p) + (b + k * np.abs(flows)) * sizes + np.abs(c) + 1e-300
-        self.live = (p > cavity_pressure) | (g < 0.0)
+        self.live = ((p > cavity_pressure) | (g < 0.0)) & [bool(at.any()) for at in self.masks]
         balance: np.ndarray = g[self.live]
         return balance
 
@@ -205,6 +217,5 @@ class Reservoirs:
         """Flow through every restrictor (k,), m3/s, at the present pressures."""
         a, b, k, c = self.coefficients
         left = c - a * self.pressures
-        return np.where(
-            b > 0.0, left / np.maximum(b, 1e-300), np.sign(left) * np.sqrt(np.abs(left) / np.maximum(k, 1e-300))
-        )
+        through = np.sign(left) * np.sqrt(np.abs(left) / np.maximum(k, 1e-300))
+        return np.where(b > 0.0, left / np.maximum(b, 1e-300), through)

@@ -313,8 +313,8 @@ def _check_pair(i: int, first: SupplyArea, k: int, second: SupplyArea, radius: f
     if math.hypot(apart, along) <= r1 + r2:
         if first.supply is not None or second.supply is not None:
             raise InputError(
-                f"JournalBearing.supply[{i}] and [{k}] overlap, and one has a restrictor, {first.supply or second.supply!r}; "
-                "make one area of both, or move them apart."
+                f"JournalBearing.supply[{i}] and [{k}] overlap, and one of them has a restrictor, "
+                f"{first.supply or second.supply!r}; make one area of both, or move them apart."
             )
         if first.pressure != second.pressure:
             raise InputError(

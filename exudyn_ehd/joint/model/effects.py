@@ -44,14 +44,15 @@ def _supply_map(bearing: JournalBearing, grid: FilmGrid) -> SupplyMap | None:
     return SupplyMap(bearing.supply, grid, around) if bearing.supply else None
 
 
-def _reservoirs(bearing: JournalBearing, supply: SupplyMap) -> Reservoirs:
+def _reservoirs(bearing: JournalBearing, supply: SupplyMap, effects: Effects) -> Reservoirs:
     """Supply areas with a restrictor, whose oil has the viscosity of the supply temperature."""
     oil, thermal, viscosity = bearing.lubricant, bearing.thermal, bearing.lubricant.viscosity
     if thermal is not None and oil.temperature_law is not None:
         viscosity = float(oil.temperature_law.viscosity(thermal.supply_temperature, oil.density))
-    fed = [(area.supply, mask) for area, mask in zip(bearing.supply, supply.masks, strict=True) if area.supply]
     scale = bearing.radial_clearance * bearing.journal_radius**2
-    return Reservoirs(*zip(*fed, strict=True), (viscosity, oil.density), scale)
+    masks = [mask for mask, fed in zip(supply.masks, supply.fed, strict=True) if fed]
+    restrictors = [area.supply for area in bearing.supply if area.supply is not None]
+    return Reservoirs(restrictors, masks, (viscosity, oil.density), scale, effects.pressure_law)
 
 
 def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool = False) -> FilmGrid:
@@ -90,7 +91,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         else Liner(next(iter(touching), None), effects.limiter, effects.pressure_law),
     )
     if supply is not None and any(area.supply is not None for area in bearing.supply):
-        solver.reservoirs = _reservoirs(bearing, supply)
+        solver.reservoirs = _reservoirs(bearing, supply, effects)
     liner = None if effects.liner is None else solver.elements
     contacts = None
     if touching:

@@ -244,6 +244,8 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     whole, fields = np.zeros((own, g.area.size)), film.solver.reservoirs.fields(g.shape)
     load_adjoint_rhs(np.arange(g.area.size), g.area.size, g.weight, *directions, p.solver.ones > 0.0, whole)
     whole[own - 2 * extra :] = slopes.reshape(2, -1)[: 2 * extra]
+    if film.oil.ratio_q is not None and film.oil.P_q is not None:  # the shear of its land's share
+        whole[4] = (g.shear_weight / p.solver.H * film.oil.ratio_q / film.oil.P_q).ravel()
     return np.hstack((rows, whole @ fields.reshape(len(fields), -1).T / film.scales.pressure))
 
 
