@@ -221,12 +221,14 @@ class FilmAnswers(FilmArrays):
         fx, fz = (0.5 * f * (rho + np.roll(rho, -1, axis)) for axis, f in enumerate((terms.fx, terms.fz)))
         return terms._replace(fx=fx, fz=fz), terms.area * terms.grow * rho
 
-    def inflow(self, ended: bool = False) -> np.ndarray:
+    def inflow(self, ended: bool = False, linear: bool = False) -> np.ndarray:
         """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
 
-        ``ended``: films next to a cavity end within a link.
+        ``ended``: films next to a cavity end within a link. ``linear``: pressures that are cut off count as they were
+        before, beside vertices with the cavity pressure too.
         """
-        s, conserves_mass, (P, _) = self.system, self.closure.conserves_mass, self.flow_pressures()
+        s, conserves_mass = self.system, self.closure.conserves_mass
+        P = s.linear_pressure if linear else self.flow_pressures()[0]
         balance = np.empty(self.grid.shape)
         if conserves_mass or self.law is not None:
             fill, rho = s.fill if conserves_mass else None, None if self.law is None else self.rho

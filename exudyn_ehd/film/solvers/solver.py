@@ -119,6 +119,7 @@ class FilmSolver(FilmAnswers):
         """Solve the film with its reservoirs by Newton's method in their pressures, none of which is below ``floor``,
         Pa; steps are halved where the largest balance grows."""
         base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
+        weights = np.zeros(len(r.masks))
         for _ in range(MOST_BALANCES):
             r.pressures, error = np.maximum(base + change, floor), np.inf
             for at, p in zip(r.masks, r.transformed()[0], strict=True):
@@ -126,9 +127,10 @@ class FilmSolver(FilmAnswers):
             status, count = solve()
             steps += count
             if status is Status.CONVERGED:
-                g = r.balance(self.inflow(), floor)
-                error = float(np.max(np.abs(g) / r.size[r.live], initial=0.0))
-                if error <= EVEN or (error <= ROUNDED and error > 0.5 * least):
+                g = r.balance(self.inflow(linear=True), floor)
+                weights = 1.0 / r.size if least == np.inf else weights
+                error, left = (float(np.max(np.abs(g) * w[r.live], initial=0.0)) for w in (weights, 1.0 / r.size))
+                if left <= EVEN or (left <= ROUNDED and error > 0.5 * least):
                     return status, steps
             if error < least:
                 base, change, least = r.pressures, np.zeros(len(r.masks)), error
