@@ -58,7 +58,7 @@ class Orifice(Checked):
     >>> feed = ehd.Orifice(diameter=3e-4, supply_pressure=4e6)
     >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=feed)
     >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
-    >>> (1e-6 * film.supply_pressures).round(2), (6e7 * film.restrictor_flows).round(1)  # MPa, cm3/min
+    >>> (1e-6 * film.pocket_pressures).round(2), (6e7 * film.restrictor_flows).round(1)  # MPa, cm3/min
     """
 
     diameter: float
@@ -97,7 +97,7 @@ class Capillary(Checked):
     >>> feed = ehd.Capillary(diameter=5e-4, length=0.06, supply_pressure=4e6)
     >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=feed)
     >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
-    >>> (1e-6 * film.supply_pressures).round(2)  # MPa
+    >>> (1e-6 * film.pocket_pressures).round(2)  # MPa
     """
 
     diameter: float
@@ -125,7 +125,7 @@ class GivenFlow(Checked):
     >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
     >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=ehd.GivenFlow(flow=5e-7))
     >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
-    >>> (1e-6 * film.supply_pressures).round(2)  # MPa
+    >>> (1e-6 * film.pocket_pressures).round(2)  # MPa
     """
 
     flow: float

@@ -20,7 +20,7 @@ from exudyn_ehd.joint.balance.newton import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
-from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows, supply_pressures
+from exudyn_ehd.joint.model.quantities import pocket_pressures, refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
@@ -185,7 +185,7 @@ class SteadyResult(FilmRecord, FilmPictures):
     power_loss, leakage, contact_load : float
         Power loss, W; oil out of both ends together, m3/s; size of the contact's force, N. Where contact acts around
         an arc this vector sum is less than the integral of the contact pressure (3 % over 0.8 rad).
-    supply_pressures, restrictor_flows : (k,) arrays
+    pocket_pressures, restrictor_flows : (k,) arrays
         Pressure of every area of ``bearing.supply``, Pa; flow through its restrictor, m3/s, nan without one.
     supply_flows : (k,) array
         Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With ``bearing.arc``: oil that enters at
@@ -236,7 +236,7 @@ class SteadyResult(FilmRecord, FilmPictures):
     power_loss: float
     leakage: float
     contact_load: float
-    supply_pressures: np.ndarray
+    pocket_pressures: np.ndarray
     restrictor_flows: np.ndarray
     supply_flows: np.ndarray
     contact_torque: float
@@ -424,7 +424,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     refuse_pressed_through(model.bearing, q["minimum_gap"], where)
     warn_of_overload(model.bearing, peak, force, where)
     warn_of_grid(film, where)
-    reference, (pressures, flows) = model.bearing.reference_force(motion[8]), supply_pressures(film)
+    reference, (pressures, flows) = model.bearing.reference_force(motion[8]), pocket_pressures(film)
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
@@ -440,7 +440,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         power_loss=q["power_loss"],
         leakage=q["leakage"],
         contact_load=q["contact_load"],
-        supply_pressures=pressures,
+        pocket_pressures=pressures,
         restrictor_flows=flows,
         supply_flows=supply_flows(film),
         contact_torque=q["contact_torque"],
