@@ -1,12 +1,13 @@
 """Hydrostatic spindle: four pockets behind capillaries or orifices.
 
-A spindle of 60 mm diameter runs at 3000 rpm in a bearing of 60 mm length (radial clearance 30 um, 8 mPa s). Four pockets
-of 66 degrees x 40 mm are fed from 4 MPa. Where the journal comes closer, less oil leaves a pocket, less is lost in its
-restrictor, and its pressure rises: that carries the load, at rest too. Three questions are asked:
+A spindle of 60 mm diameter runs at 3000 rpm in a bearing of 60 mm length (radial clearance 30 um, 8 mPa s). Four
+pockets of 66 degrees x 40 mm are fed from 4 MPa. Where the journal comes closer, less oil leaves a pocket, less
+pressure is lost in its restrictor, and its pressure rises: that carries the load, at rest too. Three questions:
 
-1. Which restrictor makes the spindle stiffest? The stiffness of the centred spindle, all but at rest, over the pressure ratio p /
-   p_s, by restrictors of many sizes. Without flow from pocket to pocket the best ratio is 0.5 with capillaries and
-   2 - sqrt(2) = 0.59 with orifices (W. B. Rowe, Hydrostatic, Aerostatic and Hybrid Bearing Design, 2012).
+1. Which restrictor makes the spindle stiffest? The stiffness of the centred spindle, all but at rest, over the pressure
+   ratio p / p_s, by restrictors of many sizes. Without flow from pocket to pocket the best ratio is 0.5 with
+   capillaries and 2 - sqrt(2) = 0.59 with orifices (W. B. Rowe, Hydrostatic, Aerostatic and Hybrid Bearing Design,
+   2012).
 2. How far does the turning spindle move under a load? Restrictors are those with a pressure ratio of 0.5.
 3. What does a cutting force of 2 kN do that begins at once? A run in Exudyn, against the equilibrium.
 

@@ -15,7 +15,7 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.samples import FilmState
-from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload
+from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload, warn_of_starved
 from exudyn_ehd.joint.balance.newton import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
@@ -424,6 +424,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     refuse_pressed_through(model.bearing, q["minimum_gap"], where)
     warn_of_overload(model.bearing, peak, force, where)
     warn_of_grid(film, where)
+    warn_of_starved(model.bearing, film.solver.reservoirs, where)
     reference, (pressures, flows) = model.bearing.reference_force(motion[8]), pocket_pressures(film)
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:
