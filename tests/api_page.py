@@ -61,7 +61,7 @@ GROUPS = (
         "Oil supply and end faces",
         "Arguments `supply` and `thrust` of `JournalBearing`; "
         "[thrust faces in a model](coupling/README.md#thrust-faces).",
-        "AxialGroove CircumferentialGroove Hole Pocket ThrustFaces TaperLand StepLand",
+        "AxialGroove CircumferentialGroove Hole Pocket Orifice Capillary GivenFlow ThrustFaces TaperLand StepLand",
     ),
     Group(
         "Surfaces: shape, roughness, contact, wear",

@@ -59,6 +59,7 @@ class Orifice(Checked):
     >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=feed)
     >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
     >>> (1e-6 * film.pocket_pressures).round(2), (6e7 * film.restrictor_flows).round(1)  # MPa, cm3/min
+    (array([2.24]), array([162.]))
     """
 
     diameter: float
@@ -98,6 +99,7 @@ class Capillary(Checked):
     >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=feed)
     >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
     >>> (1e-6 * film.pocket_pressures).round(2)  # MPa
+    array([2.06])
     """
 
     diameter: float
@@ -126,6 +128,7 @@ class GivenFlow(Checked):
     >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=ehd.GivenFlow(flow=5e-7))
     >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
     >>> (1e-6 * film.pocket_pressures).round(2)  # MPa
+    array([0.42])
     """
 
     flow: float
