@@ -88,6 +88,7 @@ KINDS: dict[str, Kind] = {
     "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
     "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, (("microseconds", 1e-6),)),
     "flow": Kind("m3/s", 0.0, 0.0, 0.1, 100.0, (("l/min", 1e-3 / 60.0), ("mm3/s", 1e-9))),
+    "seal": Kind("m3/(s Pa m)", 0.0, 0.0, 1.0, 1e9),
     "time": Kind("s", 0.0, 0.0, 1e7, 1e12),
     "rate": Kind("1/s", 0.0, 0.0, 1e7, 1e12),
     "damping time": Kind("s", 0.0, 0.0, 1.0, 1e3),
@@ -250,6 +251,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "pole": ("VogelTemperature.pole",),
     "relaxation time": ("CarreauShear.relaxation_time",),
     "flow": ("GivenFlow.flow",),
+    "seal": ("EndSeal.conductance",),
     "time": (
         "JointHistory.revolutions.period",
         "LubricatedJoint.revolutions.period",

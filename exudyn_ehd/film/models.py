@@ -13,7 +13,7 @@ from functools import partial
 from typing import ClassVar
 
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.grid import STRETCH, Arc, FilmGrid, arc_grid, bearing_grid, long_bearing_grid
+from exudyn_ehd.film.grid import STRETCH, Arc, FilmGrid, arc_grid, bearing_grid, long_bearing_grid, sealed_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect
@@ -301,11 +301,12 @@ def film_grid(
     supply: tuple[SupplyArea, ...] = (),
     conserves_mass: bool = False,
     arc: Arc | None = None,
+    seals: tuple[float | None, float | None] | None = None,
 ) -> FilmGrid:
     """Grid of a film model, with rows on the edges of supply areas and a column on the first hole.
 
-    Of a film that ``conserves_mass`` the control volumes of rows meet on the edges. Other parameters as for
-    `bearing_grid`.
+    Of a film that ``conserves_mass`` the control volumes of rows meet on the edges. ``seals`` as for `sealed_grid`;
+    other parameters as for `bearing_grid`.
     """
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
@@ -313,7 +314,7 @@ def film_grid(
     if arc is not None:
         return arc_grid(radius, length, arc, columns, film.n_z, film.stretch)
     rows = placed(supply, length), radius, length, film.n_z, film.stretch
-    return bearing_grid(
+    grid = bearing_grid(
         radius,
         length,
         columns,
@@ -323,6 +324,7 @@ def film_grid(
         open_ring=open_ring,
         rows=meeting_rows(*rows, columns) if conserves_mass else supply_rows(*rows),
     )
+    return grid if seals is None else sealed_grid(grid, seals)
 
 
 def film_solver(

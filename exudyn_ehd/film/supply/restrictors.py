@@ -36,7 +36,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.status import POSITIVE, Checked, require_number
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,6 +138,45 @@ class GivenFlow(Checked):
     def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
         """Coefficients a, b, k, c of the balance for any oil."""
         return 0.0, 1.0, 0.0, self.flow
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndSeal(Checked):
+    """Seal at an end of the bearing, as the piston ring of a squeeze-film damper: ``q = conductance (p - p_outside)``.
+
+    q is the axial outflow per length around, p the film's pressure at the end, which is unknown, and p_outside the one
+    of ``end_pressures``. What the seal lets through does not depend on the gap. 0: tight; from some 1e4 c^3 / (12 mu L)
+    on it is as good as open. A narrow slot of height s and length l has s^3 / (12 mu l).
+
+    Results have a row outside of every seal, at ``z`` beyond the end by 1e-9 of the length. Of the axial force on a
+    seal one half acts on either surface.
+
+    Parameters
+    ----------
+    conductance : float
+        m3/(s Pa m).
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.065, length=0.02, radial_clearance=1e-4, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> damper = ehd.JournalBearing(**b, cavitation=ehd.FullSommerfeld(), end_seals=ehd.EndSeal(conductance=5e-11))
+    >>> film = ehd.steady(damper, speed=0.0, eccentricity_ratio=0.0, velocity=(1e-3, 0.0))
+    >>> round(-film.force[0] / 1e-3)  # N s/m
+    """
+
+    conductance: float
+
+    checks: ClassVar = {"conductance": partial(require_number, at_least=0.0)}
+
+
+def require_seals(seals: object) -> None:
+    """Raise `InputError` for anything but a seal, a pair of seals or open ends, or None."""
+    pair = seals if isinstance(seals, tuple) else (seals, seals)
+    if len(pair) != 2 or not all(isinstance(seal, EndSeal | None) for seal in pair):
+        raise InputError(
+            "JournalBearing.end_seals must be EndSeal(...) for both ends, a pair with None for an open end, or None, got "
+            f"{seals!r}."
+        )
 
 
 Restrictor = Orifice | Capillary | GivenFlow

@@ -66,6 +66,7 @@ def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool =
         supply=bearing.supply,
         conserves_mass=bearing.closure.conserves_mass,
         arc=bearing.arc,
+        seals=bearing.seals,
     )
 
 
