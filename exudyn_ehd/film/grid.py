@@ -161,7 +161,7 @@ class FilmGrid:
         """Set the conductances (n, m) of seals; ``pressure_scale`` in Pa."""
         for row, seal in zip((0, -2), self.seals or (), strict=False):
             if seal is not None:
-                kz[:, row] = seal * pressure_scale * self.width_x
+                kz[:, row] = min(seal * pressure_scale, WIDE_OPEN / (self.z[-1] - self.z[0])) * self.width_x
 
 
 def _axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -394,6 +394,9 @@ def arc_grid(radius: float, length: float, arc: Arc, n_theta: int, n_z: int, str
 # Distance of the rows outside of seals from the film's ends, over its length: above the rounding of slopes, and without
 # area.
 OUTSIDE = 1e-9
+# Largest conductance of a seal over that of a film as thick as the clearance and as long as the bearing. Larger ones
+# change nothing but the rounding of the leakage.
+WIDE_OPEN = 1e8
 
 
 def sealed_grid(grid: FilmGrid, seals: tuple[float | None, float | None]) -> FilmGrid:

@@ -174,8 +174,8 @@ def require_seals(seals: object) -> None:
     pair = seals if isinstance(seals, tuple) else (seals, seals)
     if len(pair) != 2 or not all(isinstance(seal, EndSeal | None) for seal in pair):
         raise InputError(
-            "JournalBearing.end_seals must be EndSeal(...) for both ends, a pair with None for an open end, or None, got "
-            f"{seals!r}."
+            "JournalBearing.end_seals must be EndSeal(...) for both ends, a pair with None for an open one, or None, "
+            f"got {seals!r}."
         )
 
 
