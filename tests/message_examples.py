@@ -349,7 +349,7 @@ ehd.NgPan(onset=2000.0, full=1000.0)
     ),
     Group(
         "Describing a bearing: supply and thrust faces",
-        "Arguments `supply` and `thrust` of `JournalBearing`.",
+        "Arguments `supply`, `end_seals` and `thrust` of `JournalBearing`.",
         "bearing",
         """
 ehd.JournalBearing(**plain, supply=ehd.Hole(angle=0.0, diameter=0.005, pressure=2e5))
@@ -401,6 +401,12 @@ ehd.JournalBearing(**plain, supply=(low,))
 
 fed = ehd.Hole(angle=0.0, diameter=0.006, supply=orifice)
 ehd.JournalBearing(**plain, supply=(fed,), bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9, poisson_ratio=0.4))
+
+ehd.JournalBearing(**plain, end_seals=1e-10)
+
+ehd.JournalBearing(**plain, film=ehd.ShortBearing(), end_seals=ehd.EndSeal(conductance=1e-10))
+
+ehd.JournalBearing(**plain, end_seals=ehd.EndSeal(conductance=0.0))
 
 groove = ehd.AxialGroove(angle=0.0, width_angle=0.3, supply=ehd.GivenFlow(flow=1e-6))
 ehd.JournalBearing(**plain, film=ehd.LongBearing(), supply=(groove,))

@@ -162,6 +162,7 @@ class EndSeal(Checked):
     >>> damper = ehd.JournalBearing(**b, cavitation=ehd.FullSommerfeld(), end_seals=ehd.EndSeal(conductance=5e-11))
     >>> film = ehd.steady(damper, speed=0.0, eccentricity_ratio=0.0, velocity=(1e-3, 0.0))
     >>> round(-film.force[0] / 1e-3)  # N s/m
+    704921
     """
 
     conductance: float

@@ -246,7 +246,7 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     whole[own - 2 * extra :] = slopes.reshape(2, -1)[: 2 * extra]
     if film.oil.ratio_q is not None and film.oil.P_q is not None:  # the shear of its land's share
         whole[4] = (g.shear_weight / p.solver.H * film.oil.ratio_q / film.oil.P_q).ravel()
-    return np.hstack((rows, whole @ fields.reshape(len(fields), -1).T / film.scales.pressure))
+    return np.hstack((rows, whole @ fields.reshape(-1, g.area.size).T / film.scales.pressure))
 
 
 def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import warnings
 
@@ -277,6 +278,9 @@ def test_a_starved_pocket_is_told():
         film = ehd.steady(bearing, **state)
     assert film.pocket_pressures[0] == 0.0 and film.restrictor_flows[0] == pytest.approx(1e-9)
     assert film.supply_flows[0] > 1e-9
+    given = build_model(ehd.JournalBearing(**SIZE, film=GRID, supply=(dataclasses.replace(pocket, supply=None),)))
+    starved = build_model(bearing)
+    np.testing.assert_allclose(*(m.evaluate(film.motion).tangent() for m in (starved, given)), rtol=1e-10, atol=1e-9)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ehd.steady(bearing, **state | {"direction": 4.0})
