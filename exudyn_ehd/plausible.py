@@ -107,6 +107,7 @@ KINDS: dict[str, Kind] = {
     "conductivity": Kind("W/(m K)", 1e-4, 5e-3, 500.0, 1e5),
 }
 
+_AREAS = ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")
 _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
         "JournalBearing.journal_radius",
@@ -134,17 +135,14 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "CircumferentialGroove.width",
         "Hole.diameter",
         "Pocket.length",
-        "Capillary.length",
-        *(f"{restrictor}.diameter" for restrictor in ("Orifice", "Capillary")),
-        *(f"{area}.depth" for area in ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")),
+        *("Orifice.diameter", "Capillary.diameter", "Capillary.length"),
+        *(f"{area}.depth" for area in _AREAS),
         "EdgeRelief.relief_length",
     ),
     "place along z": (
-        "CircumferentialGroove.z",
+        *(f"{area}.z" for area in _AREAS[1:]),
         "ElasticJournal.span",
         "HeldBands.bands",
-        "Hole.z",
-        "Pocket.z",
         "AxialProfile.positions",
         "ProfileTable.positions",
     ),
@@ -179,9 +177,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "layer": ("ElasticLiner.thickness",),
     "angle": (
         *(f"Arc.{name}" for name in ("start", "extent")),
-        "AxialGroove.angle",
-        "Hole.angle",
-        "Pocket.angle",
+        *(f"{area}.angle" for area in _AREAS if area != "CircumferentialGroove"),
         "OutOfRound.phase",
         "bearing_grid.start_angle",
         "steady.direction",
@@ -222,10 +218,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "ThrustFaces.inner_pressures",
         "ThrustFaces.outer_pressures",
         *(f"Arc.{edge}_pressure" for edge in ("leading", "trailing")),
-        "AxialGroove.pressure",
-        "CircumferentialGroove.pressure",
-        "Hole.pressure",
-        "Pocket.pressure",
+        *(f"{area}.pressure" for area in _AREAS),
         *(f"{restrictor}.supply_pressure" for restrictor in ("Orifice", "Capillary")),
         "solve_film.boundary",
     ),

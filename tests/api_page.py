@@ -61,7 +61,8 @@ GROUPS = (
         "Oil supply and end faces",
         "Arguments `supply`, `end_seals` and `thrust` of `JournalBearing`; "
         "[thrust faces in a model](coupling/README.md#thrust-faces).",
-        "AxialGroove CircumferentialGroove Hole Pocket Orifice Capillary GivenFlow EndSeal ThrustFaces TaperLand StepLand",
+        "AxialGroove CircumferentialGroove Hole Pocket Orifice Capillary GivenFlow EndSeal ThrustFaces TaperLand "
+        "StepLand",
     ),
     Group(
         "Surfaces: shape, roughness, contact, wear",

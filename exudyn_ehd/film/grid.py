@@ -85,7 +85,8 @@ class FilmGrid:
         What links in theta and z conduct over what they would along ``link_x`` and ``link_z``, because they end at the
         edge of a supply area; None: nowhere.
     seals : pair of floats or None
-        What seals at both ends conduct per length around, over clearance and R, see `sealed_grid`; None: open ends.
+        What seals at both ends conduct per length around, over clearance and R, see
+        `exudyn_ehd.film.supply.restrictors.sealed_grid`; None: open ends.
     """
 
     x: np.ndarray
@@ -145,23 +146,11 @@ class FilmGrid:
         across = np.append(self.link_z != 0.0, False)
         return np.array((np.outer(self.link_x != 0.0, self.width_z), np.outer(self.width_x, across)))
 
-    @property
-    def rows(self) -> slice:
-        """Rows from end to end of the film, without those outside of seals."""
-        lower, upper = (None, None) if self.seals is None else self.seals
-        return slice(int(lower is not None), self.z.size - int(upper is not None))
-
     def cut(self, kx: np.ndarray, kz: np.ndarray) -> None:
         """Multiply conductances (n, m) by ``cuts``, in place."""
         if self.cuts is not None:
             kx *= self.cuts[0]
             kz *= self.cuts[1]
-
-    def seal(self, kz: np.ndarray, pressure_scale: float) -> None:
-        """Set the conductances (n, m) of seals; ``pressure_scale`` in Pa."""
-        for row, seal in zip((0, -2), self.seals or (), strict=False):
-            if seal is not None:
-                kz[:, row] = min(seal * pressure_scale, WIDE_OPEN / (self.z[-1] - self.z[0])) * self.width_x
 
 
 def _axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -389,46 +378,6 @@ def arc_grid(radius: float, length: float, arc: Arc, n_theta: int, n_z: int, str
     at, link_x = arc.start + half + x, np.append(links, 0.0)
     grid = _tensor_grid(at, z, width, link_x, radius, fixed, weight_x, weight_z)
     return replace(grid, x_face=at + 0.5 * width.max())
-
-
-# Distance of the rows outside of seals from the film's ends, over its length: above the rounding of slopes, and without
-# area.
-OUTSIDE = 1e-9
-# Largest conductance of a seal over that of a film as thick as the clearance and as long as the bearing. Larger ones
-# change nothing but the rounding of the leakage.
-WIDE_OPEN = 1e8
-
-
-def sealed_grid(grid: FilmGrid, seals: tuple[float | None, float | None]) -> FilmGrid:
-    """Film grid whose ends are sealed: the pressure at an end is unknown, that of a row outside of it prescribed.
-
-    The link to that row does not depend on the gap: per length around, the seal lets ``q = C (p_end - p_outside)``
-    through, besides what an axially moving surface takes along.
-
-    Parameters
-    ----------
-    grid : FilmGrid
-        With open ends.
-    seals : pair of floats or None
-        C over clearance and R of the lower and the upper end, 1/(Pa s); None: an open end.
-    """
-    added = tuple(int(seal is not None) for seal in seals)
-    step = OUTSIDE * (grid.z[-1] - grid.z[0])
-    z = np.concatenate((grid.z[:1] - step, grid.z, grid.z[-1:] + step))[1 - added[0] : grid.z.size + 1 + added[1]]
-    fixed = np.pad(grid.fixed, ((0, 0), added), constant_values=True)
-    for row, sealed in zip((1, -2), added, strict=True):
-        if sealed:
-            fixed[:, row] = grid.fixed[:, 1]
-    return replace(
-        grid,
-        z=z,
-        width_z=_axial_metric(z)[0],
-        link_z=np.pad(grid.link_z, added),
-        weight_z=np.pad(grid.weight_z, added),
-        weight=np.pad(grid.weight, ((0, 0), added)),
-        fixed=fixed,
-        seals=seals,
-    )
 
 
 def long_bearing_grid(

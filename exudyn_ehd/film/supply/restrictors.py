@@ -29,12 +29,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
@@ -178,6 +179,55 @@ def require_seals(seals: object) -> None:
             "JournalBearing.end_seals must be EndSeal(...) for both ends, a pair with None for an open one, or None, "
             f"got {seals!r}."
         )
+
+
+# Distance of the rows outside of seals from the film's ends, over its length: above the rounding of slopes, and without
+# area.
+OUTSIDE = 1e-9
+
+
+def sealed_grid(grid: FilmGrid, seals: tuple[float | None, float | None]) -> FilmGrid:
+    """Film grid whose ends are sealed: the pressure at an end is unknown, that of a row outside of it prescribed.
+
+    The link to that row does not depend on the gap: per length around, the seal lets ``q = C (p_end - p_outside)``
+    through, besides what an axially moving surface takes along.
+
+    Parameters
+    ----------
+    grid : FilmGrid
+        With open ends.
+    seals : pair of floats or None
+        C over clearance and R of the lower and the upper end, 1/(Pa s); None: an open end.
+    """
+    added = tuple(int(seal is not None) for seal in seals)
+    step = OUTSIDE * (grid.z[-1] - grid.z[0])
+    z = np.concatenate((grid.z[:1] - step, grid.z, grid.z[-1:] + step))[1 - added[0] : grid.z.size + 1 + added[1]]
+    widths, fixed = np.diff(z), np.pad(grid.fixed, ((0, 0), added), constant_values=True)
+    for row, sealed in zip((1, -2), added, strict=True):
+        if sealed:
+            fixed[:, row] = grid.fixed[:, 1]
+    return replace(
+        grid,
+        z=z,
+        width_z=0.5 * (np.append(widths, 0.0) + np.insert(widths, 0, 0.0)),
+        link_z=np.pad(grid.link_z, added),
+        weight_z=np.pad(grid.weight_z, added),
+        weight=np.pad(grid.weight, ((0, 0), added)),
+        fixed=fixed,
+        seals=seals,
+    )
+
+
+# Largest conductance of a seal over that of a film as thick as the clearance and as long as the bearing. Larger ones
+# change nothing but the rounding of the leakage.
+WIDE_OPEN = 1e8
+
+
+def seal_ends(grid: FilmGrid, kz: np.ndarray, pressure_scale: float) -> None:
+    """Set the conductances of seals in those of a film's links in z, kz (n, m); ``pressure_scale`` in Pa."""
+    for row, seal in zip((0, -2), grid.seals or (), strict=False):
+        if seal is not None:
+            kz[:, row] = min(seal * pressure_scale, WIDE_OPEN / (grid.z[-1] - grid.z[0])) * grid.width_x
 
 
 Restrictor = Orifice | Capillary | GivenFlow

@@ -130,7 +130,7 @@ def test_flow_and_tangent(closure, options):
 
 
 def test_oil_balance_in_time():
-    """What a groove feeds leaves through the seals or fills the gap, over 40 steps of a mass-conserving film."""
+    """Oil of a groove leaves through the seals or fills the gap, over 40 steps of a mass-conserving film."""
     bearing = ehd.JournalBearing(
         **SIZE,
         film=GRID,

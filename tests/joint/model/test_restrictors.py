@@ -248,7 +248,7 @@ def test_balances_from_any_state_to_any_other(closure):
 
 
 def test_oil_balance_in_time():
-    """What comes through restrictors leaves through the ends or fills the gap, over 40 steps of a mass-conserving
+    """Oil that comes through restrictors leaves through the ends or fills the gap, over 40 steps of a mass-conserving
     film."""
     bearing = ehd.JournalBearing(
         **SIZE, film=GRID, cavitation=ehd.ElrodAdams(), supply=_quarters(FEEDS[0], 0.5, 0.02, 0.3)
@@ -286,8 +286,8 @@ def test_a_starved_pocket_is_told():
         ehd.steady(bearing, **state | {"direction": 4.0})
 
 
-def test_stiffness_and_damping_of_equilibrium():
-    """Those of differences between steady films, with cavities whose oil follows at a frequency of none."""
+def test_stiffness_of_equilibrium():
+    """Stiffness from differences between steady films, with cavities whose oil follows."""
     for closure in (ehd.SwiftStieber(), ehd.ElrodAdams()):
         bearing = ehd.JournalBearing(**SIZE, film=GRID, cavitation=closure, supply=_quarters(FEEDS[1], 0.8, 0.024))
         rest = ehd.equilibrium(bearing, speed=150.0, load=(0.0, -3000.0))
