@@ -266,7 +266,8 @@ class FilmArrays:
         speeds, out = (self.vx, self.vz, self.flow_x), (s.kx, s.kz, s.fx, s.fz, s.b)
         set_links(self.H, self.HF, self.H_t, self.squeeze, None if f is None else f.flow, *speeds, self.grid.mesh, *out)
         self.grid.cut(s.kx, s.kz)
-        seal_ends(self.grid, s.kz, self.pressure_scale)
+        if self.grid.seals is not None:
+            seal_ends(self.grid, s.kz, self.pressure_scale)
 
     def inverse_instant(self) -> float:
         """1 / a step that stands for none, 1/s, for the speeds and rates now stored."""

@@ -110,9 +110,9 @@ class FilmSolver(FilmAnswers):
         status, steps : Status, int
             Outcome and number of linear solves.
         """
-        solve = partial(self._solve_film, vx, vz, cavity_pressure, mass_old, step)
         if self.reservoirs is None:
-            return solve()
+            return self._solve_film(vx, vz, cavity_pressure, mass_old, step)
+        solve = partial(self._solve_film, vx, vz, cavity_pressure, mass_old, step)
         return self._balance(self.reservoirs, solve, cavity_pressure * self.pressure_scale)
 
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
