@@ -71,6 +71,10 @@ from exudyn_ehd.film.supply.areas import AxialGroove as AxialGroove
 from exudyn_ehd.film.supply.areas import CircumferentialGroove as CircumferentialGroove
 from exudyn_ehd.film.supply.areas import Hole as Hole
 from exudyn_ehd.film.supply.areas import Pocket as Pocket
+from exudyn_ehd.film.supply.restrictors import Capillary as Capillary
+from exudyn_ehd.film.supply.restrictors import EndSeal as EndSeal
+from exudyn_ehd.film.supply.restrictors import GivenFlow as GivenFlow
+from exudyn_ehd.film.supply.restrictors import Orifice as Orifice
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp as GreenwoodTripp
 from exudyn_ehd.film.surfaces.asperity import composite_modulus as composite_modulus
 from exudyn_ehd.film.surfaces.contact import ArchardWear as ArchardWear

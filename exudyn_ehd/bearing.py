@@ -24,7 +24,8 @@ from exudyn_ehd.film.models import (
 )
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
+from exudyn_ehd.film.supply.areas import SupplyArea, require_areas, source_pressure
+from exudyn_ehd.film.supply.restrictors import EndSeal, require_seals
 from exudyn_ehd.film.supply.rows import check_depths, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
@@ -119,13 +120,16 @@ class JournalBearing(Checked):
         Bore on a part of the circle; None: all around.
     end_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at z = -L/2 and z = +L/2, Pa.
+    end_seals : EndSeal, pair of EndSeal or None, or None, default None
+        Seals between the film and ``end_pressures``: one for both ends, or those at z = -L/2 and z = +L/2, None for an
+        open end. None: open ends.
     squeeze : bool, default True
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before the gap vanishes; not with ``asperity`` or ``roughness``. None: a
         vanishing gap ends the run with an error, unless there is an ``asperity``.
     supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket, default ()
-        Areas with a prescribed supply pressure; empty: none.
+        Areas with a prescribed supply pressure, or fed through a restrictor; empty: none.
     thermal : LumpedThermal, FilmEnergy or None, default None
         Temperature of the film; needs a lubricant with a ``temperature_law``, such as those of `oil`. None: isothermal,
         at ``lubricant.temperature``.
@@ -173,6 +177,7 @@ class JournalBearing(Checked):
     inlet: Inlet = Periodic()
     arc: Arc | None = None
     end_pressures: tuple[float, float] = (0.0, 0.0)
+    end_seals: EndSeal | tuple[EndSeal | None, EndSeal | None] | None = None
     squeeze: bool = True
     contact: RegularisedWall | None = None
     supply: tuple[SupplyArea, ...] = ()
@@ -210,6 +215,7 @@ class JournalBearing(Checked):
         ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
+        require_seals(self.end_seals)
         require_areas(self.supply)
         open_ring = isinstance(self.inlet, MaximumGap)
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
@@ -256,7 +262,7 @@ class JournalBearing(Checked):
                 "grooves; use inlet=Periodic()."
             )
         check_depths(self.supply, self.radial_clearance)
-        lowest, pc = min(area.pressure for area in self.supply), self.cavitation.cavity_pressure
+        lowest, pc = min(map(source_pressure, self.supply)), self.cavitation.cavity_pressure
         if pc > lowest:
             raise InputError(
                 f"JournalBearing.supply: pressures must not be below {type(self.cavitation).__name__}.cavity_pressure "
@@ -291,6 +297,16 @@ class JournalBearing(Checked):
                 "diametral, and in metres.",
                 PlausibilityWarning,
             )
+
+    @property
+    def seals(self) -> tuple[float | None, float | None] | None:
+        """Conductances of both seals over clearance and R, 1/(Pa s), with None for an open end; None without seals."""
+        if self.end_seals is None:
+            return None
+        pair = self.end_seals if isinstance(self.end_seals, tuple) else (self.end_seals, self.end_seals)
+        scale = self.radial_clearance * self.journal_radius
+        lower, upper = (None if seal is None else seal.conductance / scale for seal in pair)
+        return lower, upper
 
     @property
     def profiles(self) -> tuple[SurfaceProfile, ...]:

@@ -87,6 +87,8 @@ KINDS: dict[str, Kind] = {
     "expansion": Kind("1/K", 0.0, 0.0, 1e-3, 0.1),
     "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
     "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, (("microseconds", 1e-6),)),
+    "flow": Kind("m3/s", 0.0, 0.0, 0.1, 100.0, (("l/min", 1e-3 / 60.0), ("mm3/s", 1e-9))),
+    "seal": Kind("m3/(s Pa m)", 0.0, 0.0, 1.0, 1e9),
     "time": Kind("s", 0.0, 0.0, 1e7, 1e12),
     "rate": Kind("1/s", 0.0, 0.0, 1e7, 1e12),
     "damping time": Kind("s", 0.0, 0.0, 1.0, 1e3),
@@ -105,6 +107,7 @@ KINDS: dict[str, Kind] = {
     "conductivity": Kind("W/(m K)", 1e-4, 5e-3, 500.0, 1e5),
 }
 
+_AREAS = ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")
 _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
         "JournalBearing.journal_radius",
@@ -132,15 +135,14 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "CircumferentialGroove.width",
         "Hole.diameter",
         "Pocket.length",
-        *(f"{area}.depth" for area in ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")),
+        *("Orifice.diameter", "Capillary.diameter", "Capillary.length"),
+        *(f"{area}.depth" for area in _AREAS),
         "EdgeRelief.relief_length",
     ),
     "place along z": (
-        "CircumferentialGroove.z",
+        *(f"{area}.z" for area in _AREAS[1:]),
         "ElasticJournal.span",
         "HeldBands.bands",
-        "Hole.z",
-        "Pocket.z",
         "AxialProfile.positions",
         "ProfileTable.positions",
     ),
@@ -175,9 +177,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "layer": ("ElasticLiner.thickness",),
     "angle": (
         *(f"Arc.{name}" for name in ("start", "extent")),
-        "AxialGroove.angle",
-        "Hole.angle",
-        "Pocket.angle",
+        *(f"{area}.angle" for area in _AREAS if area != "CircumferentialGroove"),
         "OutOfRound.phase",
         "bearing_grid.start_angle",
         "steady.direction",
@@ -218,10 +218,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "ThrustFaces.inner_pressures",
         "ThrustFaces.outer_pressures",
         *(f"Arc.{edge}_pressure" for edge in ("leading", "trailing")),
-        "AxialGroove.pressure",
-        "CircumferentialGroove.pressure",
-        "Hole.pressure",
-        "Pocket.pressure",
+        *(f"{area}.pressure" for area in _AREAS),
+        *(f"{restrictor}.supply_pressure" for restrictor in ("Orifice", "Capillary")),
         "solve_film.boundary",
     ),
     "cavity pressure": (
@@ -245,6 +243,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "expansion": ("Conduction.expansion",),
     "pole": ("VogelTemperature.pole",),
     "relaxation time": ("CarreauShear.relaxation_time",),
+    "flow": ("GivenFlow.flow",),
+    "seal": ("EndSeal.conductance",),
     "time": (
         "JointHistory.revolutions.period",
         "LubricatedJoint.revolutions.period",

@@ -156,10 +156,11 @@ class RingingWarning(UserWarning):
 
 
 class StarvationWarning(UserWarning):
-    """The film of a joint has lost its oil through the ends, and nothing brings it back.
+    """A film gets less oil than it loses: that of a joint runs dry, or a supply area is not full.
 
-    With `ElrodAdams`, if neither a supply nor an end is above the cavity pressure: give one of them a pressure, or take
-    `SwiftStieber` for a bearing that stays flooded.
+    In `steady` and `equilibrium`, if a film takes more oil from a supply area than comes through its restrictor. In a
+    joint with `ElrodAdams`, if neither a supply nor an end is above the cavity pressure: give one of them a pressure,
+    or take `SwiftStieber` for a bearing that stays flooded.
 
     Examples
     --------

@@ -43,6 +43,8 @@ UNITS = {
     "step_error": "-",
     "leakage": "m3/s",
     "supply_flow": "m3/s",
+    "lowest_pocket_pressure": "Pa",
+    "highest_pocket_pressure": "Pa",
     "contact_load": "N",
     "axial_position": "m",
     "thrust_force": "N",

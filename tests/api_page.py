@@ -59,9 +59,10 @@ GROUPS = (
     ),
     Group(
         "Oil supply and end faces",
-        "Arguments `supply` and `thrust` of `JournalBearing`; "
+        "Arguments `supply`, `end_seals` and `thrust` of `JournalBearing`; "
         "[thrust faces in a model](coupling/README.md#thrust-faces).",
-        "AxialGroove CircumferentialGroove Hole Pocket ThrustFaces TaperLand StepLand",
+        "AxialGroove CircumferentialGroove Hole Pocket Orifice Capillary GivenFlow EndSeal ThrustFaces TaperLand "
+        "StepLand",
     ),
     Group(
         "Surfaces: shape, roughness, contact, wear",

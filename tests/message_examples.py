@@ -58,6 +58,7 @@ size = {"journal_radius": 0.025, "length": 0.025, "radial_clearance": 25e-6}
 plain = {**size, "lubricant": oil}
 bearing = ehd.JournalBearing(**plain)
 faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6)
+orifice = ehd.Orifice(diameter=5e-4, supply_pressure=4e6)
 faced = ehd.JournalBearing(**plain, thrust=faces)
 """,
     ),
@@ -348,7 +349,7 @@ ehd.NgPan(onset=2000.0, full=1000.0)
     ),
     Group(
         "Describing a bearing: supply and thrust faces",
-        "Arguments `supply` and `thrust` of `JournalBearing`.",
+        "Arguments `supply`, `end_seals` and `thrust` of `JournalBearing`.",
         "bearing",
         """
 ehd.JournalBearing(**plain, supply=ehd.Hole(angle=0.0, diameter=0.005, pressure=2e5))
@@ -384,6 +385,31 @@ ehd.JournalBearing(**plain, supply=(ehd.Hole(angle=0.0, diameter=0.006),), inlet
 
 hole = ehd.Hole(angle=0.0, diameter=0.006, pressure=-1e5)
 ehd.JournalBearing(**plain, supply=(hole,))
+
+ehd.Pocket(angle=0.0, width_angle=0.5, length=0.01, supply=4e6)
+
+ehd.Pocket(angle=0.0, width_angle=0.5, length=0.01, pressure=1e6, supply=orifice)
+
+wide = ehd.Pocket(angle=0.0, width_angle=0.5, length=0.025, supply=orifice)
+ehd.JournalBearing(**plain, supply=(wide,))
+
+pockets = [ehd.Pocket(angle=a, width_angle=0.5, length=0.01, supply=orifice) for a in (0.0, 0.4)]
+ehd.JournalBearing(**plain, supply=tuple(pockets))
+
+low = ehd.Hole(angle=0.0, diameter=0.006, supply=ehd.Orifice(diameter=5e-4, supply_pressure=-1e5))
+ehd.JournalBearing(**plain, supply=(low,))
+
+fed = ehd.Hole(angle=0.0, diameter=0.006, supply=orifice)
+ehd.JournalBearing(**plain, supply=(fed,), bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9, poisson_ratio=0.4))
+
+ehd.JournalBearing(**plain, end_seals=1e-10)
+
+ehd.JournalBearing(**plain, film=ehd.ShortBearing(), end_seals=ehd.EndSeal(conductance=1e-10))
+
+ehd.JournalBearing(**plain, end_seals=ehd.EndSeal(conductance=0.0))
+
+groove = ehd.AxialGroove(angle=0.0, width_angle=0.3, supply=ehd.GivenFlow(flow=1e-6))
+ehd.JournalBearing(**plain, film=ehd.LongBearing(), supply=(groove,))
 
 ehd.ThrustFaces(inner_radius=0.05, outer_radius=0.05, clearance=50e-6)
 
@@ -1101,6 +1127,9 @@ ehd.equilibrium(ehd.JournalBearing(**plain, supply=(turning,)), speed=300.0, loa
 ehd.equilibrium(faced, speed=300.0, load=(0.0, -500.0), axial_position=1e-6, axial_load=50.0)
 
 ehd.equilibrium(bearing, speed=300.0, load=(0.0, -1e9))
+
+starved = ehd.Pocket(angle=2.0, width_angle=0.8, length=0.01, supply=ehd.GivenFlow(flow=1e-10))
+ehd.steady(ehd.JournalBearing(**plain, supply=(starved,)), speed=300.0, eccentricity_ratio=0.5, direction=1.5)
 
 fed = ehd.JournalBearing(**plain, supply=(ehd.Hole(angle=0.0, diameter=0.006),))
 ehd.equilibrium(fed, speed=300.0, load=(0.0, 0.0))

@@ -32,6 +32,7 @@ FACES = ehd.JournalBearing(
     **GRID,
     lubricant=ehd.Lubricant(viscosity=0.02),
     contact=ehd.RegularisedWall(onset=2e-6),
+    supply=(ehd.Hole(angle=4.7, diameter=0.006, supply=ehd.Orifice(diameter=5e-4, supply_pressure=2e6)),),
     thrust=ehd.ThrustFaces(
         inner_radius=0.03,
         outer_radius=0.05,

@@ -431,6 +431,19 @@ def test_hydrostatic_or_grooved(example, tmp_path):
 
 
 @pytest.mark.slow
+def test_hydrostatic_spindle(example, tmp_path):
+    rows = example("hydrostatic_spindle").main(quick=True, output=tmp_path)
+    assert (tmp_path / "hydrostatic_spindle.png").stat().st_size > 10_000
+    # flow from pocket to pocket moves the best ratios up from 0.5 and 0.59
+    assert rows["capillary: best pressure ratio"] == pytest.approx(0.57, abs=0.1)
+    assert rows["orifice: best pressure ratio"] == pytest.approx(0.65, abs=0.1)
+    assert rows["orifice: stiffness there [N/um]"] > 1.25 * rows["capillary: stiffness there [N/um]"]
+    assert rows["orifice: eccentricity ratio at 6000 N"] < 0.9 * rows["capillary: eccentricity ratio at 6000 N"] < 0.6
+    for kind in ("capillary", "orifice"):
+        assert rows[f"{kind}: end of the run off its equilibrium, over c"] < 2e-3
+
+
+@pytest.mark.slow
 def test_turbulent_bearing(example, tmp_path):
     rows = example("turbulent_bearing").main(quick=True, output=tmp_path)
     assert (tmp_path / "turbulent_bearing.png").stat().st_size > 10_000

@@ -27,6 +27,7 @@ PURE = {
     "FEJournal.radius_tolerance",
     "FilmEnergy.carry_over", "LumpedThermal.carry_over",
     "FiniteLength.stretch", "FollowerPressure.distribution", "GreenwoodTripp.density_radius_roughness",
+    "Orifice.discharge_coefficient",
     "GreenwoodTripp.roughness_radius_ratio", "GreenwoodTripp.friction_coefficient", "GreenwoodTripp.residual_film",
     "Gumbel.cavity_shear", "ImpedanceMap.stretch", "ImpedanceMap.largest_eccentricity_ratio",
     "LubricatedJoint.export_vtk.magnification", "ModalBush.tolerance", "ElasticJournal.tolerance", "PatirCheng.pattern",

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
+from exudyn_ehd.film.supply.restrictors import GivenFlow
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.annulus import BearingOptions
 from exudyn_ehd.status import InputError
 
+# Laws of an oil whose conductances or density follow the pressure.
+_FOLLOWING = ("pressure_law", "density_law", "shear_law")
 # Pa s; of a gas far from cold, and of pitch.
 LEAST_VISCOSITY, LARGEST_VISCOSITY = 1e-7, 1e9
 
@@ -28,6 +31,9 @@ def check_combinations(bearing: BearingOptions) -> None:
     if bearing["arc"] is not None:
         _check_arc(bearing)
     _check_turbulence(bearing)
+    _check_restrictors(bearing)
+    if bearing["end_seals"] is not None:
+        _check_seals(bearing)
     if bearing["thermal"] is not None:
         _check_heat(bearing)
     if bearing["wear"] is not None and bearing["asperity"] is None:
@@ -73,10 +79,51 @@ def _check_arc(bearing: BearingOptions) -> None:
         )
 
 
+def _check_restrictors(bearing: BearingOptions) -> None:
+    """Refuse films whose conductances, gaps or density follow a pressure that is itself unknown."""
+    fed = [k for k, area in enumerate(bearing["supply"]) if area.supply is not None]
+    if not fed:
+        return
+    others = [f"Lubricant.{law}" for law in ("density_law", "shear_law") if getattr(bearing["lubricant"], law)]
+    others += [f"JournalBearing.{side}" for side in ("bush", "journal") if bearing[side] is not None]
+    if others:
+        raise InputError(
+            f"JournalBearing.supply[{fed[0]}] with a restrictor does not go with {others[0]}: the pressure of the area "
+            "is unknown, which needs rigid surfaces and an oil whose density and viscosity do not follow pressure or "
+            "shear, but for a pressure_law; give the area a pressure, or leave the other out."
+        )
+    if isinstance(bearing["film"], LongBearing) and any(isinstance(a.supply, GivenFlow) for a in bearing["supply"]):
+        raise InputError(
+            "JournalBearing.supply: GivenFlow(...) does not go with film=LongBearing(...), out of which no oil flows; "
+            "use film=FiniteLength(...)."
+        )
+
+
+def _check_seals(bearing: BearingOptions) -> None:
+    """Refuse films that take their pressure at an end as given, and those without any pressure that is given."""
+    seals, supply = bearing["end_seals"], bearing["supply"]
+    others = [f"Lubricant.{law}" for law in _FOLLOWING if getattr(bearing["lubricant"], law) is not None]
+    others += [f"JournalBearing.{name}" for name in ("arc", "bush", "journal") if bearing[name] is not None]
+    others += [] if isinstance(bearing["film"], FiniteLength) else ["JournalBearing.film"]
+    others += ["JournalBearing.thermal"] if isinstance(bearing["thermal"], FilmEnergy) else []
+    if others:
+        raise InputError(
+            f"JournalBearing.end_seals does not go with {others[0]}: the pressure at a sealed end is unknown, which "
+            "needs film=FiniteLength(...) all around between rigid surfaces, an oil whose density and viscosity do not "
+            "follow the pressure, and one temperature; leave one of the two out."
+        )
+    pair = seals if isinstance(seals, tuple) else (seals,)
+    if not supply and all(seal is not None and seal.conductance == 0.0 for seal in pair):
+        raise InputError(
+            "JournalBearing.end_seals: with a conductance of 0 at both ends nothing gives the film a pressure; give "
+            "the bearing supply=(...), or one of the seals a conductance."
+        )
+
+
 def _check_turbulence(bearing: BearingOptions) -> None:
     """Refuse what has no turbulent form: properties by the pressure, and factors of a laminar profile."""
-    oil, laws = bearing["lubricant"], ("pressure_law", "density_law", "shear_law")
-    others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
+    oil = bearing["lubricant"]
+    others = [f"Lubricant.{law}" for law in _FOLLOWING if getattr(oil, law) is not None]
     others += [] if bearing["roughness"] is None else ["JournalBearing.roughness"]
     others += [] if getattr(bearing["thermal"], "conductivity", None) is None else ["FilmEnergy.conductivity"]
     if bearing["turbulence"] is not None and others:

@@ -84,6 +84,9 @@ class FilmGrid:
     cuts : (2, n, m) array or None
         What links in theta and z conduct over what they would along ``link_x`` and ``link_z``, because they end at the
         edge of a supply area; None: nowhere.
+    seals : pair of floats or None
+        What seals at both ends conduct per length around, over clearance and R, see
+        `exudyn_ehd.film.supply.restrictors.sealed_grid`; None: open ends.
     """
 
     x: np.ndarray
@@ -99,6 +102,7 @@ class FilmGrid:
     reference_length: float
     cuts: np.ndarray | None = None
     lands: np.ndarray | None = None
+    seals: tuple[float | None, float | None] | None = None
 
     @property
     def shear_weight(self) -> np.ndarray:

@@ -22,6 +22,7 @@ from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
+from exudyn_ehd.film.supply.restrictors import sealed_grid
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.status import Checked, InputError, require_count
@@ -301,11 +302,12 @@ def film_grid(
     supply: tuple[SupplyArea, ...] = (),
     conserves_mass: bool = False,
     arc: Arc | None = None,
+    seals: tuple[float | None, float | None] | None = None,
 ) -> FilmGrid:
     """Grid of a film model, with rows on the edges of supply areas and a column on the first hole.
 
-    Of a film that ``conserves_mass`` the control volumes of rows meet on the edges. Other parameters as for
-    `bearing_grid`.
+    Of a film that ``conserves_mass`` the control volumes of rows meet on the edges. ``seals`` as for `sealed_grid`;
+    other parameters as for `bearing_grid`.
     """
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
@@ -313,7 +315,7 @@ def film_grid(
     if arc is not None:
         return arc_grid(radius, length, arc, columns, film.n_z, film.stretch)
     rows = placed(supply, length), radius, length, film.n_z, film.stretch
-    return bearing_grid(
+    grid = bearing_grid(
         radius,
         length,
         columns,
@@ -323,6 +325,7 @@ def film_grid(
         open_ring=open_ring,
         rows=meeting_rows(*rows, columns) if conserves_mass else supply_rows(*rows),
     )
+    return grid if seals is None else sealed_grid(grid, seals)
 
 
 def film_solver(

@@ -23,8 +23,9 @@ _NO_CONTACT = np.zeros(6)
 
 
 def has_plain_edges(bearing: JournalBearing) -> bool:
-    """Return whether no pressure acts on the cross sections at which the film of an arc ends."""
-    return bearing.arc is None or not any((*bearing.arc.pressures, *bearing.end_pressures))
+    """Return whether the ends are open, and no pressure acts on the cross sections at which the film of an arc ends."""
+    pressed = bearing.arc is not None and any((*bearing.arc.pressures, *bearing.end_pressures))
+    return bearing.end_seals is None and not pressed
 
 
 def is_plain(parts: FilmParts, effects: Effects) -> bool:

@@ -181,6 +181,8 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "thrust_power_loss": ("power loss,\nfaces", "power"),
     "thrust_contact_load": ("contact load,\nfaces", "force"),
     "supply_flow": ("supply flow", "flow"),
+    "lowest_pocket_pressure": ("lowest pocket\npressure", "pressure"),
+    "highest_pocket_pressure": ("highest pocket\npressure", "pressure"),
     "film_temperature": ("film temperature", "temperature"),
     "peak_temperature": ("peak temperature", "temperature"),
     "bush_temperature": ("bush temperature", "temperature"),

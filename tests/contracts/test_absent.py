@@ -123,6 +123,14 @@ EFFECTS = {
         ("film.supply.cuts", "film.supply.cuts:recess_shear", "film.supply.holes"),
         {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5, depth=1e-3),)},
     ),
+    "restrictors": (
+        ("film.supply.restrictors:Reservoirs", "film.supply.restrictors:Orifice"),
+        {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, supply=ehd.Orifice(diameter=5e-4, supply_pressure=1e6)),)},
+    ),
+    "seals": (
+        ("film.supply.restrictors:sealed_grid", "film.supply.restrictors:seal_ends"),
+        {"end_seals": ehd.EndSeal(conductance=1e-11)},
+    ),
     "thrust": (
         ("film.thrust.annulus", "film.thrust.face", "joint.thrust"),
         {"thrust": ehd.ThrustFaces(inner_radius=0.026, outer_radius=0.05, clearance=4e-5, n_theta=16, n_r=6)},

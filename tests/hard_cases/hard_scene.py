@@ -108,6 +108,8 @@ def solve(mbs, joints, simulation_settings, *, solver=None, fails=False, restart
 
 _MAY_BE_ABSENT = (
     "supply_flow",
+    "lowest_pocket_pressure",
+    "highest_pocket_pressure",
     "film_temperature",
     "peak_temperature",
     "peak_pressure",

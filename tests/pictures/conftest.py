@@ -49,6 +49,8 @@ def history():
         minimum_gap=20e-6 - np.hypot(motion[:, 0], motion[:, 1]),
         peak_pressure=2.5e6 + 1e6 * np.sin(phase),
         supply_flow=np.full(41, np.nan),
+        lowest_pocket_pressure=np.full(41, np.nan),
+        highest_pocket_pressure=np.full(41, np.nan),
         radial_clearance=20e-6,
         length=0.02,
     )

@@ -24,7 +24,7 @@ from exudyn_ehd.tables import data_frame, write_csv
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-FORMAT = "exudyn_ehd JointHistory 6"
+FORMAT = "exudyn_ehd JointHistory 7"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
@@ -63,6 +63,8 @@ class Quantity(enum.Enum):
     CONTACT_LOAD = "contact_load"
     CONTACT_TORQUE = "contact_torque"
     SUPPLY_FLOW = "supply_flow"
+    LOWEST_POCKET_PRESSURE = "lowest_pocket_pressure"
+    HIGHEST_POCKET_PRESSURE = "highest_pocket_pressure"
     FILM_TEMPERATURE = "film_temperature"
     PEAK_TEMPERATURE = "peak_temperature"
     MINIMUM_GAP_ANGLE = "minimum_gap_angle"
@@ -161,6 +163,10 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     supply_flow : (n,) [m3/s]
         Oil that comes from all supply areas together, or enters an arc at its edges. Positive into the film; nan
         without ``supply`` and ``arc``.
+    lowest_pocket_pressure : (n,) [Pa]
+        Lowest pressure of the supply areas with a restrictor. Above ambient; nan without a restrictor.
+    highest_pocket_pressure : (n,) [Pa]
+        Highest pressure of the supply areas with a restrictor. As ``lowest_pocket_pressure``.
     film_temperature : (n,) [K]
         Mean temperature of the film over its area. Absolute; nan without ``thermal``.
     peak_temperature : (n,) [K]
@@ -237,6 +243,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     friction_torque: np.ndarray
     contact_torque: np.ndarray
     supply_flow: np.ndarray
+    lowest_pocket_pressure: np.ndarray
+    highest_pocket_pressure: np.ndarray
     peak_temperature: np.ndarray
     minimum_gap_angle: np.ndarray
     minimum_gap_z: np.ndarray

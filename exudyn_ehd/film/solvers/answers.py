@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csc_matrix, diags_array
+from scipy.sparse import block_array, csc_matrix, diags_array
 
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_lu, solve_lu_transposed
@@ -18,12 +18,18 @@ from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
+from exudyn_ehd.film.supply.restrictors import Reservoirs
 
 
 class FilmAnswers(FilmArrays):
-    """Answers of a solved film with its matrix A; attributes as for `FilmSolver`."""
+    """Answers of a solved film with its matrix A; attributes as for `FilmSolver`.
+
+    With ``reservoirs`` A is the whole matrix of `exudyn_ehd.film.supply.restrictors`, and rows of unknowns or balances
+    (., count + k) have those of the areas behind those of the vertices.
+    """
 
     elements: LinerFilm | None
+    reservoirs: Reservoirs | None = None
     # of `fill_gradients`, once they are asked for
     _fills: tuple[LineGradients, LineGradients] | None = None
 
@@ -50,8 +56,43 @@ class FilmAnswers(FilmArrays):
         scatter(rows, self.work.order, self.work.count, fields)
         return fields
 
+    def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and ``dg/dQ C`` (k, count), ``dg/dQ D + dg/dp`` (k, k);
+        p in Pa."""
+        s, r = self.system, self.reservoirs
+        assert r is not None
+        self.factor_solution()
+        E, at = r.fields(self.grid.shape), self.work.order[: self.work.count]
+        slopes = (s.kx, -s.kx, s.kz, -s.kz) if self.symmetric else self.work.slopes[:4].reshape(4, *self.grid.shape)
+        flows = [slopes[2 * q] * E + slopes[2 * q + 1] * np.roll(E, -1, q + 1) for q in range(2)]
+        balances = sum(flow - np.roll(flow, 1, q + 1) for q, flow in enumerate(flows))
+        taken = [E - np.roll(E, -1, q + 1) for q in range(2)]
+        drawn = sum(slopes[2 * q] * t + np.roll(slopes[2 * q + 1] * t, 1, q + 1) for q, t in enumerate(taken))
+        B, C, E = (np.reshape(x, (len(E), self.area.size)) for x in (balances, drawn, E))
+        B *= r.transformed()[1][r.live, None] / self.pressure_scale
+        weights = r.weights()[:, None]
+        of_areas = weights * (E @ B.T) + np.diag(r.by_pressure[r.live])
+        return B[:, at], np.ascontiguousarray(weights * C[:, at]), of_areas
+
+    def reduced(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """B^T, ``dg/dQ C A^-1`` of the film alone, and ``dg/dp`` with the film's answer, shapes as of `border`."""
+        B, C, D = self.border()
+        self._solve_film_transposed(C)
+        return B, C, D - C @ B.T
+
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every row of rhs (k, count), in place."""
+        if self.reservoirs is None:
+            self._solve_film_transposed(rhs)
+            return
+        count, (B, C, S) = self.work.count, self.reduced()
+        film = rhs[:, :count].copy()
+        self._solve_film_transposed(film)
+        rhs[:, count:] = np.linalg.solve(S.T, (rhs[:, count:] - film @ B.T).T).T
+        rhs[:, :count] = film - rhs[:, count:] @ C
+
+    def _solve_film_transposed(self, rhs: np.ndarray) -> None:
+        """`solve_transposed` at given pressures of all areas."""
         w = self.work
         self.factor_solution()
         self._couple(rhs.T, True)
@@ -80,7 +121,11 @@ class FilmAnswers(FilmArrays):
         bands = range(1, upper.shape[1])
         L = diags_array([lower[: count - k, k] for k in bands], offsets=[-k for k in bands], shape=(count, count))
         U = diags_array([upper[: count - k, k] for k in (0, *bands)], offsets=[0, *bands], shape=(count, count))
-        return csc_matrix(U + L @ U)
+        A = csc_matrix(U + L @ U)
+        if self.reservoirs is None:
+            return A
+        B, C, D = self.border()
+        return csc_matrix(block_array([[A, B.T], [C, D]]))
 
     def _couple(self, x: np.ndarray, transposed: bool) -> None:
         """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
@@ -135,14 +180,16 @@ class FilmAnswers(FilmArrays):
             line.by[7] = 0.0
         return undeformed(line, self._at_line().chain)
 
-    def line_gradients(self) -> LineGradients | None:
+    def line_gradients(self, places: np.ndarray | None = None) -> LineGradients | None:
         """Contribution of the rupture line inside the cells to the derivatives of the balances; None without one.
 
-        For the last solution, at fixed pressure.
+        For the last solution, at fixed pressure. ``places``: flat vertices of balances in a mass-conserving film, in
+        place of those of the unknowns.
         """
         fills = self.fill_gradients()
         if fills is not None and self.oil_line is not None:
-            return self.oil_line.balance_gradients(fills, *self.fill_weights(), self.work.order[: self.work.count])
+            at = self.work.order[: self.work.count] if places is None else places
+            return self.oil_line.balance_gradients(fills, *self.fill_weights(), at)
         s = self.system
         if s.column_line is not None:
             return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
@@ -174,12 +221,14 @@ class FilmAnswers(FilmArrays):
         fx, fz = (0.5 * f * (rho + np.roll(rho, -1, axis)) for axis, f in enumerate((terms.fx, terms.fz)))
         return terms._replace(fx=fx, fz=fz), terms.area * terms.grow * rho
 
-    def inflow(self, ended: bool = False) -> np.ndarray:
+    def inflow(self, ended: bool = False, linear: bool = False) -> np.ndarray:
         """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
 
-        ``ended``: films next to a cavity end within a link.
+        ``ended``: films next to a cavity end within a link. ``linear``: pressures that are cut off count as they were
+        before, beside vertices with the cavity pressure too.
         """
-        s, conserves_mass, (P, _) = self.system, self.closure.conserves_mass, self.flow_pressures()
+        s, conserves_mass = self.system, self.closure.conserves_mass
+        P = s.linear_pressure if linear else self.flow_pressures()[0]
         balance = np.empty(self.grid.shape)
         if conserves_mass or self.law is not None:
             fill, rho = s.fill if conserves_mass else None, None if self.law is None else self.rho

@@ -39,6 +39,7 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
 from exudyn_ehd.film.reynolds.link_derivatives import add_cuts, link_derivatives
 from exudyn_ehd.film.reynolds.links import FluxEffect, lag_void, link_flux, outflow_of, set_links
 from exudyn_ehd.film.solvers.liner.line import FilmLine
+from exudyn_ehd.film.supply.restrictors import seal_ends
 
 
 def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -265,6 +266,8 @@ class FilmArrays:
         speeds, out = (self.vx, self.vz, self.flow_x), (s.kx, s.kz, s.fx, s.fz, s.b)
         set_links(self.H, self.HF, self.H_t, self.squeeze, None if f is None else f.flow, *speeds, self.grid.mesh, *out)
         self.grid.cut(s.kx, s.kz)
+        if self.grid.seals is not None:
+            seal_ends(self.grid, s.kz, self.pressure_scale)
 
     def inverse_instant(self) -> float:
         """1 / a step that stands for none, 1/s, for the speeds and rates now stored."""

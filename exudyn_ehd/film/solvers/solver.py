@@ -6,6 +6,9 @@ other films are linear in their sets, which `exudyn_ehd.film.cavitation` finds.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure, solve_sets
@@ -18,7 +21,13 @@ from exudyn_ehd.film.solvers.answers import FilmAnswers
 from exudyn_ehd.film.solvers.liner.film import LinerFilm, cold_start, failure, pseudo_transient
 from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.solvers.liner.winkler import Liner
+from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.status import Status
+
+# Trials of Newton's method for the pressures of reservoirs.
+MOST_BALANCES = 40
+# Largest balance of a reservoir over its terms: round-off, and what counts as round-off where it does not fall further.
+EVEN, ROUNDED = 1e-13, 1e-9
 
 
 class FilmSolver(FilmAnswers):
@@ -101,6 +110,41 @@ class FilmSolver(FilmAnswers):
         status, steps : Status, int
             Outcome and number of linear solves.
         """
+        if self.reservoirs is None:
+            return self._solve_film(vx, vz, cavity_pressure, mass_old, step)
+        solve = partial(self._solve_film, vx, vz, cavity_pressure, mass_old, step)
+        return self._balance(self.reservoirs, solve, cavity_pressure * self.pressure_scale)
+
+    def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
+        """Solve the film with its reservoirs by Newton's method in their pressures, none of which is below ``floor``,
+        Pa; steps are halved where the largest balance grows."""
+        base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
+        weights = np.zeros(len(r.masks))
+        for _ in range(MOST_BALANCES):
+            r.pressures, error = np.maximum(base + change, floor), np.inf
+            for at, p in zip(r.masks, r.transformed()[0], strict=True):
+                self.pressure[at] = p / self.pressure_scale
+            status, count = solve()
+            steps += count
+            if status is Status.CONVERGED:
+                g = r.balance(self.inflow(linear=True), floor)
+                weights = 1.0 / r.size if least == np.inf else weights
+                error, left = (float(np.max(np.abs(g) * w[r.live], initial=0.0)) for w in (weights, 1.0 / r.size))
+                if left <= EVEN or (left <= ROUNDED and error > 0.5 * least):
+                    return status, steps
+            if error < least:
+                base, change, least = r.pressures, np.zeros(len(r.masks)), error
+                change[r.live] = -np.linalg.solve(self.reduced()[2], g)
+            elif least < np.inf:
+                change = 0.5 * change
+            else:
+                return status, steps
+        return Status.NOT_CONVERGED, steps
+
+    def _solve_film(
+        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None, step: float
+    ) -> tuple[Status, int]:
+        """`solve` at given pressures of all areas."""
         s = self.system
         self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz if self.axial else 0.0, cavity_pressure, None
         follows = self.elements is not None or self.density is not None

@@ -2,8 +2,9 @@
 
 Module map
 ----------
-areas    what a scene names: AxialGroove, CircumferentialGroove, Hole, Pocket
-rows     rows of the grid on the areas' axial edges; what is refused
-holes    round holes, down to a source within a cell
-cuts     prescribed vertices, shares of the control volumes, links that end at an edge; shear of the oil
+areas        what a scene names: AxialGroove, CircumferentialGroove, Hole, Pocket
+restrictors  what they are fed through: Orifice, Capillary, GivenFlow; pressures that follow from it
+rows         rows of the grid on the areas' axial edges; what is refused
+holes        round holes, down to a source within a cell
+cuts         prescribed vertices, shares of the control volumes, links that end at an edge; shear of the oil
 """

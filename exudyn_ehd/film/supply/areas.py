@@ -24,6 +24,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from exudyn_ehd.film.supply.restrictors import Restrictor
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_bool, require_number
 
 # Vertices on an edge count as inside: share of the area's width, far above rounding and far below a cell.
@@ -46,6 +47,24 @@ class _Area(Checked):
         "depth": partial(POSITIVE, hint="write depth=None for an area so deep that its shear does not count."),
         "rotating": require_bool,
     }
+    pressure: float
+    supply: Restrictor | None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.supply is None:
+            return
+        name = type(self).__name__
+        if not isinstance(self.supply, Restrictor):
+            raise InputError(
+                f"{name}.supply must be Orifice(...), Capillary(...), GivenFlow(...) or None, got {self.supply!r}; "
+                f"write {name}(..., pressure=...) for an area of given pressure."
+            )
+        if self.pressure != 0.0:
+            raise InputError(
+                f"{name}: give pressure or supply, got pressure={self.pressure!r} and supply={self.supply!r}; with a "
+                "restrictor the pressure follows from the film, and supply_pressure belongs to the restrictor."
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +84,8 @@ class AxialGroove(_Area):
         Axial length, m; None: 7/8 of the bearing's, in a `LongBearing` all of it.
     pressure : float, default 0.0
         Gauge pressure, Pa.
+    supply : Orifice, Capillary, GivenFlow or None, default None
+        Restrictor through which it is fed, in place of ``pressure``. None: ``pressure`` is given.
     rotating : bool, default False
         True: in the journal, turning with it; `steady` keeps it where it was described. False: in the bore.
     depth : float or None, default None
@@ -84,6 +105,7 @@ class AxialGroove(_Area):
     width_angle: float
     length: float | None = None
     pressure: float = 0.0
+    supply: Restrictor | None = None
     depth: float | None = None
     rotating: bool = False
 
@@ -102,6 +124,8 @@ class CircumferentialGroove(_Area):
         Axial width, m.
     pressure : float, default 0.0
         Gauge pressure, Pa.
+    supply : Orifice, Capillary, GivenFlow or None, default None
+        Restrictor through which it is fed, in place of ``pressure``. None: ``pressure`` is given.
     depth : float or None, default None
         Depth of the recess below the surface, m, at least four radial clearances; adds the friction of the oil in it
         (`exudyn_ehd.film.supply.cuts`). None: deep, without friction.
@@ -117,6 +141,7 @@ class CircumferentialGroove(_Area):
     z: float = 0.0
     width: float
     pressure: float = 0.0
+    supply: Restrictor | None = None
     depth: float | None = None
 
     rotating = False
@@ -139,6 +164,8 @@ class Hole(_Area):
         m.
     pressure : float, default 0.0
         Gauge pressure, Pa.
+    supply : Orifice, Capillary, GivenFlow or None, default None
+        Restrictor through which it is fed, in place of ``pressure``. None: ``pressure`` is given.
     rotating : bool, default False
         True: in the journal, turning with it; `steady` keeps it where it was described. False: in the bore.
     depth : float or None, default None
@@ -157,6 +184,7 @@ class Hole(_Area):
     z: float = 0.0
     diameter: float
     pressure: float = 0.0
+    supply: Restrictor | None = None
     depth: float | None = None
     rotating: bool = False
 
@@ -178,6 +206,8 @@ class Pocket(_Area):
         Axial length, m.
     pressure : float, default 0.0
         Gauge pressure, Pa.
+    supply : Orifice, Capillary, GivenFlow or None, default None
+        Restrictor through which it is fed, in place of ``pressure``. None: ``pressure`` is given.
     rotating : bool, default False
         True: in the journal, turning with it; `steady` keeps it where it was described. False: in the bore.
     depth : float or None, default None
@@ -197,6 +227,7 @@ class Pocket(_Area):
     width_angle: float
     length: float
     pressure: float = 0.0
+    supply: Restrictor | None = None
     depth: float | None = None
     rotating: bool = False
 
@@ -211,6 +242,11 @@ def require_areas(supply: object) -> None:
             f"JournalBearing.supply must be a tuple of AxialGroove(...), CircumferentialGroove(...), Hole(...) or "
             f"Pocket(...), got {supply!r}; for a single one write supply=(AxialGroove(...),)."
         )
+
+
+def source_pressure(area: SupplyArea) -> float:
+    """Pressure from which an area is fed, Pa; infinite with a `GivenFlow`."""
+    return area.pressure if area.supply is None else getattr(area.supply, "supply_pressure", math.inf)
 
 
 def placed(supply: tuple[SupplyArea, ...], length: float) -> tuple[SupplyArea, ...]:

@@ -165,6 +165,8 @@ class SupplyMap:
         Shares of the control volumes outside of all areas.
     rotating : bool
         Whether an area turns with the journal.
+    fed : (areas,) bool array
+        Areas with a restrictor.
     """
 
     def __init__(self, supply: tuple[SupplyArea, ...], grid: FilmGrid, around: bool = True) -> None:
@@ -176,6 +178,7 @@ class SupplyMap:
         length = (grid.z[-1] - grid.z[0]) * grid.reference_length
         self.supply = placed(supply, length) if grid.flows_along_z else supply
         self.rotating = any(area.rotating for area in supply)
+        self.fed = np.array([area.supply is not None for area in supply])
         self.ends, self.plain_weight = grid.fixed.copy(), grid.weight.copy()
         self.masks = [np.zeros(grid.shape, dtype=np.bool_) for _ in supply]
         self.rows = [row_parts(area, self.grid) for area in self.supply]

@@ -282,7 +282,7 @@ def _check_ends(k: int, area: SupplyArea, length: float, end_pressures: tuple[fl
     """Refuse areas that reach an end with another pressure."""
     low, high = axial_span(area)
     for land, pressure in zip((low + 0.5 * length, 0.5 * length - high), end_pressures, strict=True):
-        if land < SHORTEST_LAND * length and pressure != area.pressure:
+        if land < SHORTEST_LAND * length and (area.supply is not None or pressure != area.pressure):
             raise InputError(
                 f"JournalBearing.supply[{k}]: between {area!r} and the bearing's end, which has {pressure:g} Pa, there "
                 f"must be a land of at least {SHORTEST_LAND:g} of the bearing's length {length:g} m; make it shorter, "
@@ -311,6 +311,11 @@ def _check_pair(i: int, first: SupplyArea, k: int, second: SupplyArea, radius: f
     apart = max(0.0, radius * abs(math.remainder(angle1 - angle2, 2.0 * math.pi)) - x1 - x2)
     along = max(0.0, abs(place1 - place2) - z1 - z2)
     if math.hypot(apart, along) <= r1 + r2:
+        if first.supply is not None or second.supply is not None:
+            raise InputError(
+                f"JournalBearing.supply[{i}] and [{k}] overlap, and one of them has a restrictor, "
+                f"{first.supply or second.supply!r}; make one area of both, or move them apart."
+            )
         if first.pressure != second.pressure:
             raise InputError(
                 f"JournalBearing.supply[{i}] and [{k}] overlap with different pressures, {first.pressure:g} and "

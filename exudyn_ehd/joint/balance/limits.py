@@ -9,11 +9,12 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import Walls
+from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, Status, warn_user
+from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
 
 # Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
 HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
@@ -56,6 +57,20 @@ def warn_of_overload(bearing: JournalBearing, peak: float, force: float, where: 
         "touch or give way; look at the units of viscosity, speed and clearance, take a smaller eccentricity or load, "
         "or give the bearing a contact (GreenwoodTripp, RegularisedWall) or a bush that deflects.",
         OverloadWarning,
+    )
+
+
+def warn_of_starved(bearing: JournalBearing, reservoirs: Reservoirs | None, where: str) -> None:
+    """Warn in the name of ``where`` of a supply area that its restrictor does not fill."""
+    if reservoirs is None or reservoirs.live.all():
+        return
+    fed = [k for k, area in enumerate(bearing.supply) if area.supply is not None]
+    k = fed[int(np.argmin(reservoirs.live))]
+    warn_user(
+        f"{where}: the film takes more oil from JournalBearing.supply[{k}] than comes through its restrictor: the area "
+        f"has the cavity pressure, {reservoirs.pressures.min():.4g} Pa, and is not full; take a larger restrictor or "
+        "more supply_pressure, or move the area to where the film presses.",
+        StarvationWarning,
     )
 
 

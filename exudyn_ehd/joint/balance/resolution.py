@@ -73,7 +73,9 @@ class Resolution(NamedTuple):
 
 def resolution(film: SolvedFilm) -> Resolution:
     """Resolution of the pressure peak of a solved film."""
-    P, H, z = film.oil.P, film.solver.H, film.grid.z
+    lower, upper = film.grid.seals or (None, None)
+    rows = slice(int(lower is not None), film.grid.z.size - int(upper is not None))  # none outside of seals
+    P, H, z = film.oil.P[:, rows], film.solver.H[:, rows], film.grid.z[rows]
     n, last = P.shape[0], P.shape[1] - 1
     i, j = divmod(int(P.argmax()), last + 1)
     columns = intervals_at_half(np.roll(P[:, j], n // 2 - i), n // 2)

@@ -20,6 +20,7 @@ from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.reynolds.links import LinkLaw
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.supply.cuts import SupplyMap
+from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, AverageGap
 from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, LandContact, WallContact
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -43,6 +44,17 @@ def _supply_map(bearing: JournalBearing, grid: FilmGrid) -> SupplyMap | None:
     return SupplyMap(bearing.supply, grid, around) if bearing.supply else None
 
 
+def _reservoirs(bearing: JournalBearing, supply: SupplyMap, effects: Effects) -> Reservoirs:
+    """Supply areas with a restrictor, whose oil has the viscosity of the supply temperature."""
+    oil, thermal, viscosity = bearing.lubricant, bearing.thermal, bearing.lubricant.viscosity
+    if thermal is not None and oil.temperature_law is not None:
+        viscosity = float(oil.temperature_law.viscosity(thermal.supply_temperature, oil.density))
+    scale = bearing.radial_clearance * bearing.journal_radius**2
+    masks = [mask for mask, fed in zip(supply.masks, supply.fed, strict=True) if fed]
+    restrictors = [area.supply for area in bearing.supply if area.supply is not None]
+    return Reservoirs(restrictors, masks, (viscosity, oil.density), scale, effects.pressure_law)
+
+
 def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool = False) -> FilmGrid:
     """Grid of a bearing's film that starts at ``start_angle``, rad."""
     return film_grid(
@@ -54,6 +66,7 @@ def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool =
         supply=bearing.supply,
         conserves_mass=bearing.closure.conserves_mass,
         arc=bearing.arc,
+        seals=bearing.seals,
     )
 
 
@@ -78,6 +91,8 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         if effects.liner is None
         else Liner(next(iter(touching), None), effects.limiter, effects.pressure_law),
     )
+    if supply is not None and any(area.supply is not None for area in bearing.supply):
+        solver.reservoirs = _reservoirs(bearing, supply, effects)
     liner = None if effects.liner is None else solver.elements
     contacts = None
     if touching:

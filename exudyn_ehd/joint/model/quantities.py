@@ -63,8 +63,9 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         ``leakage_upper``, ``contact_load`` (N, vector sum of its pressure), ``contact_torque`` (Nm, its friction on the
         journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
         ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also ``supply_flow`` (m3/s, out of all of
-        them), with an arc what enters at its edges; with a thermal effect ``film_temperature`` (K, mean over the area)
-        and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
+        them), with an arc what enters at its edges; with restrictors ``lowest_pocket_pressure`` and
+        ``highest_pocket_pressure`` (Pa) of the areas behind them; with a thermal effect ``film_temperature`` (K, mean
+        over the area) and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
         ``bush_temperature`` and ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what
         they have grown by), with a liner or a flexible bore ``bore_displacement`` (m, the largest).
     """
@@ -101,6 +102,9 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     }
     if p.supply is not None or p.bearing.arc is not None:
         out["supply_flow"] = float(supply_flows(film).sum())
+    if (reservoirs := p.solver.reservoirs) is not None:
+        out["lowest_pocket_pressure"] = float(reservoirs.pressures.min())
+        out["highest_pocket_pressure"] = float(reservoirs.pressures.max())
     if film.temperature is not None:
         out["film_temperature"] = float(np.average(np.broadcast_to(film.temperature, area.shape), weights=area))
         T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
@@ -137,8 +141,20 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
     if p.supply is None:
         return np.zeros(0)
     # that of a turning area would change at once where an edge passes a column
-    inflow = p.solver.inflow(ended=not p.supply.rotating)
-    return p.supply.flows(inflow) * flow_scale
+    flows = p.supply.flows(p.solver.inflow(ended=not p.supply.rotating))
+    if p.solver.reservoirs is not None:  # what their balances count
+        flows = np.where(p.supply.fed, p.supply.flows(p.solver.inflow()), flows)
+    return flows * flow_scale
+
+
+def pocket_pressures(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure of every area of ``bearing.supply``, Pa, and flow through its restrictor, m3/s, nan without one."""
+    supply, reservoirs = film.parts.supply, film.solver.reservoirs
+    pressures = np.zeros(0) if supply is None else supply.pressures()
+    flows = np.full(pressures.size, np.nan)
+    if supply is not None and reservoirs is not None:
+        pressures[supply.fed], flows[supply.fed] = reservoirs.pressures, reservoirs.flows()
+    return pressures, flows
 
 
 def leakages(film: SolvedFilm) -> tuple[float, float]:

@@ -90,14 +90,15 @@ class FilmResponse:
             if s.oil_line is not None:
                 stored += whole * s.oil_line.rise
             stored = np.where(w.active, stored, whole)
-        self.store = diags_array(stored.reshape(-1)[order])
+        areas = self.matrix.shape[0] - w.count  # whose pressure is unknown
+        self.store = diags_array(np.append(stored.reshape(-1)[order], np.zeros(areas)))
         self.rows = rows.T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
-        by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count))
+        by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count + areas))
         fills, self.contents = true_fills(film), None
         if fills is not None:  # of a film that conserves mass
             self.contents = weigh_fills(fills, whole, number)
-            by_fill = line_by_motion(film, self.contents, w.count) * scale
+            by_fill = line_by_motion(film, self.contents, w.count + areas) * scale
         # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
         self.by_pose, self.by_rate = by_motion[:PLACES].copy(), by_motion[PLACES : 2 * PLACES]
         self.by_content, self.by_sway = by_fill[:PLACES], by_fill[PLACES : 2 * PLACES]

@@ -94,9 +94,10 @@ ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
 # What is left inside the cells where nothing cancels.
 LEFT_IN_CELLS = 0.007
 LOADS = {"smallest": 1e-30, "largest": 1e15}
-# Without a load, what counts as one for the residual: share of L D mu omega / psi^2. A smaller one asks for a more
-# exact position, which round-off ends at 1e-16 of that force.
-NO_LOAD = 1e-5
+# Without a load, what counts as one for the residual: share of L D mu omega / psi^2, and share of L D times the supply
+# pressure of restrictors. Smaller ones ask for a more exact position, which round-off ends at 1e-16 of the first force,
+# and the balances of restrictors at 1e-13 of the second.
+NO_LOAD, NO_LOAD_FED = 1e-5, 1e-3
 # Share of the largest stiffness that the k of a threshold may miss.
 ROUNDING = 1e-12
 
@@ -312,7 +313,9 @@ def equilibrium(
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
     size = float(np.hypot(*force))
     if size == 0.0:
-        size = NO_LOAD * bearing.reference_force(omega)
+        fed = max((getattr(area.supply, "supply_pressure", 0.0) for area in bearing.supply), default=0.0)
+        area = 2.0 * bearing.journal_radius * bearing.length
+        size = NO_LOAD * bearing.reference_force(omega) + NO_LOAD_FED * area * fed
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
     require_rest(bearing, "equilibrium")

@@ -15,12 +15,12 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.samples import FilmState
-from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload
+from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload, warn_of_starved
 from exudyn_ehd.joint.balance.newton import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
-from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
+from exudyn_ehd.joint.model.quantities import pocket_pressures, refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
@@ -158,7 +158,7 @@ SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 @dataclass(frozen=True, eq=False)
 class SteadyResult(FilmRecord, FilmPictures):
-    """Result of `steady`: the film at one position of the journal.
+    """Result of `steady`: one film.
 
     ``plot_pressure()`` and its like draw it. SI units; vectors in the joint frame: origin on the bearing's mid-plane,
     z = bearing axis, fixed in the housing. Angles count from x towards y.
@@ -185,6 +185,8 @@ class SteadyResult(FilmRecord, FilmPictures):
     power_loss, leakage, contact_load : float
         Power loss, W; oil out of both ends together, m3/s; size of the contact's force, N. Where contact acts around
         an arc this vector sum is less than the integral of the contact pressure (3 % over 0.8 rad).
+    pocket_pressures, restrictor_flows : (k,) arrays
+        Pressure of every area of ``bearing.supply``, Pa; flow through its restrictor, m3/s, nan without one.
     supply_flows : (k,) array
         Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With ``bearing.arc``: oil that enters at
         the leading and at the trailing edge, 0 where it leaves.
@@ -234,6 +236,8 @@ class SteadyResult(FilmRecord, FilmPictures):
     power_loss: float
     leakage: float
     contact_load: float
+    pocket_pressures: np.ndarray
+    restrictor_flows: np.ndarray
     supply_flows: np.ndarray
     contact_torque: float
     contact_power_loss: float
@@ -420,7 +424,8 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     refuse_pressed_through(model.bearing, q["minimum_gap"], where)
     warn_of_overload(model.bearing, peak, force, where)
     warn_of_grid(film, where)
-    reference = model.bearing.reference_force(motion[8])
+    warn_of_starved(model.bearing, film.solver.reservoirs, where)
+    reference, (pressures, flows) = model.bearing.reference_force(motion[8]), pocket_pressures(film)
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
@@ -436,6 +441,8 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         power_loss=q["power_loss"],
         leakage=q["leakage"],
         contact_load=q["contact_load"],
+        pocket_pressures=pressures,
+        restrictor_flows=flows,
         supply_flows=supply_flows(film),
         contact_torque=q["contact_torque"],
         contact_power_loss=q["contact_power_loss"],

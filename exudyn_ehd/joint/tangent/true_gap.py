@@ -73,9 +73,10 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     return patir_cheng.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
 
 
-def true_line(film: SolvedFilm) -> LineGradients | None:
-    """The rupture line's part of the balances' derivatives, to the true gap; None without."""
-    return _to_true_gap(film, film.solver.line_gradients())
+def true_line(film: SolvedFilm, places: np.ndarray | None = None) -> LineGradients | None:
+    """The rupture line's part of the balances' derivatives, to the true gap; None without. ``places``: as for
+    `FilmAnswers.line_gradients`."""
+    return _to_true_gap(film, film.solver.line_gradients(places))
 
 
 def true_fills(film: SolvedFilm) -> LineGradients | None:

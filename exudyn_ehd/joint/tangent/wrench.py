@@ -17,6 +17,7 @@ from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.sensitivity import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
+from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
@@ -126,7 +127,19 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
     if (line := true_line(film)) is not None:
         add_line_columns(tuple(line), at, out)
-    return out
+    return out if s.reservoirs is None else np.hstack((out, _reservoir_gradients(film, s.reservoirs)))
+
+
+def _reservoir_gradients(film: SolvedFilm, reservoirs: Reservoirs) -> np.ndarray:
+    """`balance_gradients` (10, k) of the areas with an unknown pressure, from the balances at their vertices."""
+    s, fields = film.solver, reservoirs.fields(film.grid.shape).reshape(-1, film.grid.area.size)
+    places = np.flatnonzero(fields.any(axis=0))
+    out = np.empty((MOTION_SIZE, places.size))
+    motion_columns(places, places.size, *gap_derivatives(film), film.grid.directions, out)
+    if s.oil_line is not None and (line := true_line(film, places)) is not None:
+        add_line_columns(tuple(line), film.grid.directions, out)
+    flows: np.ndarray = reservoirs.weights() * (out @ fields[:, places].T)
+    return flows
 
 
 def _difference_columns(film: SolvedFilm, solver: ClassicSolver) -> np.ndarray:
@@ -204,8 +217,8 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     own, at, directions = 4 + shear + 2 * extra, w.order[: w.count], (p.directions.cos_x, p.directions.sin_x, g.z)
     rows = np.empty((own + 5 * pressed, w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, *directions, w.active, rows)
+    slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
     if extra:
-        slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
         if film.extra is not None:
             slopes = slopes + g.weight * np.stack((film.extra.slope_x, film.extra.slope_z))
         rows[own - 2 : own] = (slopes * w.active).reshape(2, -1)[:, at]
@@ -226,7 +239,14 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         by_pressure = g.weight * p.liner.contact_by_pressure
         load_adjoint_rhs(w.order, w.count, by_pressure, *directions, w.active, rows[own:])
         rows[own + 4] = by_pressure.ravel()[at]
-    return rows
+    if film.solver.reservoirs is None:
+        return rows
+    whole, fields = np.zeros((own, g.area.size)), film.solver.reservoirs.fields(g.shape)
+    load_adjoint_rhs(np.arange(g.area.size), g.area.size, g.weight, *directions, p.solver.ones > 0.0, whole)
+    whole[own - 2 * extra :] = slopes.reshape(2, -1)[: 2 * extra]
+    if film.oil.ratio_q is not None and film.oil.P_q is not None:  # the shear of its land's share
+        whole[4] = (g.shear_weight / p.solver.H * film.oil.ratio_q / film.oil.P_q).ravel()
+    return np.hstack((rows, whole @ fields.reshape(-1, g.area.size).T / film.scales.pressure))
 
 
 def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:

@@ -1,0 +1,314 @@
+"""Restrictors of supply areas: the pressure of an area follows from the balance of its restrictor and the film.
+
+The flow Q that the film takes from an area with the pressure p comes through the restrictor, from the supply pressure
+p_s (W. B. Rowe, Hydrostatic, Aerostatic and Hybrid Bearing Design, 2012):
+
+    capillary    Q = pi d^4 (p_s - p) / (128 mu l),
+    orifice      Q = C_d pi d^2 / 4 sqrt(2 (p_s - p) / rho)  for p < p_s; for p > p_s it flows back by the same law,
+    given flow   Q = Q_0.
+
+All of them are one balance, smooth in p and Q where the flow changes its direction too,
+
+    g = a p + b Q + k Q |Q| - c = 0.
+
+With the film's balances r and its unknowns u, an area adds the unknown p and the balance g. Q is the sum of the
+balances at the vertices of the area: flows of pressure and of surfaces over the links around it, and the squeeze
+under it. Let
+
+    A = dr/du,    B = dr/dp,    C = dQ/du,    D = dQ/dp at fixed u,    S = D - C A^-1 B.
+
+S, the derivative of the film's flows to the pressures of the areas, is an M-matrix, and g rises with p. So there is one
+solution, which Newton's method finds. No pressure is below the cavity's: an area from which the film takes more than
+comes through its restrictor has the cavity pressure and no balance. Derivatives are those of u and p together.
+
+With ``compressible_volume`` V and the bulk modulus K of the oil in it, Q is that of the film and ``V / K dp/dt``, by
+backward Euler over a step in time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
+from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Orifice(Checked):
+    """Sharp-edged orifice between a supply of constant pressure and a supply area.
+
+    Parameters
+    ----------
+    diameter : float
+        m.
+    supply_pressure : float
+        Gauge pressure in front of it, Pa.
+    discharge_coefficient : float, default 0.6
+        C_d, above 0 and up to 1.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> feed = ehd.Orifice(diameter=3e-4, supply_pressure=4e6)
+    >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=feed)
+    >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
+    >>> (1e-6 * film.pocket_pressures).round(2), (6e7 * film.restrictor_flows).round(1)  # MPa, cm3/min
+    (array([2.24]), array([162.]))
+    """
+
+    diameter: float
+    supply_pressure: float
+    discharge_coefficient: float = 0.6
+
+    checks: ClassVar = {
+        "diameter": POSITIVE,
+        "supply_pressure": require_number,
+        "discharge_coefficient": partial(POSITIVE, at_most=1.0, hint="a sharp edge has some 0.6."),
+    }
+
+    def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
+        """Coefficients a, b, k, c of the balance for an oil, Pa s and kg/m3."""
+        area = 0.25 * math.pi * self.discharge_coefficient * self.diameter**2
+        return 1.0, 0.0, 0.5 * density / area**2, self.supply_pressure
+
+
+@dataclass(frozen=True, kw_only=True)
+class Capillary(Checked):
+    """Laminar capillary between a supply of constant pressure and a supply area.
+
+    Its oil has the viscosity of the supply temperature at ambient pressure. It should be at least 100 diameters long,
+    with a Reynolds number below 1000.
+
+    Parameters
+    ----------
+    diameter, length : float
+        m.
+    supply_pressure : float
+        Gauge pressure in front of it, Pa.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> feed = ehd.Capillary(diameter=5e-4, length=0.06, supply_pressure=4e6)
+    >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=feed)
+    >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
+    >>> (1e-6 * film.pocket_pressures).round(2)  # MPa
+    array([2.06])
+    """
+
+    diameter: float
+    length: float
+    supply_pressure: float
+
+    checks: ClassVar = {"diameter": POSITIVE, "length": POSITIVE, "supply_pressure": require_number}
+
+    def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
+        """Coefficients a, b, k, c of the balance for an oil, Pa s and kg/m3."""
+        return 1.0, 128.0 * viscosity * self.length / (math.pi * self.diameter**4), 0.0, self.supply_pressure
+
+
+@dataclass(frozen=True, kw_only=True)
+class GivenFlow(Checked):
+    """Constant flow into a supply area, whatever its pressure: a pump or a flow regulator of its own.
+
+    Parameters
+    ----------
+    flow : float
+        m3/s; 0: a closed recess.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> pocket = ehd.Pocket(angle=np.pi, width_angle=0.6, length=0.012, supply=ehd.GivenFlow(flow=5e-7))
+    >>> film = ehd.steady(ehd.JournalBearing(**b, supply=(pocket,)), speed=100.0, eccentricity_ratio=0.3)
+    >>> (1e-6 * film.pocket_pressures).round(2)  # MPa
+    array([0.42])
+    """
+
+    flow: float
+
+    checks: ClassVar = {"flow": partial(require_number, at_least=0.0)}
+
+    def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
+        """Coefficients a, b, k, c of the balance for any oil."""
+        return 0.0, 1.0, 0.0, self.flow
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndSeal(Checked):
+    """Seal at an end of the bearing, as the piston ring of a squeeze-film damper: ``q = conductance (p - p_outside)``.
+
+    q is the axial outflow per length around, p the film's pressure at the end, which is unknown, and p_outside the one
+    of ``end_pressures``. What the seal lets through does not depend on the gap. 0: tight; from some 1e4 c^3 / (12 mu L)
+    on it is as good as open. A narrow slot of height s and length l has s^3 / (12 mu l).
+
+    Results have a row outside of every seal, at ``z`` beyond the end by 1e-9 of the length. Of the axial force on a
+    seal one half acts on either surface.
+
+    Parameters
+    ----------
+    conductance : float
+        m3/(s Pa m).
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.065, length=0.02, radial_clearance=1e-4, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> damper = ehd.JournalBearing(**b, cavitation=ehd.FullSommerfeld(), end_seals=ehd.EndSeal(conductance=5e-11))
+    >>> film = ehd.steady(damper, speed=0.0, eccentricity_ratio=0.0, velocity=(1e-3, 0.0))
+    >>> round(-film.force[0] / 1e-3)  # N s/m
+    704921
+    """
+
+    conductance: float
+
+    checks: ClassVar = {"conductance": partial(require_number, at_least=0.0)}
+
+
+def require_seals(seals: object) -> None:
+    """Raise `InputError` for anything but a seal, a pair of seals or open ends, or None."""
+    pair = seals if isinstance(seals, tuple) else (seals, seals)
+    if len(pair) != 2 or not all(isinstance(seal, EndSeal | None) for seal in pair):
+        raise InputError(
+            "JournalBearing.end_seals must be EndSeal(...) for both ends, a pair with None for an open one, or None, "
+            f"got {seals!r}."
+        )
+
+
+# Distance of the rows outside of seals from the film's ends, over its length: above the rounding of slopes, and without
+# area.
+OUTSIDE = 1e-9
+
+
+def sealed_grid(grid: FilmGrid, seals: tuple[float | None, float | None]) -> FilmGrid:
+    """Film grid whose ends are sealed: the pressure at an end is unknown, that of a row outside of it prescribed.
+
+    The link to that row does not depend on the gap: per length around, the seal lets ``q = C (p_end - p_outside)``
+    through, besides what an axially moving surface takes along.
+
+    Parameters
+    ----------
+    grid : FilmGrid
+        With open ends.
+    seals : pair of floats or None
+        C over clearance and R of the lower and the upper end, 1/(Pa s); None: an open end.
+    """
+    added = tuple(int(seal is not None) for seal in seals)
+    step = OUTSIDE * (grid.z[-1] - grid.z[0])
+    z = np.concatenate((grid.z[:1] - step, grid.z, grid.z[-1:] + step))[1 - added[0] : grid.z.size + 1 + added[1]]
+    widths, fixed = np.diff(z), np.pad(grid.fixed, ((0, 0), added), constant_values=True)
+    for row, sealed in zip((1, -2), added, strict=True):
+        if sealed:
+            fixed[:, row] = grid.fixed[:, 1]
+    return replace(
+        grid,
+        z=z,
+        width_z=0.5 * (np.append(widths, 0.0) + np.insert(widths, 0, 0.0)),
+        link_z=np.pad(grid.link_z, added),
+        weight_z=np.pad(grid.weight_z, added),
+        weight=np.pad(grid.weight, ((0, 0), added)),
+        fixed=fixed,
+        seals=seals,
+    )
+
+
+# Largest conductance of a seal over that of a film as thick as the clearance and as long as the bearing. Larger ones
+# change nothing but the rounding of the leakage.
+WIDE_OPEN = 1e8
+
+
+def seal_ends(grid: FilmGrid, kz: np.ndarray, pressure_scale: float) -> None:
+    """Set the conductances of seals in those of a film's links in z, kz (n, m); ``pressure_scale`` in Pa."""
+    for row, seal in zip((0, -2), grid.seals or (), strict=False):
+        if seal is not None:
+            kz[:, row] = min(seal * pressure_scale, WIDE_OPEN / (grid.z[-1] - grid.z[0])) * grid.width_x
+
+
+Restrictor = Orifice | Capillary | GivenFlow
+
+
+class Reservoirs:
+    """Supply areas with a restrictor, whose pressures are unknown.
+
+    Parameters
+    ----------
+    restrictors : sequence of Restrictor
+    masks : list of (n, m) bool arrays
+        Vertices of every area; they may change.
+    oil : (float, float)
+        Viscosity, Pa s, and density, kg/m3, of the oil in the restrictors.
+    flow_scale : float
+        m3/s per scaled flow of the film.
+    law : PressureTransform or None
+        By which the film's unknown follows the pressure; None: it is the pressure.
+
+    Attributes
+    ----------
+    pressures : (k,) array
+        Of the last solution, Pa; the next one starts from them.
+    live : (k,) bool array
+        Areas that have a balance.
+    by_pressure, by_flow, size : (k,) arrays
+        Derivatives of g to the area's pressure, Pa, and to the film's flow, m3/s; size of its terms.
+    """
+
+    def __init__(
+        self,
+        restrictors: Sequence[Restrictor],
+        masks: list[np.ndarray],
+        oil: tuple[float, float],
+        flow_scale: float,
+        law: PressureTransform | None = None,
+    ) -> None:
+        self.masks, self.flow_scale, self.law = masks, flow_scale, law
+        self.coefficients = np.array([restrictor.coefficients(*oil) for restrictor in restrictors]).T
+        a, _, _, c = self.coefficients
+        self.pressures = 0.5 * a * c
+        self.live = np.ones(len(masks), dtype=bool)
+        self.by_pressure, self.by_flow, self.size = np.zeros((3, len(masks)))
+
+    def transformed(self) -> tuple[np.ndarray, np.ndarray]:
+        """Pressures (k,) as the film's unknown, Pa, and their derivatives to the pressures."""
+        if self.law is None:
+            return self.pressures, np.ones(self.pressures.size)
+        q, (ratio, rest) = self.law.transform(self.pressures)[None], np.empty((2, 1, self.pressures.size))
+        self.law.inverse(q, np.empty(q.shape), ratio, rest)
+        return q[0], 1.0 / ratio[0]
+
+    def fields(self, shape: tuple[int, int]) -> np.ndarray:
+        """Fields (., n, m) of the areas with a balance, one at their vertices."""
+        return np.array([self.masks[q] for q in np.flatnonzero(self.live)], dtype=float).reshape(-1, *shape)
+
+    def weights(self) -> np.ndarray:
+        """Derivatives of g to the scaled flows, of the areas with a balance."""
+        weights: np.ndarray = self.by_flow[self.live] * self.flow_scale
+        return weights
+
+    def balance(self, inflow: np.ndarray, cavity_pressure: float) -> np.ndarray:
+        """Return g (.,) of the areas with a balance; sets ``size``.
+
+        ``inflow`` (n, m): scaled, from the vertices into the film; ``cavity_pressure`` in Pa.
+        """
+        (a, b, k, c), p = self.coefficients, self.pressures
+        flows, sizes = np.zeros((2, p.size))
+        for q, at in enumerate(self.masks):
+            flows[q], sizes[q] = self.flow_scale * inflow[at].sum(), self.flow_scale * np.abs(inflow[at]).sum()
+        self.by_pressure, self.by_flow = a, b + 2.0 * k * np.abs(flows)
+        g = a * p + (b + k * np.abs(flows)) * flows - c
+        self.size = np.abs(a * p) + (b + k * np.abs(flows)) * sizes + np.abs(c) + 1e-300
+        self.live = ((p > cavity_pressure) | (g < 0.0)) & [bool(at.any()) for at in self.masks]
+        balance: np.ndarray = g[self.live]
+        return balance
+
+    def flows(self) -> np.ndarray:
+        """Flow through every restrictor (k,), m3/s, at the present pressures."""
+        a, b, k, c = self.coefficients
+        left = c - a * self.pressures
+        through = np.sign(left) * np.sqrt(np.abs(left) / np.maximum(k, 1e-300))
+        return np.where(b > 0.0, left / np.maximum(b, 1e-300), through)
