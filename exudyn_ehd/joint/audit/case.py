@@ -45,8 +45,6 @@ MATTERS, NOTHING = 0.03, 0.02
 # Search for the same load: largest number of films; longest step as a share of the minimum film thickness or, where
 # surfaces may touch, of the clearance.
 MOST_FILMS, LONGEST = 60, 0.6
-# Rounds of a time measurement; the best of them counts.
-ROUNDS = 5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -340,4 +338,4 @@ def _seconds(model: BearingModel, states: Sequence[FilmState]) -> float:
             evaluation.tangent()
             evaluation.history()
 
-    return min(timeit.repeat(films, number=1, repeat=ROUNDS))
+    return min(timeit.repeat(films, number=1))
