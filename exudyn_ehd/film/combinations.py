@@ -113,10 +113,11 @@ def _check_seals(bearing: BearingOptions) -> None:
             "follow the pressure, and one temperature; leave one of the two out."
         )
     pair = seals if isinstance(seals, tuple) else (seals,)
-    if not supply and all(seal is not None and seal.conductance == 0.0 for seal in pair):
+    tight = all(seal is not None and seal.conductance == 0.0 for seal in pair)
+    if tight and all(isinstance(area.supply, GivenFlow) for area in supply):
         raise InputError(
             "JournalBearing.end_seals: with a conductance of 0 at both ends nothing gives the film a pressure; give "
-            "the bearing supply=(...), or one of the seals a conductance."
+            "the bearing a supply with a pressure or an Orifice, or one of the seals a conductance."
         )
 
 

@@ -57,8 +57,7 @@ class FilmAnswers(FilmArrays):
         return fields
 
     def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and ``dg/dQ C`` (k, count), ``dg/dQ D + dg/dp`` (k, k);
-        p in Pa."""
+        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p in Pa, Q scaled."""
         s, r = self.system, self.reservoirs
         assert r is not None
         self.factor_solution()
@@ -70,12 +69,10 @@ class FilmAnswers(FilmArrays):
         drawn = sum(slopes[2 * q] * t + np.roll(slopes[2 * q + 1] * t, 1, q + 1) for q, t in enumerate(taken))
         B, C, E = (np.reshape(x, (len(E), self.area.size)) for x in (balances, drawn, E))
         B *= r.transformed()[1][r.live, None] / self.pressure_scale
-        weights = r.weights()[:, None]
-        of_areas = weights * (E @ B.T) + np.diag(r.by_pressure[r.live])
-        return B[:, at], np.ascontiguousarray(weights * C[:, at]), of_areas
+        return B[:, at], np.ascontiguousarray(C[:, at]), E @ B.T
 
     def reduced(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """B^T, ``dg/dQ C A^-1`` of the film alone, and ``dg/dp`` with the film's answer, shapes as of `border`."""
+        """B^T, ``C A^-1`` of the film alone, and S, with shapes and units as of `border`."""
         B, C, D = self.border()
         self._solve_film_transposed(C)
         return B, C, D - C @ B.T
@@ -85,11 +82,11 @@ class FilmAnswers(FilmArrays):
         if self.reservoirs is None:
             self._solve_film_transposed(rhs)
             return
-        count, (B, C, S) = self.work.count, self.reduced()
+        count, r, (B, C, S) = self.work.count, self.reservoirs, self.reduced()
         film = rhs[:, :count].copy()
         self._solve_film_transposed(film)
-        rhs[:, count:] = np.linalg.solve(S.T, (rhs[:, count:] - film @ B.T).T).T
-        rhs[:, :count] = film - rhs[:, count:] @ C
+        rhs[:, count:] = np.linalg.solve(r.derivatives(S).T, (rhs[:, count:] - film @ B.T).T).T
+        rhs[:, :count] = film - (rhs[:, count:] * r.weights()) @ C
 
     def _solve_film_transposed(self, rhs: np.ndarray) -> None:
         """`solve_transposed` at given pressures of all areas."""
@@ -124,8 +121,8 @@ class FilmAnswers(FilmArrays):
         A = csc_matrix(U + L @ U)
         if self.reservoirs is None:
             return A
-        B, C, D = self.border()
-        return csc_matrix(block_array([[A, B.T], [C, D]]))
+        r, (B, C, D) = self.reservoirs, self.border()
+        return csc_matrix(block_array([[A, B.T], [r.weights()[:, None] * C, r.derivatives(D)]]))
 
     def _couple(self, x: np.ndarray, transposed: bool) -> None:
         """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""

@@ -26,6 +26,8 @@ from exudyn_ehd.status import Status
 
 # Trials of Newton's method for the pressures of reservoirs.
 MOST_BALANCES = 40
+# Largest contraction rate with which S of a film before serves on: a new one costs as much as two film solutions.
+REUSABLE = 0.05
 # Largest balance of a reservoir over its terms: round-off, and what counts as round-off where it does not fall further.
 EVEN, ROUNDED = 1e-13, 1e-9
 
@@ -117,9 +119,10 @@ class FilmSolver(FilmAnswers):
 
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
         """Solve the film with its reservoirs by Newton's method in their pressures, none of which is below ``floor``,
-        Pa; steps are halved where the largest balance grows."""
+        Pa. S of the first film serves as long as it leaves little of the balances; steps are halved where the largest
+        balance grows."""
         base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
-        weights = np.zeros(len(r.masks))
+        weights, S, live = base, np.zeros((0, 0)), r.live
         for _ in range(MOST_BALANCES):
             r.pressures, error = np.maximum(base + change, floor), np.inf
             for at, p in zip(r.masks, r.transformed()[0], strict=True):
@@ -133,8 +136,10 @@ class FilmSolver(FilmAnswers):
                 if left <= EVEN or (left <= ROUNDED and error > 0.5 * least):
                     return status, steps
             if error < least:
+                if least == np.inf or error > REUSABLE * least or not np.array_equal(live, r.live):
+                    S, live = self.reduced()[2], r.live
                 base, change, least = r.pressures, np.zeros(len(r.masks)), error
-                change[r.live] = -np.linalg.solve(self.reduced()[2], g)
+                change[r.live] = -np.linalg.solve(r.derivatives(S), g)
             elif least < np.inf:
                 change = 0.5 * change
             else:

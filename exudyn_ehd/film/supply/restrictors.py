@@ -290,6 +290,11 @@ class Reservoirs:
         weights: np.ndarray = self.by_flow[self.live] * self.flow_scale
         return weights
 
+    def derivatives(self, by_pressure: np.ndarray) -> np.ndarray:
+        """Derivatives (., .) of g to the pressures, Pa, of the areas with a balance, from those of the scaled flows."""
+        out: np.ndarray = self.weights()[:, None] * by_pressure + np.diag(self.by_pressure[self.live])
+        return out
+
     def balance(self, inflow: np.ndarray, cavity_pressure: float) -> np.ndarray:
         """Return g (.,) of the areas with a balance; sets ``size``.
 
