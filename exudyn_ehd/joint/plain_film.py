@@ -24,7 +24,7 @@ _NO_CONTACT = np.zeros(6)
 
 def has_plain_edges(bearing: JournalBearing) -> bool:
     """Return whether no pressure acts on the cross sections at which the film of an arc ends."""
-    return bearing.arc is None or not any((*bearing.arc.pressures, *bearing.end_pressures))
+    return not bearing.bore_arcs or not any((*bearing.edge_pressures, *bearing.end_pressures))
 
 
 def is_plain(parts: FilmParts, effects: Effects) -> bool:

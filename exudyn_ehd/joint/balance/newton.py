@@ -339,7 +339,7 @@ def lacks_oil(bearing: JournalBearing) -> bool:
 
 def is_fed(bearing: JournalBearing, cavity_pressure: float) -> bool:
     """Return whether ends, supply areas or an open inlet feed oil into cavities of this pressure, Pa."""
-    supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap) or bearing.arc is not None
+    supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap) or bool(bearing.bore_arcs)
     return supplied or max(bearing.end_pressures) > cavity_pressure
 
 

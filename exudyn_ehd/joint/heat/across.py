@@ -55,8 +55,8 @@ class PairBalance(HeatBalance):
         kept = self.store + STAGNANT * self.largest
         self.own[0, ..., 0] += kept + self.follows
         self.own[1, ..., 1] += kept / 3.0
-        if film.parts.supply is not None:
-            areas = np.logical_or.reduce(film.parts.supply.masks)
+        if film.parts.mixing:
+            areas = np.logical_or.reduce(film.parts.mixing)
             self.own[1, ..., 1] += areas * MIXED * (self.largest + largest_lost)
         self.given = np.array([self.heat, thermal.heat_tilt(film)]) / self.scale
         self.given[0] += (kept + self.follows) * (self.old - self.supply)

@@ -117,7 +117,8 @@ class LumpedTemperature(OilTemperature):
         super().__init__(spec, bearing.lubricant)
         self.spec = spec
         self.housing = self._or_supply(spec.housing_temperature)
-        volume = 2.0 * math.pi * bearing.journal_radius * bearing.length * bearing.radial_clearance
+        around = sum(arc.extent for arc in bearing.bore_arcs) or 2.0 * math.pi
+        volume = around * bearing.journal_radius * bearing.length * bearing.radial_clearance
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
         self.field: ViscosityField | None = None
