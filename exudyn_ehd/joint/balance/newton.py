@@ -304,13 +304,23 @@ def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float) -> np.nd
 
 
 def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end.
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end, between arcs of any gap.
 
     A wall or a flexible bush limits nothing.
     """
-    if model.effects.contacts or model.flexible:
+    lobes, g = model.effects.lobes, model.grid
+    lobed = lobes is not None or len(g.edges) > 1
+    if model.effects.contacts or model.flexible or lobed:
         longest = FREE_STEP * model.bearing.radial_clearance
-        return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
+        step = step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
+    if lobed and not (model.effects.contacts or model.flexible):
+        # a journal may go farther than the clearance between lobes
+        normals, axis = np.array(g.directions[:2]), motion[:2, None] + motion[2:4, None] * g.z * g.reference_length
+        gap = model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - normals.T @ axis
+        closes = float(((step @ normals)[:, None] / gap).max())
+        return step * min(1.0, ROOM / max(closes, 1e-300))
+    if model.effects.contacts or model.flexible:
+        return step
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
     scale = 1.0
     for s in (-half, half):
