@@ -12,7 +12,7 @@ on the side away from theta_o, with
 around a concentric journal (J. W. Lund, K. K. Thomsen, A Calculation Method and Data for the Dynamic Coefficients of
 Oil-Lubricated Journal Bearings, ASME 1978). A dam adds its depth from the leading edge on, up to a step (J. C. Nicholas,
 P. E. Allaire, Analysis of Step Journal Bearings - Finite Length, Stability, ASLE Trans. 23 (1980) 197). On its step
-lies a column of the grid, on its sides lie rows; the flow over the step is then that between constant depths.
+lies a column of the grid, on either side two rows next to each other, one in the dam and one on the land.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid, axial_metric, axial_vertices, rows_between, tensor_grid
+from exudyn_ehd.film.sensitivity import gap_slopes
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number, require_type
 
 TURN = 2.0 * math.pi
@@ -32,6 +33,9 @@ TURN = 2.0 * math.pi
 SMALLEST_ARC, FEWEST_ON_ARC, FEWEST_ON_PART = 0.05, 8, 4
 # Angle up to which two edges are one, rad; share of the length that a dam leaves for its lands at least.
 TOUCHING, LEAST_LANDS = 1e-9, 0.02
+# Distance of the two rows at the side of a dam, and smallest distance of two sides, over the length. Smaller: more
+# round-off; larger: a slope in place of a step.
+SIDE, BETWEEN_SIDES = 2e-4, 1e-3
 # Usual width of grooves between lobes, rad.
 GROOVE = math.radians(20.0)
 
@@ -303,25 +307,28 @@ def check_arcs(arcs: tuple[Arc, ...], length: float) -> None:
             )
 
 
-def arc_grid(
-    radius: float,
-    length: float,
-    arcs: tuple[Arc, ...],
-    n_theta: int,
-    n_z: int,
-    *,
-    stretch: float,
-    rows: tuple[np.ndarray, np.ndarray] | None = None,
-) -> FilmGrid:
+def arc_grid(radius: float, length: float, arcs: tuple[Arc, ...], n_theta: int, n_z: int, stretch: float) -> FilmGrid:
     """Film grid of arcs side by side, each with its share of ``n_theta`` columns and one on either edge; the rest as
     `bearing_grid`."""
-    z, weight_z = axial_vertices(n_z, 0.5 * length / radius, stretch) if rows is None else rows
+    z, weight_z = _rows([arc.dam.length / length for arc in arcs if arc.dam is not None], n_z, stretch)
+    z, weight_z = 0.5 * length / radius * z, 0.5 * length / radius * weight_z
     x, face, width, links, weight = (np.concatenate(f) for f in zip(*(_columns(arc, n_theta) for arc in arcs)))
     fixed = np.zeros((x.size, z.size), dtype=np.bool_)
     fixed[:, [0, -1]] = True
     # nothing flows from the last column of an arc to the next one
     fixed[links == 0.0] = fixed[np.roll(links == 0.0, 1)] = True
     return replace(tensor_grid(x, z, width, links, radius, fixed, weight, weight_z), x_face=face)
+
+
+def _rows(dams: list[float], n_z: int, stretch: float) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and weights in [-1, 1] for dams of these lengths over the bearing's, two rows at either side of each."""
+    sides: list[float] = []
+    for side in sorted(dams):
+        sides += [side] if not sides or side - sides[-1] > BETWEEN_SIDES else []
+    bounds = [*(-side for side in sides[::-1]), *sides]
+    edges = [-1.0, *(z + way for z in bounds for way in (-SIDE, SIDE)), 1.0]
+    counts = [max(FEWEST_ON_PART, 2 * math.ceil(0.25 * n_z * (b - a))) for a, b in zip(edges[::2], edges[1::2])]
+    return rows_between(edges, [k for n in counts for k in (n, 1)][:-1], stretch)
 
 
 def _columns(arc: Arc, n_theta: int) -> tuple[np.ndarray, ...]:
@@ -350,6 +357,11 @@ def columns_of_arcs(theta: np.ndarray, arcs: tuple[Arc, ...]) -> list[slice]:
     return found
 
 
+def rows_at_sides(grid: FilmGrid) -> np.ndarray:
+    """Return whether the links along z (m - 1,) of a grid with dams lie between the two rows at a side."""
+    return np.asarray(grid.link_z * SIDE * float(grid.z[-1] - grid.z[0]) > 0.5)
+
+
 def mixing_grooves(grid: FilmGrid) -> list[np.ndarray]:
     """Vertices (n, m) on both sides of every groove between arcs; none of a ring."""
     grooves = []
@@ -373,11 +385,14 @@ class LobeTerm:
     ----------
     values, between : (n, m) arrays
         Scaled addition to the gap at the vertices, and on links what it differs from the mean of their ends.
+    slopes : (2, n, m) array
+        Slopes of dams along theta and z, less those of `gap_slopes`, that with the weights of the grid sum up to the
+        steps: all at the column of the step, and half on either row of a side.
     """
 
     def __init__(self, arcs: tuple[Arc, ...], grid: FilmGrid, clearance: float) -> None:
-        self.values, links = np.zeros((2, *grid.shape))
-        bounds = np.concatenate((grid.z[:1], grid.z[0] + np.cumsum(grid.width_z)))
+        self.values, links, dams, *scratch = np.zeros((6, *grid.shape))
+        self.slopes = np.zeros((2, *grid.shape))
         for arc, (first, last) in zip(arcs, grid.edges.tolist(), strict=True):
             part = slice(first, last + 1)
             x, face = grid.x[part] - arc.start, grid.x_face[part] - arc.start
@@ -385,14 +400,17 @@ class LobeTerm:
             links[part] += arc.lobe(grid.x_face[part])[:, None]
             if arc.dam is not None:
                 step, half = TURN if arc.step is None else arc.step, 0.5 * arc.dam.length / grid.reference_length
-                # a vertex on a side is the land's, and its links in theta lie half in the dam
-                inside = np.abs(grid.z) < half * (1.0 - TOUCHING)
-                share = np.diff(np.clip(bounds, -half, half)) / grid.width_z
-                edge = np.where(np.abs(x - step) < TOUCHING, 0.5, x < step)
-                self.values[part] += arc.dam.depth / clearance * np.outer(edge, inside)
-                links[part] += arc.dam.depth / clearance * np.outer(face < step, share)
+                depth = arc.dam.depth / clearance * (np.abs(grid.z) < half)
+                at_step = np.abs(x - step) < TOUCHING
+                dams[part] = np.outer(np.where(at_step, 0.5, x < step), depth)
+                links[part] += np.outer(face < step, depth)
+                self.slopes[0, part] = -np.outer(at_step, depth * grid.weight_z) / grid.weight[part]
+        self.values += dams
         following = np.where((grid.link_x == 0.0)[:, None], self.values, np.roll(self.values, -1, axis=0))
         self.between = links - 0.5 * (self.values + following)
+        gap_slopes(dams, grid.width_x, grid.link_x, grid.z, *scratch)
+        self.slopes -= scratch[1:]
+        self.slopes[1, :, 1:-1] += 0.5 * (dams[:, 2:] - dams[:, :-2]) / grid.weight_z[1:-1]
 
     def field(self, history: object) -> np.ndarray:
         """Scaled addition to the gap (n, m)."""

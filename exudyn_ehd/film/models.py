@@ -22,7 +22,7 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
-from exudyn_ehd.film.supply.areas import AxialGroove, Pocket, SupplyArea, placed
+from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.status import Checked, InputError, require_count
@@ -312,11 +312,8 @@ def film_grid(
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
     columns = columns_of(film, 0.5 * length / radius)
     if arcs:
-        # rows on the sides of dams, as on those of pockets
-        dams = tuple(Pocket(angle=0.0, width_angle=1.0, length=arc.dam.length) for arc in arcs if arc.dam is not None)
-        rows = supply_rows(dams, radius, length, film.n_z, film.stretch)
-        return arc_grid(radius, length, arcs, columns, film.n_z, stretch=film.stretch, rows=rows)
-    at = placed(supply, length), radius, length, film.n_z, film.stretch
+        return arc_grid(radius, length, arcs, columns, film.n_z, film.stretch)
+    rows = placed(supply, length), radius, length, film.n_z, film.stretch
     return bearing_grid(
         radius,
         length,
@@ -325,7 +322,7 @@ def film_grid(
         stretch=film.stretch,
         start_angle=start_angle + column_of_hole(supply, columns),
         open_ring=open_ring,
-        rows=meeting_rows(*at, columns) if conserves_mass else supply_rows(*at),
+        rows=meeting_rows(*rows, columns) if conserves_mass else supply_rows(*rows),
     )
 
 

@@ -132,7 +132,7 @@ class OilFlows:
         # in the middle of the step: the gap's half of a step on from its start as the rates have it
         before = y.mass_old if stepped else fill * s.H - film.step * self.rate
         self.content = np.maximum(before + 0.5 * film.step * s.H_t, 0.0)
-        links, balance = film_flows(y.flow_pressure, carried, np.array((y.kx, y.kz)), np.array((fx, fz)))
+        links, balance = film_flows(y.flow_pressure, carried, conductances_of(film), np.array((fx, fz)))
         self.x, self.z = links
         if conserves:
             self._void_the_ends(film, stepped)
@@ -207,6 +207,14 @@ class OilFlows:
         return out
 
 
+def conductances_of(film: SolvedFilm) -> np.ndarray:
+    """Conductances (2, n, m) of the links in theta and z, without those along the ends into the corners of arcs, at
+    which pressures jump."""
+    k, (first, last) = np.array((film.solver.system.kx, film.solver.system.kz)), film.grid.edges.T
+    k[0, np.append(first, last - 1)[:, None], [0, -1]] = 0.0
+    return k
+
+
 def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float]:
     """Power that film and contacts turn into heat, W, and `OilFlows.exchanged`.
 
@@ -250,7 +258,7 @@ def heat_of(film: SolvedFilm) -> np.ndarray:
     p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
     flow_power = p.flow_scale * film.scales.pressure
     heat = sheared(film)
-    heat += film_heat(dropped(film), s.system.flow_pressure, np.array((s.system.kx, s.system.kz)))
+    heat += film_heat(dropped(film), s.system.flow_pressure, conductances_of(film))
     heat *= flow_power
     rubbed = powers(film).contact_loss
     if film.pressing is not None and rubbed > 0.0:

@@ -349,6 +349,9 @@ class BearingModel:
         if self.effects.lobes is not None:
             s.HF += self.effects.lobes.between
         smallest = add_gap(height, rate, g.width_x, g.link_x, g.z, s.H, s.HF, s.H_t, *self._slopes)
+        if self.effects.lobes is not None:
+            for slope, more in zip(self._slopes, self.effects.lobes.slopes, strict=True):
+                slope += more
         return float(smallest), ExtraGap(height, *self._slopes, surfaces)
 
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
