@@ -105,8 +105,8 @@ class JournalBearing(Checked):
     length : float
         L, m.
     radial_clearance : float
-        c = bore radius - journal radius, half the diametral clearance, m; of arcs with a preload the assembled
-        clearance, see `Arc`. A ratio c/R outside 1e-4 to 1e-2 warns.
+        c = bore radius - journal radius, half the diametral clearance, m. Of arcs with a preload it is the
+        assembled clearance, see `Arc`. A ratio c/R outside 1e-4 to 1e-2 warns.
     lubricant : Lubricant
         Oil, e.g. ``ehd.oil("ISO VG 46")``.
     film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR, default FiniteLength()

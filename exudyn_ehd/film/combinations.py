@@ -64,7 +64,7 @@ def _check_film(bearing: BearingOptions) -> None:
 RING_ALONE = {
     "film": "films of arcs are two-dimensional; use film=FiniteLength(...)",
     "inlet": "an arc has its inlet at its leading edge; leave inlet out",
-    "supply": "oil enters between the arcs; give arcs a leading_pressure and a trailing_pressure, or leave gaps for oil",
+    "supply": "oil enters between the arcs; give arcs a leading_pressure and a trailing_pressure",
     "journal": "modes of a journal need a film all around; leave journal out",
     "bush": "of flexible bores only an ElasticLiner can be parted; use ElasticLiner(...), or leave bush out",
     "thermal": "a wall conducts heat around the whole bore; give the bush a coefficient and a temperature instead",

@@ -186,8 +186,8 @@ class Scales(NamedTuple):
     pressure, force, shear : Pa, N, and N s/m of Couette shear
     ends : (2,) array, pressures at both ends
     cavity : the cavity's pressure
-    edges : (2 k,) array, of every arc minus the pressure at its leading edge and that at its trailing edge, if there are
-        any pressures; else None
+    edges : (2 k,) array, of every arc minus the pressure at its leading edge and that at its trailing edge; None where
+        all are 0
     """
 
     pressure: float

@@ -1,15 +1,15 @@
 """Published bearings with a bore on parts of the circle: an elliptical one, and step bearings with pressure dams.
 
-``lund_thomsen1978_elliptical.csv`` (J. W. Lund, K. K. Thomsen, ASME 1978): two lobes of preload 0.5 between grooves of 20
-degrees, L/D = 1, load between the grooves. All is over the machined clearance c_p: ``S = mu N L D / W (R / c_p)^2``, e /
-c_p, the attitude angle, ``K = k c_p / W`` and ``B = b c_p omega / W`` with x along the load and y 90 degrees ahead in the
-sense of rotation. Columns ``here_...`` are those of an earlier film on 360 x 20 that had the lobes as a table of depths;
-the printed attitude angle at S = 0.161 differs from it, and from a smooth course, by two degrees.
+``lund_thomsen1978_elliptical.csv`` (J. W. Lund, K. K. Thomsen, ASME 1978): two lobes of preload 0.5 between grooves of
+20 degrees, L/D = 1, load between the grooves. All is over the machined clearance c_p: ``S = mu N L D / W (R / c_p)^2``,
+e / c_p, the attitude angle, ``K = k c_p / W`` and ``B = b c_p omega / W`` with x along the load and y 90 degrees ahead
+in the sense of rotation. Columns ``here_...`` are those of an earlier film on 360 x 20 that had the lobes as a table of
+depths; the printed attitude angle at S = 0.161 differs from it, and from a smooth course, by two degrees.
 
-``nicholas1980_step_bearings_table6.csv`` and ``..._coefficients.csv`` (J. C. Nicholas et al., step
-bearings, 1980): a dam in the upper half, L/D = 1, grooves of 20 degrees at the split; S over the clearance, e / c,
-threshold speed ``omega_s sqrt(c / g)`` of a rigid rotor, stiffness and damping in inches and pounds with x to the right
-and y up. Shaft and oil are not known; ratios of coefficients do not depend on them.
+``nicholas1980_step_bearings_table6.csv`` and ``..._coefficients.csv`` (J. C. Nicholas et al., step bearings, 1980): a
+dam in the upper half, L/D = 1, grooves of 20 degrees at the split; S over the clearance, e / c, threshold speed
+``omega_s sqrt(c / g)`` of a rigid rotor; stiffness and damping in inches and pounds with x to the right and y up. Shaft
+and oil are not known; ratios of coefficients do not depend on them.
 """
 
 from __future__ import annotations
@@ -44,7 +44,9 @@ def test_elliptical_bearing(table, measured):
     """Printed digits: K and B within 0.02, eccentricity within 0.001 of c_p."""
     machined = 50e-6
     for row in table("lund_thomsen1978_elliptical"):
-        found, load = rest(ehd.two_lobe(preload=0.5), 0.5 * machined, row["S"], machined)
+        found, load = rest(
+            ehd.two_lobe(preload=0.5, width_angle=math.radians(20.0)), 0.5 * machined, row["S"], machined
+        )
         K = along_the_load(found.stiffness) * machined / load
         B = along_the_load(found.damping) * machined * SPEED / load
         measured("e / c_p", abs(np.hypot(*found.position[:2]) / machined - row["eps_on_pad_clearance"]), 1.1e-3)
@@ -61,10 +63,10 @@ def test_step_bearings(table, measured):
     coefficients = {(row["bearing"], row["rpm"]): row for row in table("nicholas1980_step_bearings_coefficients")}
     for row in table("nicholas1980_step_bearings_table6"):
         clearance, depth = 25.4e-6 * row["radial_clearance_mil"], 25.4e-6 * row["dam_depth_mil"]
-        arcs = ehd.two_lobe(preload=0.0)
+        arcs = ehd.two_lobe(preload=0.0, width_angle=math.radians(20.0))
         if depth > 0.0:
             step, length = math.radians(row["step_angle_deg"]), row["dam_over_bearing_length"] * DIAMETER
-            arcs = ehd.pressure_dam(depth=depth, step_angle=step, length=length)
+            arcs = ehd.pressure_dam(depth=depth, step_angle=step, length=length, width_angle=math.radians(20.0))
         found, load = rest(arcs, clearance, row["S"], clearance)
         threshold = math.sqrt(found.critical_mass * clearance * SPEED**2 / load)
         measured("e / c", abs(found.eccentricity_ratio - row["eccentricity_ratio"]), 0.015 if depth else 0.005)

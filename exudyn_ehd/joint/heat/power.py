@@ -82,8 +82,9 @@ class OilFlows:
     An end's half control volume holds the void of the film beside it. Full beside a cavity, as its pressure is
     prescribed, it would take in cold oil where the gap opens and give hot oil off where the gap closes.
 
-    A supply area is a well-mixed volume, and so is the groove between two arcs. With the flow Q that the film presses into it, of the mean temperature T, the
-    net feed N of fresh oil at the supply temperature T_s, and X that flushes it, all that flows out of it has
+    A supply area is a well-mixed volume, and so is the groove between two arcs. With the flow Q that the film presses
+    into it, of the mean temperature T, the net feed N of fresh oil at the supply temperature T_s, and X that flushes
+    it, all that flows out of it has
 
         T_mix = (Q T + (N + X) T_s) / (Q + N + X),        X = (1 / carry_over - 1) Q,
 

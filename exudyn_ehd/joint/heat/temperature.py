@@ -248,7 +248,7 @@ class HeatBalance:
         self.given = (self.heat / self.scale + kept * (self.old - self.supply))[None]
 
     def stirred(self) -> np.ndarray:
-        """Exchange (2, n, m) over the links in theta and z that mixes the supply areas, and the rows at sides of dams."""
+        """Exchange (2, n, m) over the links in theta and z that mixes supply areas, and rows at the sides of dams."""
         links = np.zeros((2, *self.store.shape))
         for area in self.flows.areas:
             links[0] += area & np.roll(area, -1, axis=0)

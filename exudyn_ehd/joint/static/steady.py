@@ -186,8 +186,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         Power loss, W; oil out of both ends together, m3/s; size of the contact's force, N. Where contact acts around
         an arc this vector sum is less than the integral of the contact pressure (3 % over 0.8 rad).
     supply_flows : (k,) array
-        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With ``bearing.arc``: oil that enters at
-        the leading and at the trailing edge, 0 where it leaves.
+        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs: oil that enters at the
+        leading and at the trailing edge of every arc in turn, 0 where it leaves.
     contact_torque, contact_power_loss, peak_contact_pressure : float
         Boundary friction of the contacts on the journal about its own axis, N m, part of ``friction_torque``; its
         loss, W, part of ``power_loss``; largest contact pressure, Pa.

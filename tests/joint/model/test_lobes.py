@@ -134,22 +134,25 @@ def test_two_arcs_are_the_sum_of_two_bearings(options):
         assert whole.quantities()[name] == pytest.approx(parts, rel=1e-10), name
 
 
+KEPT = ehd.ElrodAdams(cavity_pressure=-1e5)
+FIELD = ehd.FilmEnergy(supply_temperature=313.0, conductivity=0.13, across=2)
+CARREAU = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6)
 CASES = {
     "FullSommerfeld": {"cavitation": ehd.FullSommerfeld()},
     "Gumbel": {"cavitation": ehd.Gumbel()},
     "line in the cells": {},
     "line on vertices": {"cavitation": ehd.SwiftStieber(line_in_cells=False)},
-    "ElrodAdams": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+    "ElrodAdams": {"cavitation": KEPT},
     "pressure law": {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ehd.BarusPressure(coefficient=1e-8))},
-    "shear law": {"lubricant": ehd.Lubricant(viscosity=MU, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))},
+    "shear law": {"lubricant": ehd.Lubricant(viscosity=MU, shear_law=CARREAU)},
     "wall": {"contact": ehd.RegularisedWall(onset=3e-6)},
     "turbulent": {"turbulence": ehd.NgPan()},
     "profile, pressure at the ends": {"profile": OUT_OF_ROUND, "end_pressures": (1e5, 2e5)},
     "wear": {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-12)},
     "liner, pressure at the ends": {"bush": LINER, "end_pressures": (1e5, 2e5)},
-    "liner, contact, oil kept": {"bush": LINER, "asperity": ASPERITY, "cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+    "liner, contact, oil kept": {"bush": LINER, "asperity": ASPERITY, "cavitation": KEPT},
     "one temperature": {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=313.0)},
-    "temperatures": {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=313.0, conductivity=0.13, across=2)},
+    "temperatures": {"lubricant": HOT, "thermal": FIELD},
 }  # fmt: skip
 LOBES = tuple(
     replace(arc, leading_pressure=3e5, trailing_pressure=1.5e5)
@@ -188,7 +191,7 @@ def test_tangent_against_differences(name, arcs):
 
 
 def test_gap_around_a_concentric_journal():
-    """Assembled clearance at the nearest points, machined clearance a right angle off; the dam's depth up to its step."""
+    """Assembled clearance at the nearest points, machined clearance a right angle off; a dam's depth up to its step."""
     model = build_model(bearing_of(ehd.three_lobe(preload=0.6, offset=0.7)))
     motion = np.zeros(10)
     motion[8] = 300.0
@@ -286,7 +289,7 @@ def test_wear_stays_on_the_arcs():
 
 @pytest.mark.parametrize("arcs", [ehd.two_lobe(preload=0.5), DAM], ids=["lobes", "dam"])
 def test_a_rotor_in_exudyn_comes_to_rest(arcs):
-    """At the position of `equilibrium`, within 0.5 % of the clearance; pictures of the renderer leave the grooves out."""
+    """At the position of `equilibrium`, within 0.5 % of the clearance; the renderer leaves the grooves out."""
     bearing = bearing_of(arcs)
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -362,7 +365,7 @@ ARC = ehd.Arc(start=0.0, extent=2.0)
         (lambda: ehd.Arc(start=0.0, extent=1.0, preload=1.0), "Arc.preload must be between 0 and 1"),
         (lambda: ehd.Arc(start=0.0, extent=1.0, offset=1.1), "Arc.offset must be between 0 and 1"),
         (lambda: ehd.Arc(start=0.0, extent=1.0, offset=-0.1), "Arc.offset must be >= 0"),
-        (lambda: ehd.Arc(start=0.0, extent=1.0, dam=ehd.Dam(depth=1e-5, length=0.01, extent=0.99)), "Dam.extent must leave"),
+        (lambda: replace(ARC, dam=ehd.Dam(depth=1e-5, length=0.01, extent=1.99)), "Dam.extent must leave"),
         (lambda: ehd.Arc(start=0.0, extent=1.0, dam=5e-5), "Arc.dam must be"),
         (lambda: bearing_of((ARC, ehd.Arc(start=1.5, extent=2.0))), r"arcs\[1\], from 1.5 .* overlaps arcs\[0\]"),
         (lambda: bearing_of((ehd.Arc(start=3.0, extent=1.0), ehd.Arc(start=5.0, extent=5.0))), r"overlaps arcs\[1\]"),
