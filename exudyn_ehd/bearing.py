@@ -261,7 +261,8 @@ class JournalBearing(Checked):
                 "JournalBearing.arc and JournalBearing.arcs exclude each other: arc=Arc(...) stands for "
                 "arcs=(Arc(...),); leave one of the two out."
             )
-        check_arcs(self.bore_arcs, self.length)
+        if self.bore_arcs:
+            check_arcs(self.bore_arcs, self.length)
 
     def _check_supply(self) -> None:
         if not self.supply:

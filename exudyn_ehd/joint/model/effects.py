@@ -65,6 +65,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     grid = grid_of(bearing, start_angle, open_ring)
     supply = _supply_map(bearing, grid)
     grid = grid if supply is None else supply.grid
+    mixing = mixing_grooves(grid) if bearing.bore_arcs else [] if supply is None else supply.masks
     touching: list[Contact] = list(effects.contacts)
     if supply is not None:
         touching = [LandContact(contact, supply.land) for contact in effects.contacts]
@@ -94,7 +95,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         liner=liner,
         compressible=None if effects.density is None else solver,
         supply=supply,
-        mixing=mixing_grooves(grid) if supply is None else supply.masks,
+        mixing=mixing,
         contacts=contacts,
         limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
         directions=Directions(*grid.directions),
@@ -137,7 +138,7 @@ class WearTerm:
 def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effects:
     """The effects that a bearing names, in scaled form, on the grid that starts at ``start_angle``."""
     c, grid, law = bearing.radial_clearance, grid_of(bearing, start_angle), transform_of(bearing.lubricant)
-    lobes = lobe_term(bearing.bore_arcs, grid, c)
+    lobes = lobe_term(bearing.bore_arcs, grid, c) if bearing.bore_arcs else None
     gap_terms: list[GapTerm] = [] if lobes is None else [lobes]
     if bearing.profiles:
         gap_terms.append(ProfileTerm(bearing.profiles, grid, bearing.length, c))

@@ -226,7 +226,7 @@ def test_a_cavity_above_the_pressure_at_an_edge_is_refused():
 
 
 def test_an_audit_improves_what_an_arc_can_have():
-    """What deflects is told, and left to the user."""
+    """Its heat is switched on; surfaces that deflect are told, and left to the user."""
     arc = ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0))
     bearing = bearing_on(arc)
     film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.9, direction=math.radians(270.0))

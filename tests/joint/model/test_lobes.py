@@ -289,7 +289,7 @@ def test_wear_stays_on_the_arcs():
 
 @pytest.mark.parametrize("arcs", [ehd.two_lobe(preload=0.5), DAM], ids=["lobes", "dam"])
 def test_a_rotor_in_exudyn_comes_to_rest(arcs):
-    """At the position of `equilibrium`, within 0.5 % of the clearance; the renderer leaves the grooves out."""
+    """Its position is that of `equilibrium`, within 0.5 % of the clearance; the renderer leaves the grooves out."""
     bearing = bearing_of(arcs)
     container = exu.SystemContainer()
     mbs = container.AddSystem()
