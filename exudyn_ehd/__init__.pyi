@@ -41,11 +41,16 @@ from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint as Crea
 from exudyn_ehd.coupling.spherical import LubricatedSphericalJoint as LubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import SphericalHistory as SphericalHistory
 from exudyn_ehd.coupling.watch.step_control import StepControl as StepControl
+from exudyn_ehd.film.arcs import Arc as Arc
+from exudyn_ehd.film.arcs import Dam as Dam
+from exudyn_ehd.film.arcs import offset_halves as offset_halves
+from exudyn_ehd.film.arcs import pressure_dam as pressure_dam
+from exudyn_ehd.film.arcs import three_lobe as three_lobe
+from exudyn_ehd.film.arcs import two_lobe as two_lobe
 from exudyn_ehd.film.cavitation.closures import ElrodAdams as ElrodAdams
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld as FullSommerfeld
 from exudyn_ehd.film.cavitation.closures import Gumbel as Gumbel
 from exudyn_ehd.film.cavitation.closures import SwiftStieber as SwiftStieber
-from exudyn_ehd.film.grid import Arc as Arc
 from exudyn_ehd.film.grid import bearing_grid as bearing_grid
 from exudyn_ehd.film.grid import slider_grid as slider_grid
 from exudyn_ehd.film.heat.options import Conduction as Conduction

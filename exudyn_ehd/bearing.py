@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar, get_args
 
+from exudyn_ehd.film.arcs import Arc, check_arcs
 from exudyn_ehd.film.cavitation.closures import Closure, ElrodAdams, FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.combinations import check_combinations
-from exudyn_ehd.film.grid import Arc
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import (
@@ -106,7 +106,8 @@ class JournalBearing(Checked):
     length : float
         L, m.
     radial_clearance : float
-        c = bore radius - journal radius, half the diametral clearance, m. A ratio c/R outside 1e-4 to 1e-2 warns.
+        c = bore radius - journal radius, half the diametral clearance, m. Of arcs with a preload it is the
+        assembled clearance, see `Arc`. A ratio c/R outside 1e-4 to 1e-2 warns.
     lubricant : Lubricant
         Oil, e.g. ``ehd.oil("ISO VG 46")``.
     film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR, default FiniteLength()
@@ -118,6 +119,9 @@ class JournalBearing(Checked):
         largest; for `steady` only.
     arc : Arc or None, default None
         Bore on a part of the circle; None: all around.
+    arcs : tuple of Arc, default ()
+        Bore on several parts of the circle, in the order of their angles, such as lobes; see `two_lobe`, `three_lobe`,
+        `offset_halves` and `pressure_dam`. Empty: ``arc``, or all around. Not together with ``arc``.
     end_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at z = -L/2 and z = +L/2, Pa.
     end_seals : EndSeal, pair of EndSeal or None, or None, default None
@@ -176,6 +180,7 @@ class JournalBearing(Checked):
     cavitation: Cavitation = SwiftStieber()
     inlet: Inlet = Periodic()
     arc: Arc | None = None
+    arcs: tuple[Arc, ...] = ()
     end_pressures: tuple[float, float] = (0.0, 0.0)
     end_seals: EndSeal | tuple[EndSeal | None, EndSeal | None] | None = None
     squeeze: bool = True
@@ -217,12 +222,13 @@ class JournalBearing(Checked):
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
         require_seals(self.end_seals)
         require_areas(self.supply)
+        self._check_arcs()
         open_ring = isinstance(self.inlet, MaximumGap)
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         if isinstance(self.film, ImpedanceMap):
             self._check_plain()
         check_line(self.film, self.cavitation, self.yielding, self.lubricant)
-        check_combinations(vars(self))
+        check_combinations(vars(self) | {"arcs": self.bore_arcs})
         check_faces(vars(self))
         self._check_supply()
         self._check_pressures()
@@ -250,6 +256,20 @@ class JournalBearing(Checked):
                 f"with film=ImpedanceMap(...), got {closure!r}; {expected}"
             )
 
+    def _check_arcs(self) -> None:
+        if not isinstance(self.arcs, tuple) or not all(isinstance(arc, Arc) for arc in self.arcs):
+            raise InputError(
+                f"JournalBearing.arcs must be a tuple of Arc(...), got {self.arcs!r}; for a single one write "
+                "arcs=(Arc(...),), for lobes arcs=two_lobe(...)."
+            )
+        if self.arcs and self.arc is not None:
+            raise InputError(
+                "JournalBearing.arc and JournalBearing.arcs exclude each other: arc=Arc(...) stands for "
+                "arcs=(Arc(...),); leave one of the two out."
+            )
+        if self.bore_arcs:
+            check_arcs(self.bore_arcs, self.length)
+
     def _check_supply(self) -> None:
         if not self.supply:
             return
@@ -275,8 +295,9 @@ class JournalBearing(Checked):
         edges = f"JournalBearing.end_pressures {self.end_pressures!r} Pa"
         if isinstance(self.inlet, MaximumGap) and lowest > 0.0:
             lowest, edges = 0.0, "the ambient pressure (0 Pa) of inlet=MaximumGap()"
-        if self.arc is not None and lowest > min(self.arc.pressures):
-            lowest, edges = min(self.arc.pressures), f"the pressures at the edges of {self.arc!r}"
+        for arc in self.bore_arcs:
+            if lowest > min(arc.pressures):
+                lowest, edges = min(arc.pressures), f"the pressures at the edges of {arc!r}"
         if pc > lowest:
             raise InputError(
                 f"{type(self.cavitation).__name__}.cavity_pressure must not exceed {edges}, got {pc:g} Pa; all are "
@@ -314,6 +335,16 @@ class JournalBearing(Checked):
         if self.profile is None:
             return ()
         return self.profile if isinstance(self.profile, tuple) else (self.profile,)
+
+    @property
+    def bore_arcs(self) -> tuple[Arc, ...]:
+        """Parts of the circle that have a bore, in order; empty for a bore all around."""
+        return self.arcs if self.arc is None else (self.arc,)
+
+    @property
+    def edge_pressures(self) -> tuple[float, ...]:
+        """Gauge pressures at the leading and the trailing edge of every arc in turn, Pa."""
+        return tuple(p for arc in self.bore_arcs for p in arc.pressures)
 
     @property
     def yielding(self) -> object | None:

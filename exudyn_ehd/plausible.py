@@ -134,10 +134,11 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "part": (
         "CircumferentialGroove.width",
         "Hole.diameter",
-        "Pocket.length",
+        *("Pocket.length", "Dam.length", "pressure_dam.length"),
         *("Orifice.diameter", "Capillary.diameter", "Capillary.length"),
         *(f"{area}.depth" for area in _AREAS),
         "EdgeRelief.relief_length",
+        "pressure_dam.track_length",
     ),
     "place along z": (
         *(f"{area}.z" for area in _AREAS[1:]),
@@ -169,14 +170,14 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "EdgeRelief.drop",
         "AxialProfile.depths",
         "ProfileTable.depths",
-        "TaperLand.depth",
-        "StepLand.depth",
+        *(f"{step}.depth" for step in ("TaperLand", "StepLand", "Dam", "pressure_dam")),
     ),
     "roughness": ("GreenwoodTripp.composite_roughness", "PatirCheng.composite_roughness"),
     "wall": ("RegularisedWall.onset",),
     "layer": ("ElasticLiner.thickness",),
     "angle": (
-        *(f"Arc.{name}" for name in ("start", "extent")),
+        *("Arc.start", "Arc.extent", "Dam.extent", "pressure_dam.step_angle"),
+        *(f"{bore}.angle" for bore in ("two_lobe", "three_lobe", "offset_halves", "pressure_dam")),
         *(f"{area}.angle" for area in _AREAS if area != "CircumferentialGroove"),
         "OutOfRound.phase",
         "bearing_grid.start_angle",
@@ -184,7 +185,10 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "recommend.direction",
     ),
     "angles": ("ProfileTable.angles", "SphericalBearing.socket_angles"),
-    "width": ("AxialGroove.width_angle", "Pocket.width_angle"),
+    "width": tuple(
+        f"{place}.width_angle"
+        for place in ("AxialGroove", "Pocket", "two_lobe", "three_lobe", "offset_halves", "pressure_dam")
+    ),
     "tilt": ("steady.tilt", "equilibrium.tilt"),
     "viscosity": ("Lubricant.viscosity",),
     "oil density": ("Lubricant.density",),
@@ -218,15 +222,12 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "ThrustFaces.inner_pressures",
         "ThrustFaces.outer_pressures",
         *(f"Arc.{edge}_pressure" for edge in ("leading", "trailing")),
+        *(f"{bore}.pressure" for bore in ("two_lobe", "three_lobe", "offset_halves", "pressure_dam")),
         *(f"{area}.pressure" for area in _AREAS),
         *(f"{restrictor}.supply_pressure" for restrictor in ("Orifice", "Capillary")),
         "solve_film.boundary",
     ),
-    "cavity pressure": (
-        "Gumbel.cavity_pressure",
-        "SwiftStieber.cavity_pressure",
-        "ElrodAdams.cavity_pressure",
-    ),
+    "cavity pressure": tuple(f"{closure}.cavity_pressure" for closure in ("Gumbel", "SwiftStieber", "ElrodAdams")),
     "stress": ("SurfaceLoad.traction", "DeadPressure.pressure", "FollowerPressure.pressure"),
     "wall pressure": ("RegularisedWall.pressure", "LubricatedJoint.stop_at.pressure"),
     "modulus": (

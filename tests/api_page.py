@@ -55,7 +55,7 @@ GROUPS = (
         "Arguments `film`, `cavitation`, `inlet`, `arc` and `turbulence` of `JournalBearing`. Errors and times of the "
         "films: [accuracy and speed](../README.md#accuracy-and-speed).",
         "FiniteLength ShortBearing LongBearing ImpedanceMap ClassicSOR SwiftStieber ElrodAdams Gumbel FullSommerfeld "
-        "Periodic MaximumGap Arc NgPan Hirs",
+        "Periodic MaximumGap Arc Dam two_lobe three_lobe offset_halves pressure_dam NgPan Hirs",
     ),
     Group(
         "Oil supply and end faces",

@@ -341,6 +341,16 @@ ehd.JournalBearing(**plain, arc=ehd.Arc(start=-1.0, extent=2.0), film=ehd.ShortB
 
 ehd.JournalBearing(**plain, arc=ehd.Arc(start=-1.0, extent=120.0))
 
+ehd.JournalBearing(**plain, arcs=ehd.Arc(start=-1.0, extent=2.0))
+
+ehd.JournalBearing(**plain, arc=ehd.Arc(start=-1.0, extent=2.0), arcs=ehd.two_lobe(preload=0.5))
+
+ehd.JournalBearing(**plain, arcs=(ehd.Arc(start=0.0, extent=2.0), ehd.Arc(start=1.5, extent=2.0)))
+
+ehd.JournalBearing(**plain, arcs=ehd.pressure_dam(depth=50e-6, step_angle=2.5, length=0.025))
+
+ehd.pressure_dam(depth=50e-6, step_angle=3.0, length=0.018)
+
 hard = ehd.Lubricant(viscosity=0.02, pressure_law=ehd.BarusPressure(coefficient=2e-8))
 ehd.JournalBearing(**size, lubricant=hard, turbulence=ehd.NgPan())
 

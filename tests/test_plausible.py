@@ -40,7 +40,8 @@ PURE = {
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
     "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
     "UntilPeriodic.tolerance", "Hirs.coefficient", "Hirs.exponent", "Hirs.full", "Hirs.onset", "NgPan.full",
-    "NgPan.onset", "StepLand.share", "TaperLand.share",
+    "NgPan.onset", "StepLand.share", "TaperLand.share", "Arc.preload", "Arc.offset", "two_lobe.preload",
+    "two_lobe.offset", "three_lobe.preload", "three_lobe.offset", "offset_halves.preload",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {

@@ -3,6 +3,7 @@
 Module map
 ----------
 grid         vertices (theta, z), control volumes, weights
+arcs         bores on parts of the circle: lobes, pads and dams, their columns and rows
 differences  differences over the links of a grid, sums over links by vertices
 combinations options of a bearing that exclude or need each other
 models       film models that a scene names; their grids and solvers

@@ -28,8 +28,8 @@ def check_combinations(bearing: BearingOptions) -> None:
         Attributes of the `JournalBearing`.
     """
     _check_film(bearing)
-    if bearing["arc"] is not None:
-        _check_arc(bearing)
+    if bearing["arcs"]:
+        _check_arcs(bearing)
     _check_turbulence(bearing)
     _check_restrictors(bearing)
     if bearing["end_seals"] is not None:
@@ -66,17 +66,33 @@ def _check_film(bearing: BearingOptions) -> None:
         )
 
 
-def _check_arc(bearing: BearingOptions) -> None:
-    """Refuse what needs the whole ring."""
-    others = [name for name in ("thermal", "bush", "journal", "profile", "wear", "supply") if bearing[name]]
-    others += [] if isinstance(bearing["film"], FiniteLength) else ["film"]
-    others += [] if type(bearing["inlet"]).__name__ == "Periodic" else ["inlet"]
-    if others:
-        raise InputError(
-            f"JournalBearing.arc=Arc(...) does not go with JournalBearing.{others[0]}={bearing[others[0]]!r}: the film "
-            "of an arc is one of FiniteLength(...) between rigid cylinders of one temperature, fed at its edges; leave "
-            "one of the two out."
-        )
+# Options that need the whole ring, and the reason.
+RING_ALONE = {
+    "film": "films of arcs are two-dimensional; use film=FiniteLength(...)",
+    "inlet": "an arc has its inlet at its leading edge; leave inlet out",
+    "supply": "oil enters between the arcs; give arcs a leading_pressure and a trailing_pressure",
+    "journal": "modes of a journal need a film all around; leave journal out",
+    "bush": "of flexible bores only an ElasticLiner can be parted; use ElasticLiner(...), or leave bush out",
+    "thermal": "a wall conducts heat around the whole bore; give the bush a coefficient and a temperature instead",
+}
+
+
+def _check_arcs(bearing: BearingOptions) -> None:
+    """Refuse options that need the whole ring."""
+    goes = {
+        "film": isinstance(bearing["film"], FiniteLength),
+        "inlet": type(bearing["inlet"]).__name__ == "Periodic",
+        "supply": not bearing["supply"],
+        "journal": bearing["journal"] is None,
+        "bush": isinstance(bearing["bush"], ElasticLiner | None),
+        "thermal": getattr(bearing["thermal"], "bush", None) is None,
+    }
+    for name in RING_ALONE:
+        if not goes[name]:
+            raise InputError(
+                f"JournalBearing.arcs=(Arc(...), ...) does not go with JournalBearing.{name}={bearing[name]!r}: "
+                f"{RING_ALONE[name]}."
+            )
 
 
 def _check_restrictors(bearing: BearingOptions) -> None:

@@ -18,16 +18,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, require_bool, require_count, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, require_bool, require_count, require_number
 
-# Smallest arc, rad, and fewest intervals on one.
-SMALLEST_ARC, FEWEST_ON_ARC = 0.05, 8
 # Check of the axial stretching of a film model's grid.
 STRETCH = partial(NOT_NEGATIVE, at_most=0.95, hint="0.75 suits most bearings.")
 
@@ -125,6 +123,12 @@ class FilmGrid:
         return bool(self.link_z.any())
 
     @cached_property
+    def edges(self) -> np.ndarray:
+        """First and last column (k, 2) of every part between open links; empty for a ring."""
+        last = np.flatnonzero(self.link_x == 0.0)
+        return np.column_stack(((np.roll(last, 1) + 1) % self.x.size, last))
+
+    @cached_property
     def mesh(self) -> tuple[np.ndarray, ...]:
         """The metric for kernels, as in `Mesh`."""
         return self.width_x, self.width_z, self.link_x, self.link_z
@@ -153,7 +157,7 @@ class FilmGrid:
             kz *= self.cuts[1]
 
 
-def _axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Control-volume widths (m,) and inverse distances (m-1,) of axial vertices z (m,)."""
     dz = np.diff(z)
     width = np.zeros(z.size)
@@ -169,7 +173,7 @@ def _mirrored(values: np.ndarray, sign: float) -> np.ndarray:
     return 0.5 * (values + image) if same else values
 
 
-def _tensor_grid(
+def tensor_grid(
     x: np.ndarray,
     z: np.ndarray,
     width_x: np.ndarray,
@@ -179,8 +183,9 @@ def _tensor_grid(
     weight_x: np.ndarray | None = None,
     weight_z: np.ndarray | None = None,
 ) -> FilmGrid:
+    """Grid of columns x (n,) and rows z (m,) with their widths, links and weights, as for `FilmGrid`."""
     z = _mirrored(z, -1.0)
-    width_z, link_z = _axial_metric(z)
+    width_z, link_z = axial_metric(z)
     weight_x = width_x if weight_x is None else weight_x
     weight_z = width_z if weight_z is None else _mirrored(weight_z, 1.0)
     return FilmGrid(
@@ -213,7 +218,7 @@ def axial_vertices(n_z: int, half_length: float, stretch: float) -> tuple[np.nda
         z, slope = s, np.ones_like(s)
     z[0], z[-1] = -1.0, 1.0
     if n_z < 4:
-        return half_length * z, half_length * _axial_metric(z)[0]
+        return half_length * z, half_length * axial_metric(z)[0]
     weight = (2.0 / n_z) * slope
     if n_z >= 6:
         weight[:3] *= 3 / 8, 7 / 6, 23 / 24
@@ -317,67 +322,7 @@ def bearing_grid(
     fixed[:, 0] = fixed[:, -1] = True
     fixed[0, :] |= open_ring
     width = np.full(n_theta, step)
-    return _tensor_grid(theta, z, width, 1.0 / width, radius, fixed, width, weight_z)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Arc(Checked):
-    """Bore on a part of the circle, a partial bearing or a fixed pad, with given pressures at its two edges.
-
-    The film begins at the leading edge, where oil enters if the spin is positive, and ends at the trailing edge. On the
-    rest of the circle there is no bore. Only with ``film=FiniteLength(...)`` and ``inlet=Periodic()``; not with
-    ``thermal``, ``bush``, ``journal``, ``profile``, ``wear`` and ``supply``. The arc gets its share of the columns of
-    the whole circle.
-
-    Parameters
-    ----------
-    start : float
-        Angle of the leading edge, from the joint's x about its z axis, rad.
-    extent : float
-        Angle from the leading to the trailing edge, positive about z, rad, below 2 pi.
-    leading_pressure, trailing_pressure : float, default 0.0
-        Gauge pressures at the two edges, Pa.
-
-    Examples
-    --------
-    A partial bearing of 120 degrees that carries a load along -y:
-
-    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
-    >>> bearing = ehd.JournalBearing(**b, arc=ehd.Arc(start=np.radians(210), extent=np.radians(120)))
-    >>> rest = ehd.equilibrium(bearing, speed=314.0, load=(0.0, -5e3))
-    >>> round(1e6 * rest.film.minimum_gap, 2)  # um
-    8.41
-    """
-
-    start: float
-    extent: float
-    leading_pressure: float = 0.0
-    trailing_pressure: float = 0.0
-
-    checks: ClassVar = {
-        "start": require_number,
-        "extent": partial(require_number, at_least=SMALLEST_ARC, below=2.0 * math.pi, hint="leave arc out for a ring."),
-        "leading_pressure": require_number,
-        "trailing_pressure": require_number,
-    }
-
-    @property
-    def pressures(self) -> tuple[float, float]:
-        """Gauge pressures at the leading and the trailing edge, Pa."""
-        return self.leading_pressure, self.trailing_pressure
-
-
-def arc_grid(radius: float, length: float, arc: Arc, n_theta: int, n_z: int, stretch: float) -> FilmGrid:
-    """Film grid of an arc, with its share of ``n_theta`` columns and one on either edge; the rest as `bearing_grid`."""
-    half, count = 0.5 * arc.extent, max(FEWEST_ON_ARC, math.ceil(n_theta * arc.extent / (2.0 * math.pi)))
-    (x, weight_x), (z, weight_z) = axial_vertices(count, half, 0.0), axial_vertices(n_z, 0.5 * length / radius, stretch)
-    width, links = _axial_metric(x)
-    fixed = np.zeros((x.size, z.size), dtype=np.bool_)
-    fixed[[0, -1]] = fixed[:, [0, -1]] = True
-    # nothing flows from the last column to the first
-    at, link_x = arc.start + half + x, np.append(links, 0.0)
-    grid = _tensor_grid(at, z, width, link_x, radius, fixed, weight_x, weight_z)
-    return replace(grid, x_face=at + 0.5 * width.max())
+    return tensor_grid(theta, z, width, 1.0 / width, radius, fixed, width, weight_z)
 
 
 def long_bearing_grid(
@@ -469,4 +414,4 @@ def slider_grid(
     fixed[0] = fixed[-1] = True
     if not sealed_sides:
         fixed[:, 0] = fixed[:, -1] = True
-    return _tensor_grid(x, z, cell, link, scale, fixed, cell, weight_z)
+    return tensor_grid(x, z, cell, link, scale, fixed, cell, weight_z)

@@ -182,12 +182,13 @@ def _taken(q, carried, rate, full):
 
 
 @njit(cache=True)
-def refined_peak(P, fixed, x, z, periodic):
+def refined_peak(P, fixed, x, links, z):
     """Peak of P (n, m) with its x and z, from parabolas through the largest vertex and its neighbours in x and in z.
 
     At a vertex whose pressure is prescribed (``fixed``, (n, m)), of a supply area or an end, the pressure has a kink:
     there the peak is the vertex itself. Beside one, from which the pressure may fall steeply, a parabola overshoots;
-    there it may rise above the vertex by a quarter of the smaller drop to its neighbours.
+    there it may rise above the vertex by a quarter of the smaller drop to its neighbours. ``links`` (n,): 0 behind
+    the last column of an arc. Where columns are spaced unevenly, at the step of a dam, the pressure has a kink too.
     """
     n, m = P.shape
     i, j = 0, 0
@@ -199,12 +200,14 @@ def refined_peak(P, fixed, x, z, periodic):
     rise_x = rise_z = shift_x = shift_z = 0.0
     if fixed[i, j]:
         return value, x[i], z[j]
-    if periodic or 0 < i < n - 1:
-        step, nxt = (x[1] - x[0] if n > 1 else 1.0), (i + 1) % n
-        before, after = P[i - 1, j], P[nxt, j]
+    first, nxt = i, (i + 1) % n
+    while first > 0 and links[first - 1] != 0.0:
+        first -= 1
+    step, before, after = (x[first + 1] - x[first] if n > 1 else 1.0), P[i - 1, j], P[nxt, j]
+    if abs(links[i - 1] - links[i]) <= 1e-9 * links[i]:
         rise_x, shift_x = _crest(before, value, after, step, step)
-        if fixed[i - 1, j] or fixed[nxt, j]:
-            rise_x = min(rise_x, 0.25 * (value - max(before, after)))
+    if fixed[i - 1, j] or fixed[nxt, j]:
+        rise_x = min(rise_x, 0.25 * (value - max(before, after)))
     if 0 < j < m - 1:
         before, after = P[i, j - 1], P[i, j + 1]
         rise_z, shift_z = _crest(before, value, after, z[j] - z[j - 1], z[j + 1] - z[j])

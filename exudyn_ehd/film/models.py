@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
+from exudyn_ehd.film.arcs import Arc, arc_grid
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.grid import STRETCH, Arc, FilmGrid, arc_grid, bearing_grid, long_bearing_grid
+from exudyn_ehd.film.grid import STRETCH, FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect
@@ -301,7 +302,7 @@ def film_grid(
     open_ring: bool,
     supply: tuple[SupplyArea, ...] = (),
     conserves_mass: bool = False,
-    arc: Arc | None = None,
+    arcs: tuple[Arc, ...] = (),
     seals: tuple[float | None, float | None] | None = None,
 ) -> FilmGrid:
     """Grid of a film model, with rows on the edges of supply areas and a column on the first hole.
@@ -312,8 +313,8 @@ def film_grid(
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
     columns = columns_of(film, 0.5 * length / radius)
-    if arc is not None:
-        return arc_grid(radius, length, arc, columns, film.n_z, film.stretch)
+    if arcs:
+        return arc_grid(radius, length, arcs, columns, film.n_z, film.stretch)
     rows = placed(supply, length), radius, length, film.n_z, film.stretch
     grid = bearing_grid(
         radius,

@@ -255,18 +255,23 @@ def sum_rows(weight, place, fields, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def gap_slopes(field, width, z, link_out, slope_x_out, slope_z_out):
-    """Mean on the links in theta and slopes of a field (n, m): central differences, one-sided at the ends of z.
+def gap_slopes(field, width, links, z, link_out, slope_x_out, slope_z_out):
+    """Mean on the links in theta and slopes of a field (n, m): central differences, one-sided at the ends of z and at
+    columns without a link.
 
-    Second order inside on any spacing of z, first order at its ends, as numpy.gradient.
+    Second order inside on any spacing of z, first order at its ends, as numpy.gradient. ``width`` and ``links`` (n,):
+    `FilmGrid.width_x` and `FilmGrid.link_x`; behind a column without a link its own values stand for the next ones.
     """
     n, m = field.shape
     for i in range(n):
         prv = i - 1 if i > 0 else n - 1
+        prv = prv if links[prv] != 0.0 else i
         nxt = i + 1 if i + 1 < n else 0
+        nxt = nxt if links[i] != 0.0 else i
+        inverse = 1.0 / (2.0 * width[i])
         for j in range(m):
             link_out[i, j] = 0.5 * (field[i, j] + field[nxt, j])
-            slope_x_out[i, j] = (field[nxt, j] - field[prv, j]) / (2.0 * width)
+            slope_x_out[i, j] = (field[nxt, j] - field[prv, j]) * inverse
         slope_z_out[i, 0] = (field[i, 1] - field[i, 0]) / (z[1] - z[0])
         slope_z_out[i, m - 1] = (field[i, m - 1] - field[i, m - 2]) / (z[m - 1] - z[m - 2])
         for j in range(1, m - 1):
@@ -278,7 +283,8 @@ def gap_slopes(field, width, z, link_out, slope_x_out, slope_z_out):
 
 @njit(cache=True, fastmath=_FAST)
 def transposed_slopes(field, width, z, along_x_out, along_z_out):
-    """Fields whose products with any gap term are those of ``field`` with its slopes of `gap_slopes`."""
+    """Fields whose products with any gap term are those of ``field`` with its slopes of `gap_slopes` on a ring of
+    columns of one ``width``."""
     n, m = field.shape
     for i in range(n):
         prv = i - 1 if i > 0 else n - 1
@@ -300,14 +306,14 @@ def transposed_slopes(field, width, z, along_x_out, along_z_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def add_gap(field, rate, width, z, H, HF, H_t, slope_x_out, slope_z_out):
+def add_gap(field, rate, width, links, z, H, HF, H_t, slope_x_out, slope_z_out):
     """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as in `gap_slopes`.
 
     Returns the smallest gap.
     """
     n, m = field.shape
     link = np.empty((n, m))
-    gap_slopes(field, width, z, link, slope_x_out, slope_z_out)
+    gap_slopes(field, width, links, z, link, slope_x_out, slope_z_out)
     smallest = np.inf
     for i in range(n):
         for j in range(m):

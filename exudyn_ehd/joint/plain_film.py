@@ -23,8 +23,8 @@ _NO_CONTACT = np.zeros(6)
 
 
 def has_plain_edges(bearing: JournalBearing) -> bool:
-    """Return whether the ends are open, and no pressure acts on the cross sections at which the film of an arc ends."""
-    pressed = bearing.arc is not None and any((*bearing.arc.pressures, *bearing.end_pressures))
+    """Return whether the ends are open, and no pressure acts on the cross sections at which films of arcs end."""
+    pressed = bearing.bore_arcs and any((*bearing.edge_pressures, *bearing.end_pressures))
     return bearing.end_seals is None and not pressed
 
 

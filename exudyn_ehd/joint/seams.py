@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from exudyn_ehd.film.arcs import LobeTerm
 from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
@@ -121,6 +122,8 @@ class Effects:
     wear : Wear or None
         Grows with the pressure of the contacts; one of ``gap_terms``.
     liner : ElasticLiner or None
+    lobes : LobeTerm or None
+        Shape of arcs; one of ``gap_terms``.
     uneven_drag : bool
         True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.patir_cheng`.
     """
@@ -135,4 +138,5 @@ class Effects:
     density: CompressibleLaw | None = None
     wear: Wear | None = None
     liner: ElasticLiner | None = None
+    lobes: LobeTerm | None = None
     uneven_drag: bool = False

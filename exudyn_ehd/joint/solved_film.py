@@ -146,6 +146,8 @@ class FilmParts:
     compressible : FilmSolver or None
         The same solver, if its film is compressible.
     supply : SupplyMap or None
+    mixing : list of (n, m) bool arrays
+        Vertices of the areas between which oil mixes: supply areas, or grooves between arcs.
     contacts, limiter : buffers or None
     directions : Directions
         Of the grid.
@@ -166,6 +168,7 @@ class FilmParts:
     liner: LinerFilm | None
     compressible: FilmSolver | None
     supply: SupplyMap | None
+    mixing: list[np.ndarray]
     contacts: ContactFields | None
     limiter: LimiterFields | None
     directions: Directions
@@ -183,7 +186,8 @@ class Scales(NamedTuple):
     pressure, force, shear : Pa, N, and N s/m of Couette shear
     ends : (2,) array, pressures at both ends
     cavity : the cavity's pressure
-    edges : (2,) array, minus the pressure at the leading edge of an arc and that at its trailing edge; None without
+    edges : (2 k,) array, of every arc minus the pressure at its leading edge and that at its trailing edge; None where
+        all are 0
     """
 
     pressure: float

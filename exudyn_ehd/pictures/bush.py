@@ -68,6 +68,7 @@ def plot_bearing(
     own = ax is None
     with picture(ax, BEARING, path, where="plot_bearing", projection="3d", computed_zorder=False) as (figure, ax):
         quads, values = quads_of(hill), quads_of(unit(p)[..., None])[..., 0].mean(axis=1)
+        quads, values = quads[~np.isnan(values)], values[~np.isnan(values)]
         sides, caps = quads_of(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
         # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four
         # corners, since it pads shorter ones with whatever the memory holds, and scales the axes by it
@@ -76,6 +77,7 @@ def plot_bearing(
         faces = np.concatenate([colours(norm(values)), *greys])
         ax.add_collection3d(Poly3DCollection(polygons, facecolors=faces, edgecolors=faces, linewidths=0.2, zorder=1))
         ring = np.stack([np.cos(around), np.sin(around)], axis=1)
+        ring[np.isnan(p[:, 0])] = np.nan
         for end, order in ((z[0], 0), (z[-1], 2)):
             ax.plot(*_turned(np.column_stack([ring, np.full(len(ring), end)])).T, color=BLACK, lw=0.6, zorder=order)
         peak = float(film.theta[int(np.argmax(film.pressure.max(axis=1)))])
@@ -94,7 +96,7 @@ def plot_bearing(
 
 def pressure_surface(theta: np.ndarray, z: np.ndarray, pressure: np.ndarray) -> np.ndarray:
     """Points (k, m, 3) of the hill over the unit bore; pressures below ambient stay on the bore."""
-    largest = float(pressure.max())
+    largest = float(np.nanmax(pressure))
     height = HILL / largest if largest > 0.0 else 0.0
     r = 1.0 + height * np.maximum(pressure, 0.0)
     return np.stack([r * np.cos(theta)[:, None], r * np.sin(theta)[:, None], np.broadcast_to(z, r.shape)], axis=-1)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
@@ -14,6 +15,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.projections.polar import PolarAxes
 
+from exudyn_ehd.film.arcs import TOUCHING, columns_of_arcs
 from exudyn_ehd.film.supply.areas import covers, placed
 from exudyn_ehd.pictures.records import FilmRecord, Target, Unit, label, shown, unit_for
 from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, headed, picture, style_ticks
@@ -22,6 +24,8 @@ from exudyn_ehd.status import InputError
 SIZE = (0.75 * PAGE, 0.36 * PAGE)
 # Points of a picture around and along.
 FINE = (721, 121)
+# Places without a bore, between arcs.
+NO_BORE = "0.85"
 # White dashes with a rim, for maps of any colour and legends on white.
 RUPTURE: dict[str, Any] = {
     "color": "white",
@@ -105,8 +109,17 @@ def _around(theta: np.ndarray, values: np.ndarray, angles: np.ndarray) -> np.nda
 
 
 def resampled(film: FilmRecord, values: np.ndarray, angles: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Field on the grid of angles (k,) and places (l,) along the axis, linear between vertices."""
-    return _around(film.theta, np.stack([np.interp(along, film.z, row) for row in values]), angles)
+    """Field on the grid of angles (k,) and places (l,) along the axis, linear between vertices; nan between arcs."""
+    rows, arcs = np.stack([np.interp(along, film.z, row) for row in values]), film.bearing.bore_arcs
+    if len(arcs) < 2:
+        return _around(film.theta, rows, angles)
+    out = np.full((angles.size, along.size), np.nan)
+    for part in columns_of_arcs(film.theta, arcs):
+        first, last = film.theta[part][[0, -1]]
+        at = first + np.mod(angles - first + TOUCHING, math.tau)
+        inside = at <= last + 2.0 * TOUCHING
+        out[inside] = np.stack([np.interp(at[inside], film.theta[part], row) for row in rows[part].T], axis=1)
+    return out
 
 
 def on_picture(film: FilmRecord, values: np.ndarray, *, prescribed_ends: bool = True) -> np.ndarray:
@@ -121,8 +134,8 @@ def on_picture(film: FilmRecord, values: np.ndarray, *, prescribed_ends: bool = 
 
 
 def span(film: FilmRecord) -> tuple[float, float]:
-    """First and last angle of a film, rad: those of its arc, or a turn."""
-    return (0.0, math.tau) if film.bearing.arc is None else (float(film.theta[0]), float(film.theta[-1]))
+    """First and last angle of a film, rad: those of its one arc, or a turn."""
+    return (0.0, math.tau) if len(film.bearing.bore_arcs) != 1 else (float(film.theta[0]), float(film.theta[-1]))
 
 
 def plot_map(
@@ -130,7 +143,8 @@ def plot_map(
 ) -> Figure:
     """Draw the unrolled map of a field.
 
-    The dashed line is the edge of the cavity, black lines bound the supply areas in the housing; a legend says so.
+    The dashed line is the edge of the cavity, black lines bound the supply areas in the housing, grey parts lie between
+    arcs; a legend says so.
 
     Parameters
     ----------
@@ -178,7 +192,7 @@ def draw_map(
         aspect="auto",
         interpolation="bilinear",
         extent=(first, last, 1e3 * film.z[0], 1e3 * film.z[-1]),
-        cmap=field.colours,
+        cmap=matplotlib.colormaps[field.colours].with_extremes(bad=NO_BORE),
         vmin=low,
         vmax=high,
     )
@@ -187,6 +201,8 @@ def draw_map(
         ax.plot([], [], **RUPTURE, label="edge of the cavity")
     if _draw_supply(ax, film):
         ax.plot([], [], color=BLACK, linewidth=0.8, label="supply area")
+    if np.isnan(values).any():
+        ax.plot([], [], "s", color=NO_BORE, markersize=8, label="no bore")
     ax.set(
         xlabel="angle θ [°]",
         ylabel="z [mm]",
@@ -201,7 +217,7 @@ def colour_limits(values: np.ndarray, field: MapField) -> tuple[float, float]:
     """Colour limits: the values' range, 0 to 1 for a fraction; never empty."""
     if field.name == "fill":
         return 0.0, 1.0
-    low, high = float(np.min(values)), float(np.max(values))
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
     # a uniform field (a single temperature, a concentric journal) to rounding
     if high - low <= 1e-9 * max(abs(low), abs(high)):
         half = 0.5 * max(abs(low), 1.0) * 0.02
@@ -214,12 +230,16 @@ def draw_rupture(ax: Axes, film: FilmRecord) -> ContourSet | None:
     # vertices with a prescribed pressure are none of the solver's: full where the pressure is above the cavity's
     full = film.unbroken | (film.pressure > film.bearing.cavitation.cavity_pressure)
     theta, whole = film.theta, full.astype(float)
-    if film.bearing.arc is None:
+    arcs = columns_of_arcs(theta, film.bearing.bore_arcs)
+    for part in arcs:
+        whole[[part.start, part.stop - 1]] = whole[[part.start + 1, part.stop - 2]]
+    if not arcs:
         theta, whole = closed_ring(theta, whole)
-    else:
-        whole[0], whole[-1] = whole[1], whole[-2]
+    elif len(arcs) > 1:
+        theta = np.linspace(0.0, math.tau, FINE[0])
+        whole = resampled(film, whole, theta, film.z)
     inner = whole[:, 1:-1]
-    if inner.size == 0 or inner.min() == inner.max():
+    if inner.size == 0 or np.nanmin(inner) == np.nanmax(inner):
         return None
     # prescribed end rows count as neither: the boundary runs straight into the ends
     whole[:, 0], whole[:, -1] = whole[:, 1], whole[:, -2]

@@ -15,6 +15,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from exudyn_ehd.film.arcs import columns_of_arcs
 from exudyn_ehd.pictures.records import JointFilm
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.storage import replacing
@@ -83,16 +84,14 @@ def export_films(
 def film_mesh(
     film: JointFilm, magnification: float = 1.0
 ) -> tuple[np.ndarray, list[tuple[str, np.ndarray]], dict[str, np.ndarray]]:
-    """Points (n m, 3), cells and point fields of the film on the bore; a closed ring, or its arc."""
+    """Points (n m, 3), cells and point fields of the film on the bore; a closed ring, or its arcs."""
     n, m = film.pressure.shape
     delta = np.zeros((n, m)) if film.bore_displacement is None else film.bore_displacement
     r = film.bearing.journal_radius + film.bearing.radial_clearance + magnification * delta
     x, y = r * np.cos(film.theta)[:, None], r * np.sin(film.theta)[:, None]
     points = np.stack([x, y, np.broadcast_to(film.z, (n, m))], axis=-1).reshape(-1, 3)
-    i, j = (
-        index.ravel()
-        for index in np.meshgrid(np.arange(n - (film.bearing.arc is not None)), np.arange(m - 1), indexing="ij")
-    )
+    last = [part.stop - 1 for part in columns_of_arcs(film.theta, film.bearing.bore_arcs)]
+    i, j = (index.ravel() for index in np.meshgrid(np.delete(np.arange(n), last), np.arange(m - 1), indexing="ij"))
     following = (i + 1) % n
     # normals point to the axis, towards the journal
     quads = np.stack([i * m + j, i * m + j + 1, following * m + j + 1, following * m + j], axis=1)

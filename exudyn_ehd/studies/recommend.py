@@ -254,7 +254,7 @@ def _unknown(
         return "an ANCFBush takes minutes a film; ask for the ModalBush of the same mesh, or compare a finer film"
     if isinstance(bearing.inlet, MaximumGap):
         return "inlet=MaximumGap() cuts the film where the journal stands; compare a finer film"
-    if bearing.arc is not None:
+    if bearing.bore_arcs:
         return "an arc carries loads of some directions only; compare a finer film"
     if quantity == "critical mass" and any(area.rotating for area in bearing.supply):
         return "supply areas turn with the journal (rotating=True), so that it has no equilibrium and no critical mass"

@@ -67,7 +67,7 @@ def test_refined_peak_is_exact_for_a_parabola(centre):
     z = np.sin(np.linspace(-1, 1, 9))
     d = np.remainder(x - centre + np.pi, 2 * np.pi) - np.pi
     P = 5.0 - 2.0 * d[:, None] ** 2 - 3.0 * (z - 0.1) ** 2
-    peak, position_x, position_z = refined_peak(P, np.zeros(P.shape, dtype=bool), x, z, True)
+    peak, position_x, position_z = refined_peak(P, np.zeros(P.shape, dtype=bool), x, np.full(32, 1.0), z)
     assert peak == pytest.approx(5.0, rel=1e-12)
     assert np.remainder(position_x - centre + np.pi, 2 * np.pi) - np.pi == pytest.approx(0.0, abs=1e-12)
     assert position_z == pytest.approx(0.1, rel=1e-12)

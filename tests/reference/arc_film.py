@@ -4,21 +4,39 @@ It shares no code with the package: Reynolds' equation in SI units, ``h^3 / (12 
 sums, and the condition of Swift and Stieber by vertices that enter and leave the film until none does.
 """
 
+import math
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 
-def arc_film(motion, *, radius, length, clearance, viscosity, start, extent, edges=(0.0, 0.0), shape=(201, 61)):
-    """Force (2,), torque about the journal's own axis and peak pressure for a motion (10,) as in the package."""
+def arc_film(
+    motion, *, radius, length, clearance, viscosity, start, extent, edges=(0.0, 0.0), preload=0.0, offset=0.5,
+    dam=None, shape=(201, 61),
+):  # fmt: skip
+    """Force (2,), torque about the journal's own axis and peak pressure for a motion (10,) as in the package.
+
+    ``clearance`` is the assembled one: the arc has the radius ``radius + clearance / (1 - preload)`` about a displaced
+    centre, from which the distance to the surface of the journal is taken. ``dam``: depth, length and extent from the
+    leading edge of a recess with its edges on grid lines; vertices on its sides are shared by recess and land.
+    """
     x, y, bx, by, x_t, y_t, bx_t, by_t, spin, _ = motion
     n, m = shape
     theta, z = start + np.linspace(0.0, extent, n), np.linspace(-length / 2, length / 2, m)
     step, dz = theta[1] - theta[0], z[1] - z[0]
     T, Z = np.meshgrid(theta, z, indexing="ij")
 
+    machined, nearest = clearance / (1.0 - preload), start + offset * extent
+    away = preload * machined * np.array([math.cos(nearest), math.sin(nearest)])
+
     def gap(t, s):
-        return clearance - (x + bx * s) * np.cos(t) - (y + by * s) * np.sin(t)
+        h = machined - (x + away[0] + bx * s) * np.cos(t) - (y + away[1] + by * s) * np.sin(t)
+        if dam is not None:
+            depth, wide, long = dam
+            inside = (0.5 * wide - np.abs(s)) / dz
+            h = h + depth * np.clip((long - t + start) / step + 0.5, 0.0, 1.0) * np.clip(inside + 0.5, 0.0, 1.0)
+        return h
 
     rate = -(x_t + bx_t * Z) * np.cos(T) - (y_t + by_t * Z) * np.sin(T)
     I, J = (index.ravel() for index in np.meshgrid(np.arange(1, n - 1), np.arange(1, m - 1), indexing="ij"))

@@ -13,6 +13,7 @@ film, whose last evaluation belongs to the solver; outside of one it shows the f
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import exudyn as exu
@@ -91,21 +92,24 @@ class FilmDisplay:
             if trial.status is Status.CONVERGED:
                 self.take(trial)
         frame, scale = self._frame(mbs), self._scale(model.bearing)
-        bore, z = self._bore(scale), model.grid.z * model.grid.reference_length
-        rings, closed = _points(frame, model.grid.x, bore[:, [0, -1]], z[[0, -1]]), model.bearing.arc is None
-        edges = [np.vstack([rings[:, k], rings[:closed, k]]) for k in (0, 1)]
-        data = [exudyn.graphics.Lines(edge, color=exudyn.graphics.color.black) for edge in edges]
+        lobes, clearance = model.effects.lobes, model.bearing.radial_clearance
+        depth = 0.0 if lobes is None else clearance * lobes.values
+        bore, z = self._bore(scale) + scale * depth, model.grid.z * model.grid.reference_length
+        rings, last = _points(frame, model.grid.x, bore[:, [0, -1]], z[[0, -1]]), model.grid.edges[:, 1]
+        lines = np.split(rings, last[:-1] + 1) if last.size else [np.vstack([rings, rings[:1]])]
+        black = exudyn.graphics.color.black
+        data = [exudyn.graphics.Lines(line[:, k], color=black) for line in lines for k in (0, 1)]
 
         def surface(radii: np.ndarray, places: np.ndarray, color: list[float] | np.ndarray) -> None:
             """Add the surface through rings of radii (n, k) at places (k,)."""
             points = _points(frame, model.grid.x, radii, places).reshape(-1, 3)
-            triangles = ring_triangles(*radii.shape, closed=closed)
+            triangles = ring_triangles(*radii.shape, last=last)
             data.append(exudyn.graphics.FromPointsAndTrigs(points, triangles, color=color))
 
         if self.pressure is not None and self.gap is not None:
             colors = pressure_colours(np.column_stack([self.pressure, self.pressure.max(axis=1)]))
             surface(bore, z, colors[:, :-1].reshape(-1, 4))
-            journal = bore - scale * np.minimum(self.gap, 2.0 * model.bearing.radial_clearance + self.largest)
+            journal = bore - scale * np.minimum(self.gap, 2.0 * clearance + self.largest + depth)
             ends = np.repeat(colors[:, -1], 2, axis=0)
             surface(np.column_stack([journal[:, 0], bore[:, 0]]), z[[0, 0]], ends)
             surface(np.column_stack([bore[:, -1], journal[:, -1]]), z[[-1, -1]], ends)
@@ -149,12 +153,13 @@ def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.
     return local @ frame[:, :3].T + frame[:, 3]
 
 
-def ring_triangles(n: int, m: int, *, closed: bool = True) -> np.ndarray:
+def ring_triangles(n: int, m: int, *, last: Sequence[int] | np.ndarray = ()) -> np.ndarray:
     """Triangles (2 n (m - 1), 3) of a ring of n x m vertices, numbered row by row; normals point outward.
 
-    One that is not ``closed`` has none between its last vertices and the first.
+    There are none behind the ``last`` columns of arcs.
     """
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(n if closed else n - 1), np.arange(m - 1), indexing="ij"))
+    columns = np.delete(np.arange(n), np.asarray(last, dtype=int))
+    i, j = (index.ravel() for index in np.meshgrid(columns, np.arange(m - 1), indexing="ij"))
     a, b = i * m + j, ((i + 1) % n) * m + j
     return np.concatenate([np.stack([a, b, a + 1], axis=1), np.stack([a + 1, b, b + 1], axis=1)])
 

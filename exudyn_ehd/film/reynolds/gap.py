@@ -55,8 +55,8 @@ def largest_eccentricity(pose, half_length):
 def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
     """Gaps of a rigid journal at vertices and links, with ``squeeze`` also their rate; returns the smallest gap.
 
-    ``at``: `exudyn_ehd.film.grid.Directions`, as a tuple; ``closed``: whether the grid is a ring. On an arc the
-    smallest gap is one of vertices and links.
+    ``at``: `exudyn_ehd.film.grid.Directions`, as a tuple; ``closed``: whether the grid is a ring. On arcs the
+    smallest gap is one of vertices and links; a link behind an arc's last column lies on that column.
     """
     cos_x, sin_x, cos_f, sin_f, z = at
     rigid_gap(pose, cos_x, sin_x, z, 1.0, H)
@@ -65,7 +65,7 @@ def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
         rigid_gap(rate, cos_x, sin_x, z, 0.0, H_t)
     if closed:
         return 1.0 - largest_eccentricity(pose, half_length)
-    return min(H.min(), HF[:-1].min())
+    return min(H.min(), HF.min())
 
 
 @njit(cache=True, fastmath=_FAST)

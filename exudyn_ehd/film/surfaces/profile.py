@@ -19,6 +19,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.status import (
     POSITIVE,
     Checked,
@@ -242,15 +243,15 @@ class ProfileTerm:
     Parameters
     ----------
     profiles : tuple of SurfaceProfile
-    theta, z : (n,), (m,) arrays
-        Grid, rad and m.
+    grid : FilmGrid
     length, clearance : float
         m.
     """
 
-    def __init__(
-        self, profiles: tuple[SurfaceProfile, ...], theta: np.ndarray, z: np.ndarray, length: float, clearance: float
-    ) -> None:
+    def __init__(self, profiles: tuple[SurfaceProfile, ...], grid: FilmGrid, length: float, clearance: float) -> None:
+        theta, z, steps = grid.x, grid.z * grid.reference_length, 2.0 * (grid.x_face - grid.x)
+        linked = grid.link_x != 0.0
+
         def depth(at: np.ndarray, along: np.ndarray) -> np.ndarray:
             return np.sum([p.depth(at, along, length) for p in profiles], axis=0) / clearance
 
@@ -263,13 +264,10 @@ class ProfileTerm:
             )
         for name, known, inside in (
             ("n_z", self.values.T, lambda share: depth(theta, z[:-1] + share * np.diff(z)).T),
-            (
-                "n_theta",
-                np.vstack((self.values, self.values[:1])),
-                lambda share: depth(theta + share * (theta[1] - theta[0]), z),
-            ),
+            ("n_theta", np.vstack((self.values, self.values[:1])), lambda share: depth(theta + share * steps, z)),
         ):
-            missed = max(np.abs(inside(s) - known[:-1] - s * np.diff(known, axis=0)).max() for s in BETWEEN)
+            judged = linked if name == "n_theta" else slice(None)
+            missed = max(np.abs(inside(s) - known[:-1] - s * np.diff(known, axis=0))[judged].max() for s in BETWEEN)
             if missed > MISSED:
                 warn_user(
                     f"JournalBearing.profile: between the vertices of the film's grid it departs from a straight line "

@@ -162,7 +162,7 @@ class Audit:
             try:
                 bearing = remedy(bearing)
             except InputError:
-                if bearing.turbulence is None and bearing.arc is None:
+                if bearing.turbulence is None and not bearing.bore_arcs:
                     raise
         return bearing
 

@@ -206,7 +206,7 @@ def _temperature_rise(case: Case) -> float:
     """Largest `adiabatic_rise`, K, that of a record by its means."""
     b, r = case.bearing, case.record
     power, flow, speed = (case.numbers[name] for name in ("power_loss", "flow", "speed"))
-    if r is not None and b.arc is None and np.all(np.isfinite(r.leakage)):
+    if r is not None and not b.bore_arcs and np.all(np.isfinite(r.leakage)):
         means = (time_mean(r.time, values) for values in (r.power_loss, r.leakage, case.slide(r.motion)))
         power, flow, spin = (np.array([mean]) for mean in means)
         speed = spin * b.journal_radius

@@ -301,9 +301,18 @@ def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> n
 
     Where surfaces may touch or deflect, gaps of rigid surfaces limit nothing.
     """
-    c = model.bearing.radial_clearance
-    if model.effects.contacts or model.flexible:
-        return step * min(1.0, FREE_STEP * c / float(np.hypot(*step) + 1e-300))
+    c, lobes, g = model.bearing.radial_clearance, model.effects.lobes, model.grid
+    touches, lobed = model.effects.contacts or model.flexible, lobes is not None or len(g.edges) > 1
+    if touches or lobed:
+        step = step * min(1.0, FREE_STEP * c / float(np.hypot(*step) + 1e-300))
+    if touches:
+        return step
+    if lobed:
+        # a journal may go farther than the clearance between lobes
+        normals, axis = np.array(g.directions[:2]), motion[:2, None] + motion[2:4, None] * g.z * g.reference_length
+        gap = c * (1.0 + (0.0 if lobes is None else lobes.values)) - normals.T @ axis
+        closes = float(((step @ normals)[:, None] / gap).max())
+        return step * min(1.0, ROOM / max(closes, 1e-300))
     after = np.concatenate((motion[:2] + step, motion[2:4]))
     return step * part_that_closes(ROOM, motion, after, c, model.bearing.length)
 
@@ -343,7 +352,7 @@ def lacks_oil(bearing: JournalBearing) -> bool:
 
 def is_fed(bearing: JournalBearing, cavity_pressure: float) -> bool:
     """Return whether ends, supply areas or an open inlet feed oil into cavities of this pressure, Pa."""
-    supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap) or bearing.arc is not None
+    supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap) or bool(bearing.bore_arcs)
     return supplied or max(bearing.end_pressures) > cavity_pressure
 
 

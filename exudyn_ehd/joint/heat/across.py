@@ -26,7 +26,7 @@ from exudyn_ehd.film.heat.across import (
 )
 from exudyn_ehd.film.heat.energy import ViscosityField, film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.joint.heat.power import dropped, sheared
+from exudyn_ehd.joint.heat.power import conductances_of, dropped, sheared
 from exudyn_ehd.joint.heat.temperature import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.walls import FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
@@ -55,8 +55,8 @@ class PairBalance(HeatBalance):
         kept = self.store + STAGNANT * self.largest
         self.own[0, ..., 0] += kept + self.follows
         self.own[1, ..., 1] += kept / 3.0
-        if film.parts.supply is not None:
-            areas = np.logical_or.reduce(film.parts.supply.masks)
+        if film.parts.mixing:
+            areas = np.logical_or.reduce(film.parts.mixing)
             self.own[1, ..., 1] += areas * MIXED * (self.largest + largest_lost)
         self.given = np.array([self.heat, thermal.heat_tilt(film)]) / self.scale
         self.given[0] += (kept + self.follows) * (self.old - self.supply)
@@ -66,13 +66,13 @@ class PairBalance(HeatBalance):
     def _carry(self, field: FluidityField, old: np.ndarray) -> None:
         """Add the heat that flows carry; the limiter takes the start-of-step temperatures ``old`` (4, n, m)."""
         film, flows = self.film, self.flows
-        q, y = film.solver.system.flow_pressure, film.solver.system
+        q, (kx, kz) = film.solver.system.flow_pressure, conductances_of(film)
         at, own = at_heights(self.surface), flow_shapes(field.vertices)
         limiter = start_heights(old), film.grid.link_z, self.held
         made = flows.found - flows.lost
         below = flows.outside[..., None] * own.pressed_below + made[..., None] * own.slides_below
         content, ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
-        for axis, (k, whole, fluid) in enumerate(((y.kx, flows.x, field.along), (y.kz, flows.z, field.across))):
+        for axis, (k, whole, fluid) in enumerate(((kx, flows.x, field.along), (kz, flows.z, field.across))):
             driven = k * (q - np.roll(q, -1, axis))
             carry(axis, driven, whole - driven, flow_shapes(fluid), at, limiter, ends[axis], below, content)
         stirred = self.stirred()
@@ -129,8 +129,8 @@ class CubicTemperature(FilmTemperature):
     def heat_tilt(self, film: SolvedFilm) -> np.ndarray:
         """Return the P_1 component of the heat at the vertices, W (n, m); contacts heat evenly over the height."""
         sliding, pressed, both = heat_tilts(self.fluidity.vertices)
-        s, y = film.solver, film.solver.system
-        flow = film_heat(dropped(film), y.flow_pressure, np.array((y.kx, y.kz)))
+        s = film.solver
+        flow = film_heat(dropped(film), s.system.flow_pressure, conductances_of(film))
         crossed = crossed_tilt(film.oil.P, s.H, both, (s.vx * s.flow_x, s.vz), film.grid.mesh)
         power = film.parts.flow_scale * film.scales.pressure
         return power * (sheared(film) * sliding + flow * pressed + crossed)

@@ -76,13 +76,15 @@ def _by_touching(film: SolvedFilm, slope: np.ndarray, rate: np.ndarray, contact:
 class OilFlows:
     """Flows of a solved film, oil that enters it from outside, and the rate of its content, in units of c R^2.
 
-    The ends and the supply areas belong to the outside: what flows round in them neither enters nor leaves the film.
+    The ends, supply areas and edges of arcs belong to the outside: what flows round in them neither enters nor leaves
+    the film.
 
     An end's half control volume holds the void of the film beside it. Full beside a cavity, as its pressure is
     prescribed, it would take in cold oil where the gap opens and give hot oil off where the gap closes.
 
-    A supply area is a well-mixed volume. With the flow Q that the film presses into it, of the mean temperature T, the
-    net feed N of fresh oil at the supply temperature T_s, and X that flushes it, all that flows out of it has
+    A supply area is a well-mixed volume, and so is the groove between two arcs. With the flow Q that the film presses
+    into it, of the mean temperature T, the net feed N of fresh oil at the supply temperature T_s, and X that flushes
+    it, all that flows out of it has
 
         T_mix = (Q T + (N + X) T_s) / (Q + N + X),        X = (1 / carry_over - 1) Q,
 
@@ -131,7 +133,7 @@ class OilFlows:
         # in the middle of the step: the gap's half of a step on from its start as the rates have it
         before = y.mass_old if stepped else fill * s.H - film.step * self.rate
         self.content = np.maximum(before + 0.5 * film.step * s.H_t, 0.0)
-        links, balance = film_flows(y.flow_pressure, carried, np.array((y.kx, y.kz)), np.array((fx, fz)))
+        links, balance = film_flows(y.flow_pressure, carried, conductances_of(film), np.array((fx, fz)))
         self.x, self.z = links
         if conserves:
             self._void_the_ends(film, stepped)
@@ -140,11 +142,12 @@ class OilFlows:
         self.outside = outside_flows(self.z, balance, fixed, unbroken)
         if conserves and film.grid.flows_along_z:
             self._flow_around(film, fx)
-        self.areas = supply.masks if supply is not None and film.grid.flows_along_z else []
-        if supply is not None and self.areas and not conserves:
+        self.areas = film.parts.mixing if film.grid.flows_along_z else []
+        if self.areas and not conserves:
             # films that end within a link of an area; what this leaves of the balance is the cavity's
             inside = np.logical_or.reduce(self.areas)
-            np.copyto(self.outside, s.inflow(ended=not supply.rotating), where=inside)
+            ended = supply is not None and not supply.rotating
+            np.copyto(self.outside, s.inflow(ended), where=inside)
         found = s.nothing if conserves else balance - self.outside
         self.found, self.lost = np.maximum(found, 0.0), np.maximum(-found, 0.0)
         self.total_found, self.total_lost = float(self.found.sum()), float(self.lost.sum())
@@ -152,8 +155,8 @@ class OilFlows:
         self.entering = np.maximum(self.outside, 0.0)
         for area in self.areas:
             self.entering[area] = max(0.0, float(self.outside[area].mean()))
-        if carry_over < 1.0 and supply is not None:
-            self.entering += (1.0 / carry_over - 1.0) * self._arriving(np.logical_or.reduce(supply.masks))
+        if carry_over < 1.0 and film.parts.mixing:
+            self.entering += (1.0 / carry_over - 1.0) * self._arriving(np.logical_or.reduce(film.parts.mixing))
         self.leaving = self.entering - self.outside
 
     @property
@@ -189,6 +192,7 @@ class OilFlows:
             pressed = self.z[:, 0].copy() if end == 0 else -self.z[:, beside]
             stored, squeezed = (s.area[:, end] * rate[:, end] for rate in (self.rate, s.H_t))
             full = (s.fill[:, beside] >= 1.0) & (s.pressure[:, end] > s.system.cavity_pressure)
+            full[film.grid.edges.ravel()] = True  # grooves between arcs
             flow = np.empty_like(pressed)
             end_flows_around(fx[:, end].copy(), pressed, stored, squeezed, full, flow, self.outside[:, end])
             self.x[:, end] = flow
@@ -202,6 +206,14 @@ class OilFlows:
             out += np.roll(np.where(after & ~inside, np.maximum(flow, 0.0), 0.0), 1, axis)
             out += np.where(inside & ~after, np.maximum(-flow, 0.0), 0.0)
         return out
+
+
+def conductances_of(film: SolvedFilm) -> np.ndarray:
+    """Conductances (2, n, m) of the links in theta and z, without those along the ends into the corners of arcs, at
+    which pressures jump."""
+    k, (first, last) = np.array((film.solver.system.kx, film.solver.system.kz)), film.grid.edges.T
+    k[0, np.append(first, last - 1)[:, None], [0, -1]] = 0.0
+    return k
 
 
 def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float]:
@@ -247,7 +259,7 @@ def heat_of(film: SolvedFilm) -> np.ndarray:
     p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
     flow_power = p.flow_scale * film.scales.pressure
     heat = sheared(film)
-    heat += film_heat(dropped(film), s.system.flow_pressure, np.array((s.system.kx, s.system.kz)))
+    heat += film_heat(dropped(film), s.system.flow_pressure, conductances_of(film))
     heat *= flow_power
     rubbed = powers(film).contact_loss
     if film.pressing is not None and rubbed > 0.0:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.arcs import rows_at_sides
 from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.factors import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
@@ -117,7 +118,8 @@ class LumpedTemperature(OilTemperature):
         super().__init__(spec, bearing.lubricant)
         self.spec = spec
         self.housing = self._or_supply(spec.housing_temperature)
-        volume = 2.0 * math.pi * bearing.journal_radius * bearing.length * bearing.radial_clearance
+        around = sum(arc.extent for arc in bearing.bore_arcs) or 2.0 * math.pi
+        volume = around * bearing.journal_radius * bearing.length * bearing.radial_clearance
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
         self.field: ViscosityField | None = None
@@ -175,6 +177,9 @@ STAGNANT = 1e-14
 # Exchange over every link within a supply area, in the film's largest flow. Smaller: areas are mixed less well, their
 # temperatures differ by up to a share n_theta / MIXED of their rise. Larger: more round-off, 1e-16 MIXED of that rise.
 MIXED = 1e4
+# Share of it over a link between the two rows at the side of a dam. Far smaller: the limiter of the flows along z takes
+# the slope between these rows, which is round-off, and steady temperatures do not settle.
+JOINED = 1e-2
 
 
 # k / h, W/(m2 K), None without a conductivity; m2 of the vertices; coefficients of both sides, W/(m2 K), of walls None.
@@ -243,11 +248,13 @@ class HeatBalance:
         self.given = (self.heat / self.scale + kept * (self.old - self.supply))[None]
 
     def stirred(self) -> np.ndarray:
-        """Exchange (2, n, m) over the links in theta and z that mixes the supply areas."""
+        """Exchange (2, n, m) over the links in theta and z that mixes supply areas, and rows at the sides of dams."""
         links = np.zeros((2, *self.store.shape))
         for area in self.flows.areas:
             links[0] += area & np.roll(area, -1, axis=0)
             links[1, :, :-1] += area[:, :-1] & area[:, 1:]
+        if any(arc.dam for arc in self.film.parts.bearing.bore_arcs):
+            links[1, :, :-1] += JOINED * rows_at_sides(self.film.grid)
         return MIXED * self.flows.largest * links
 
     def between(self, at: list[np.ndarray]) -> np.ndarray:

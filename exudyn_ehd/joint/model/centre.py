@@ -60,7 +60,7 @@ def is_central(evaluation: FilmEvaluation) -> bool:
     if film is None or abs(motion[0]) > CENTRE * film.parts.bearing.radial_clearance or evaluation.model.needs_spin:
         return False
     bearing = film.parts.bearing
-    if not film.solver.ruptures or isinstance(bearing.inlet, MaximumGap) or bearing.arc is not None:
+    if not film.solver.ruptures or isinstance(bearing.inlet, MaximumGap) or film.grid.edges.size:
         return False
     w, source, cavity = film.journal, CENTRE * abs(float(motion[8])), film.scales.cavity
     if np.abs(w.pose).max() > CENTRE or np.abs(w.rate).max() > source:

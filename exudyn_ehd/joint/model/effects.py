@@ -11,6 +11,7 @@ from functools import reduce
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.arcs import lobe_term, mixing_grooves
 from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import LumpedThermal
@@ -65,7 +66,7 @@ def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool =
         open_ring=open_ring,
         supply=bearing.supply,
         conserves_mass=bearing.closure.conserves_mass,
-        arc=bearing.arc,
+        arcs=bearing.bore_arcs,
         seals=bearing.seals,
     )
 
@@ -77,6 +78,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     grid = grid_of(bearing, start_angle, open_ring)
     supply = _supply_map(bearing, grid)
     grid = grid if supply is None else supply.grid
+    mixing = mixing_grooves(grid) if bearing.bore_arcs else [] if supply is None else supply.masks
     touching: list[Contact] = list(effects.contacts)
     if supply is not None:
         touching = [LandContact(contact, supply.land) for contact in effects.contacts]
@@ -108,6 +110,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         liner=liner,
         compressible=None if effects.density is None else solver,
         supply=supply,
+        mixing=mixing,
         contacts=contacts,
         limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
         directions=Directions(*grid.directions),
@@ -150,9 +153,10 @@ class WearTerm:
 def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effects:
     """The effects that a bearing names, in scaled form, on the grid that starts at ``start_angle``."""
     c, grid, law = bearing.radial_clearance, grid_of(bearing, start_angle), transform_of(bearing.lubricant)
-    gap_terms: list[GapTerm] = []
+    lobes = lobe_term(bearing.bore_arcs, grid, c) if bearing.bore_arcs else None
+    gap_terms: list[GapTerm] = [] if lobes is None else [lobes]
     if bearing.profiles:
-        gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
+        gap_terms.append(ProfileTerm(bearing.profiles, grid, bearing.length, c))
     wear = None if bearing.wear is None else WearTerm(bearing.wear, grid.shape, c)
     if wear is not None:
         gap_terms.append(wear)
@@ -170,6 +174,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         density=law if isinstance(law, CompressibleLaw) else None,
         wear=wear,
         liner=bearing.bush if isinstance(bearing.bush, ElasticLiner) else None,
+        lobes=lobes,
         uneven_drag=any(effect.changes_carriers for effect in flux),
     )
 

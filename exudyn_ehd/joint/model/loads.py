@@ -89,7 +89,11 @@ def film_loads(
         extra_theta, extra_z = float(np.vdot(pressed, extra.slope_x)), float(np.vdot(pressed, extra.slope_z))
     if parts.liner is not None:
         # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
-        extra_z += math.pi * parts.liner.beta * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
+        half, signs = 0.5 * parts.liner.beta, np.tile([-1.0, 1.0], len(g.edges))
+        around = float(g.width_x.sum()) if signs.size else 2.0 * math.pi
+        extra_z += half * around * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
+        if scales.edges is not None:
+            extra_theta += half * float(signs @ scales.edges**2) * float(g.weight_z.sum())
     drag = drag_weights(parts, limited) if pulls_unevenly(parts, limited) else None
     if drag is not None:
         extra_theta += float(np.vdot(drag[0], P))
@@ -127,10 +131,10 @@ def film_loads(
 
 
 def edge_forces(parts: FilmParts, scales: Scales) -> float:
-    """Integral over the edges of an arc of the gap times the pressure there, the trailing edge's less the leading's."""
+    """Integral over the edges of arcs of the gap times the pressure there, trailing edges' less leading edges'."""
     if scales.edges is None:
         return 0.0
-    return float(np.dot(scales.edges, parts.solver.H[[0, -1]] @ parts.grid.weight_z))
+    return float(np.dot(scales.edges, parts.solver.H[parts.grid.edges.ravel()] @ parts.grid.weight_z))
 
 
 def recess_of(

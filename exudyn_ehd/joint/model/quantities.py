@@ -63,7 +63,7 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         ``leakage_upper``, ``contact_load`` (N, vector sum of its pressure), ``contact_torque`` (Nm, its friction on the
         journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
         ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also ``supply_flow`` (m3/s, out of all of
-        them), with an arc what enters at its edges; with restrictors ``lowest_pocket_pressure`` and
+        them), with arcs what enters at their edges; with restrictors ``lowest_pocket_pressure`` and
         ``highest_pocket_pressure`` (Pa) of the areas behind them; with a thermal effect ``film_temperature`` (K, mean
         over the area) and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
         ``bush_temperature`` and ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what
@@ -100,7 +100,7 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         "contact_power_loss": power.contact_loss,
         "peak_contact_pressure": peak_contact,
     }
-    if p.supply is not None or p.bearing.arc is not None:
+    if p.supply is not None or p.grid.edges.size:
         out["supply_flow"] = float(supply_flows(film).sum())
     if (reservoirs := p.solver.reservoirs) is not None:
         out["lowest_pocket_pressure"] = float(reservoirs.pressures.min())
@@ -130,14 +130,15 @@ def _unbroken_couette(film: SolvedFilm) -> float:
 def supply_flows(film: SolvedFilm) -> np.ndarray:
     """Return the inflow of every area of ``bearing.supply``, m3/s; empty without.
 
-    Of an arc what enters at its leading and at its trailing edge, 0 where oil leaves.
+    Of every arc what enters at its leading and at its trailing edge, 0 where oil leaves.
     """
     p, flow_scale = film.parts, film.parts.flow_scale
-    if p.bearing.arc is not None:
-        y, ends = p.solver.system, [0, -1]
+    if p.grid.edges.size:
+        k, P, (first, last) = p.solver.system.kx, p.solver.system.pressure, p.grid.edges.T
         # less the flows from its corners along the ends, where pressures jump
-        jumps = y.kx[[0, -2]] * (y.pressure[ends] - y.pressure[[1, -2]])
-        return (p.solver.inflow()[ends].sum(axis=1) - jumps[:, ends].sum(axis=1)).clip(0.0) * flow_scale
+        jumps = np.array((k[first] * (P[first] - P[first + 1]), k[last - 1] * (P[last] - P[last - 1])))
+        fed = p.solver.inflow()[p.grid.edges.T].sum(axis=-1) - jumps[..., [0, -1]].sum(axis=-1)
+        return fed.T.ravel().clip(0.0) * flow_scale
     if p.supply is None:
         return np.zeros(0)
     # that of a turning area would change at once where an edge passes a column
@@ -163,7 +164,7 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
     if not g.flows_along_z:
         return 0.0, 0.0
     # the end rows of an arc carry oil from edge to edge, which balances of their vertices count
-    if s.closure.conserves_mass and film.parts.bearing.arc is None:
+    if s.closure.conserves_mass and not g.edges.size:
         inflow = s.inflow()
         return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
     fx, fz, rate = s.couette_flows()
@@ -180,7 +181,7 @@ def minimum_place(film: SolvedFilm) -> tuple[float, float]:
     profile, wear or an elastic bore the vertex of the smallest gap.
     """
     R, half = film.grid.reference_length, film.parts.half_length
-    if film.extra is not None or film.parts.liner is not None or film.parts.bearing.arc is not None:
+    if film.extra is not None or film.parts.liner is not None or film.grid.edges.size:
         i, j = divmod(int(np.argmin(film.solver.H)), film.grid.z.size)
         return float(film.grid.x[i] % (2.0 * math.pi)), float(film.grid.z[j] * R)
     x, y, bx, by = film.journal.pose.tolist()
@@ -192,6 +193,6 @@ def minimum_place(film: SolvedFilm) -> tuple[float, float]:
 
 def refined_peak(film: SolvedFilm) -> tuple[float, float, float]:
     """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
-    g, periodic = film.grid, film.parts.bearing.arc is None
-    value, theta, z = loads.refined_peak(film.oil.P, g.fixed, g.x, g.z, periodic)
+    g = film.grid
+    value, theta, z = loads.refined_peak(film.oil.P, g.fixed, g.x, g.link_x, g.z)
     return value * film.scales.pressure, theta, z * g.reference_length

@@ -143,8 +143,7 @@ class BearingModel:
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
         self.remembers = self.remembers_mass or self.remembers_deflection
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
-        edges = () if bearing.arc is None else bearing.arc.pressures
-        self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure, *edges])
+        self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure, *bearing.edge_pressures])
         self._scale = p.motion_scale[:8]
         # what a flexible bore adds to the gap, and the slopes of all that is added
         self._displacement: np.ndarray | None = None
@@ -160,7 +159,7 @@ class BearingModel:
         pressure = 12.0 * mu * R**2 / c**2
         known = self._known / pressure
         self.viscosity_ratio = ratio
-        edges = known[3:] * (-1.0, 1.0) if known[3:].any() else None
+        edges = known[3:] * np.tile((-1.0, 1.0), len(p.grid.edges)) if known[3:].any() else None
         self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]), edges)
         # what the solver is told: the transformed pressures of a pressure law
         self._prescribed = known if law is None else law.transform(self._known) / pressure
@@ -325,7 +324,7 @@ class BearingModel:
         Returns the smallest, scaled, with the record's fields of these names.
         """
         s, p, at = self.solver, self.parts, self.grid.directions
-        closed = self.bearing.arc is None
+        closed = not p.grid.edges.size
         smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, closed, s.H, s.HF, s.H_t)
         extra = None
         if self.effects.gap_terms or self.flexible:
@@ -347,7 +346,12 @@ class BearingModel:
         fields = surfaces if self._displacement is None else [*surfaces, self._displacement]
         height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
         rate = self._rate if s.squeeze else s.nothing
-        smallest = add_gap(height, rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
+        if self.effects.lobes is not None:
+            s.HF += self.effects.lobes.between
+        smallest = add_gap(height, rate, g.width_x, g.link_x, g.z, s.H, s.HF, s.H_t, *self._slopes)
+        if self.effects.lobes is not None:
+            for slope, more in zip(self._slopes, self.effects.lobes.slopes, strict=True):
+                slope += more
         return float(smallest), ExtraGap(height, *self._slopes, surfaces)
 
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
@@ -356,7 +360,7 @@ class BearingModel:
         P = self.solver.pressure
         P[:, 0], P[:, -1], cavity, *edges = self._prescribed.tolist()
         if edges:
-            P[0], P[-1] = edges
+            P[p.grid.edges.ravel()] = np.array(edges)[:, None]
         if p.supply is not None:
             fed = p.supply.pressures()
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)

@@ -143,7 +143,7 @@ class BallCase(Case):
         """Minimum film thickness, m, refined peak pressure, Pa, and loss, W."""
         assert found.film is not None
         grid, chi = found.model.grid, found.model.patch.chi
-        peak = refined_peak(found.film.pressure, grid.fixed, grid.x, chi, True)[0]
+        peak = refined_peak(found.film.pressure, grid.fixed, grid.x, grid.link_x, chi)[0]
         return found.minimum_gap, peak, found.quantities()["power_loss"]
 
 

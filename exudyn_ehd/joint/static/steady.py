@@ -188,8 +188,8 @@ class SteadyResult(FilmRecord, FilmPictures):
     pocket_pressures, restrictor_flows : (k,) arrays
         Pressure of every area of ``bearing.supply``, Pa; flow through its restrictor, m3/s, nan without one.
     supply_flows : (k,) array
-        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With ``bearing.arc``: oil that enters at
-        the leading and at the trailing edge, 0 where it leaves.
+        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs: oil that enters at the
+        leading and at the trailing edge of every arc in turn, 0 where it leaves.
     contact_torque, contact_power_loss, peak_contact_pressure : float
         Boundary friction of the contacts on the journal about its own axis, N m, part of ``friction_torque``; its
         loss, W, part of ``power_loss``; largest contact pressure, Pa.

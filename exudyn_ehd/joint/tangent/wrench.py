@@ -324,18 +324,18 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
 
 
 def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
-    """Gradients (2, 4) of the pressure force of the ends, and of an arc's edges, to the scaled pose.
+    """Gradients (2, 4) of the pressure force of the ends, and of the edges of arcs, to the scaled pose.
 
     That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
     """
     slope, edges, g, out = _film_gap_slope(film), film.scales.edges, film.grid, np.zeros((2, 1, 4))
-    whole = slope is None and film.parts.bearing.arc is None
+    whole = slope is None and not g.edges.size
     if edges is None and (whole or not film.scales.ends.any()):
         return out[:, 0]
     fields = np.zeros((2, 1, *g.shape))
     fields[0, 0, :, [0, -1]] = np.outer(film.scales.ends * (-1.0, 1.0), g.width_x)
     if edges is not None:
-        fields[1, 0, [0, -1]] = np.outer(edges, g.weight_z)
+        fields[1, 0, g.edges.ravel()] = np.outer(edges, g.weight_z)
     at = film.parts.directions
     for field, gradient in zip(fields if slope is None else fields * slope, out, strict=True):
         contract_pose(field, at.cos_x, at.sin_x, g.z, gradient)

@@ -9,6 +9,7 @@ from exudyn_ehd.film.surfaces.profile import ProfileTerm
 LENGTH = 0.04
 THETA = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 Z = np.linspace(-LENGTH / 2, LENGTH / 2, 9)
+GRID = ehd.bearing_grid(0.025, LENGTH, n_theta=24, n_z=8, stretch=0.0)
 
 
 def test_out_of_round():
@@ -68,7 +69,7 @@ def test_table_stays_between_its_depths():
 
 def test_profiles_add_up():
     one, two = ehd.Crown(drop=1e-6), ehd.OutOfRound(order=2, amplitude=2e-6)
-    both = ProfileTerm((one, two), THETA, Z, LENGTH, 20e-6).field(None)
+    both = ProfileTerm((one, two), GRID, LENGTH, 20e-6).field(None)
     np.testing.assert_allclose(both * 20e-6, one.depth(THETA, Z, LENGTH) + two.depth(THETA, Z, LENGTH), atol=1e-20)
 
 
@@ -83,7 +84,7 @@ def test_profiles_add_up():
 def test_what_falls_between_vertices_is_told(profile, name):
     """Relieved ends of no length took 6.7 % of the load of the default film, 24 lobes on 24 columns were none."""
     with pytest.warns(ehd.PlausibilityWarning, match=f"take a larger {name},"):
-        ProfileTerm((profile,), THETA, Z, LENGTH, 20e-6)
+        ProfileTerm((profile,), GRID, LENGTH, 20e-6)
 
 
 @pytest.mark.parametrize(
@@ -105,7 +106,7 @@ def test_what_falls_between_vertices_is_told(profile, name):
         (lambda: ehd.AxialProfile(positions=[0.0, 1.0], depths=[-1e308, 1e308]), "AxialProfile.depths must not exceed"),
         (lambda: ehd.ProfileTable(angles=[0, 3, 6, 9], positions=[0, 1], depths=np.zeros((4, 2))), "2 pi"),
         (lambda: ehd.ProfileTable(angles=[0, 1, 2, 3], positions=[0, 1], depths=np.zeros((2, 4))), "transpose"),
-        (lambda: ProfileTerm((ehd.Crown(drop=-30e-6),), THETA, Z, LENGTH, 20e-6), "closes the gap"),
+        (lambda: ProfileTerm((ehd.Crown(drop=-30e-6),), GRID, LENGTH, 20e-6), "closes the gap"),
     ],
 )
 def test_refused_values(make, message):

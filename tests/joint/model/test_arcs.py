@@ -183,11 +183,15 @@ def test_a_pad_that_is_not_there_is_named():
 
 
 HOT = ehd.oil("ISO VG 46")
+WALL = ehd.Conduction(thickness=0.02, conductance=1.0)
+MESH = ehd.HollowCylinder(inner_radius=R + C, thickness=5e-3, length=R)
 REFUSED = {
-    "thermal": {"thermal": ehd.LumpedThermal(supply_temperature=313.0), "lubricant": HOT},
-    "bush": {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)},
+    "thermal": {
+        "thermal": ehd.FilmEnergy(supply_temperature=313.0, conductivity=0.13, bush=WALL),
+        "lubricant": HOT,
+    },
+    "bush": {"bush": ehd.ModalBush(mesh=MESH, material=STEEL)},
     "journal": {"journal": ehd.ElasticJournal(material=STEEL, span=(-0.04, 0.05), held=None)},
-    "profile": {"profile": ehd.Crown(drop=1e-6)},
     "supply": {"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.2, pressure=1e5),)},
     "film": {"film": ehd.ShortBearing()},
     "inlet": {"inlet": ehd.MaximumGap()},
@@ -196,7 +200,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_needs_the_whole_ring_is_refused_by_name(name):
-    with pytest.raises(ehd.InputError, match=rf"arc=Arc\(...\) does not go with JournalBearing.{name}="):
+    with pytest.raises(ehd.InputError, match=rf"arcs=\(Arc\(...\), ...\) does not go with JournalBearing.{name}="):
         bearing_on(ehd.Arc(start=0.0, extent=2.0), **REFUSED[name])
 
 
@@ -222,13 +226,14 @@ def test_a_cavity_above_the_pressure_at_an_edge_is_refused():
 
 
 def test_an_audit_improves_what_an_arc_can_have():
-    """Its heat and what deflects are told, and left to the user."""
+    """Its heat is switched on; surfaces that deflect are told, and left to the user."""
     arc = ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0))
     bearing = bearing_on(arc)
     film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.9, direction=math.radians(270.0))
     improved = film.audit().improved(bearing)
     assert improved.arc == arc
-    assert improved.bush is improved.thermal is None
+    assert improved.bush is None
+    assert improved.thermal is not None
     assert improved.lubricant.pressure_law is not None
 
 
@@ -240,4 +245,4 @@ def test_pictures_show_the_arc_alone():
     film.plot_bearing()
     with pytest.raises(ehd.InputError, match=r"no contact pressure; .* Films of joints have it"):
         film.plot_contact_pressure()
-    assert len(ring_triangles(5, 3, closed=False)) == len(ring_triangles(5, 3)) - 4
+    assert len(ring_triangles(5, 3, last=[1, 4])) == len(ring_triangles(5, 3)) - 8
