@@ -133,7 +133,8 @@ class Closing:
         for joint in joints:
             if joint.element.kinematics is not relative:
                 raise InputError(
-                    f"{where}: joint '{joint.name}' holds a ball, whose record has no orbit; leave out until_periodic."
+                    f"{where}: joint '{joint.name}' holds a ball or a thrust pad, whose record has no orbit; leave out "
+                    "until_periodic."
                 )
             if joint.element.steps.record.is_thinned:
                 raise InputError(

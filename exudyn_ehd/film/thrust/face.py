@@ -35,7 +35,8 @@ from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
-from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, ThrustFaces, face_grid, products
+from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, ThrustFaces, products
+from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.status import Status
 
 FACE_SIZE = 9
@@ -77,11 +78,11 @@ class FaceFilm:
 
     Parameters
     ----------
-    faces : ThrustFaces
+    faces : ThrustFaces or TiltingThrustPads
     side : int
-        1 for the upper face, -1 for the lower one.
+        1 for the upper face and for a pad, -1 for the lower face.
     closure : Closure
-        One that does not conserve mass; of faces with pads Swift-Stieber's line lies on vertices.
+        One that does not conserve mass; Swift-Stieber's line lies on vertices where there are pads.
     viscosity : float
         Pa s.
     pressures : (float, float)
@@ -92,7 +93,7 @@ class FaceFilm:
 
     def __init__(
         self,
-        faces: ThrustFaces,
+        faces: ThrustFaces | TiltingThrustPads,
         side: int,
         closure: Closure,
         viscosity: float,
@@ -100,10 +101,11 @@ class FaceFilm:
         squeeze: bool = True,
     ) -> None:
         self.side, self.closure, self.squeeze = side, closure, float(squeeze)
-        if faces.profile is not None and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
+        # columns of pads are not equal
+        if not (faces.profile is None and faces.grid[3] is None) and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
             # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
             self.closure = closure = replace(closure, line_in_cells=False)  # type: ignore[type-var]
-        self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *face_grid(faces))
+        self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *faces.grid)
         self.scales = FaceScales(viscosity, faces.clearance, a.scale)
         self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)
         self.known = np.array([*pressures, closure.cavity_pressure]) / self.scales.pressure
@@ -144,6 +146,13 @@ class FaceFilm:
         (fx, fz, rate), (P, full) = s.couette_flows(), s.flow_pressures()
         inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
         return -unit * inner, unit * outer
+
+    def flows_along(self) -> tuple[float, float]:
+        """Flows of the last solution in at the first edge of a sector and out at the last one, m3/s."""
+        s, unit = self.solver, self.scales.c * self.scales.R**2
+        fx, P, ends = s.couette_flows()[0], s.flow_pressures()[0], np.array([0, -2])
+        first, last = (fx[ends] + s.system.kx[ends] * (P[ends] - P[ends + 1])).sum(axis=1).tolist()
+        return unit * first, unit * last
 
     @property
     def pressure(self) -> np.ndarray:
