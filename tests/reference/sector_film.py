@@ -43,7 +43,9 @@ def sector_film(motion, *, inner, outer, first, extent, clearance, viscosity, cr
         columns.append(near[inside])
         values.append(-k[inside])
     every = np.arange(I.size)
-    A = coo_matrix((np.concatenate([total, *values]), (np.concatenate([every, *rows]), np.concatenate([every, *columns]))))
+    A = coo_matrix(
+        (np.concatenate([total, *values]), (np.concatenate([every, *rows]), np.concatenate([every, *columns])))
+    )
     A, full, p = A.tocsr(), np.ones(I.size, bool), np.zeros(I.size)
     for _ in range(100):
         p[:], at = 0.0, np.flatnonzero(full)

@@ -337,8 +337,8 @@ def pad_columns(profile: TaperLand | StepLand, count: int) -> np.ndarray:
 class Annulus:
     """Grid of an annulus, or of a sector of one, with its weights; lengths over R.
 
-    The pressure at both edges of a sector is prescribed, and has to be that at its radii: ``along`` and ``across`` count
-    no flow along its edges.
+    The pressure at both edges of a sector is prescribed, and has to be that at its radii: ``along`` and ``across``
+    count no flow along its edges.
 
     Parameters
     ----------

@@ -102,7 +102,8 @@ class FaceFilm:
     ) -> None:
         self.side, self.closure, self.squeeze = side, closure, float(squeeze)
         # columns of pads are not equal
-        if not (faces.profile is None and faces.grid[3] is None) and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
+        has_pads = faces.profile is not None or faces.grid[3] is not None
+        if has_pads and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
             # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
             self.closure = closure = replace(closure, line_in_cells=False)  # type: ignore[type-var]
         self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *faces.grid)
@@ -113,7 +114,9 @@ class FaceFilm:
         # on the links, and of the half control volumes behind and ahead of the vertices
         link, sides = np.zeros((shape[0], 1)), np.zeros((2, shape[0], 1))
         if faces.profile is not None:
-            quarters = 0.5 * a.sides * grid.width_x[:, None] * np.array([-1.0, 1.0])[:, None, None]
+            # crowns of sectors have no steps
+            apart = np.array([-0.5, 0.5]) if faces.grid[3] is None else np.zeros(2)
+            quarters = a.sides * grid.width_x[:, None] * apart[:, None, None]
             link = faces.profile.depth_at(grid.x_face)[:, None] / faces.clearance
             sides = faces.profile.depth_at(grid.x[:, None] + quarters) / faces.clearance
         self.link_depth, self.depth = link, (a.sides * sides).sum(axis=0)

@@ -1,9 +1,9 @@
 """Tilting thrust pads as a scene names them, and the grid of a sector.
 
 A pad is a sector of an annulus in its own frame: z the bearing's axis from the pads to the collar, x the radial line
-through the pivot, the origin on the axis in the plane of the pads. So the pivot is at theta = 0, the leading edge, where
-oil enters if the collar turns about +z, at -``pivot_angle`` and the trailing edge at ``extent - pivot_angle``. The film
-is that of `exudyn_ehd.film.thrust.face` with the collar above,
+through the pivot, the origin on the axis in the plane of the pads. So the pivot is at theta = 0, the leading edge,
+where oil enters if the collar turns about +z, at -``pivot_angle`` and the trailing edge at ``extent - pivot_angle``.
+The film is that of `exudyn_ehd.film.thrust.face` with the collar above,
 
     h = clearance + zeta - bx X - by Y + d(theta),        d = crown (2 (theta - theta_m) / extent)^2,
 
@@ -15,12 +15,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber
-from exudyn_ehd.film.grid import SMALLEST_ARC, axial_vertices
+from exudyn_ehd.film.grid import axial_vertices
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.film.thrust.annulus import STRETCH
@@ -37,18 +37,6 @@ from exudyn_ehd.status import (
 )
 
 _NAME = "TiltingThrustPads"
-
-
-class SectorCrown(NamedTuple):
-    """Shape of a crowned sector: the depth of its edges, m, its middle and its extent, rad."""
-
-    depth: float
-    middle: float
-    extent: float
-
-    def depth_at(self, theta: np.ndarray) -> np.ndarray:
-        """Addition to the gap in m at the angles theta."""
-        return self.depth * (2.0 * (theta - self.middle) / self.extent) ** 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,17 +120,18 @@ class TiltingThrustPads(Checked):
     n_theta: int = 24
     n_r: int = 20
 
-    # what a joint's watches ask of every bearing
-    bush = yielding = journal = thermal = asperity = roughness = wear = film = turbulence = inlet = arc = thrust = None
+    # Attributes that a joint asks of every bearing and of faces: one face, and a bore that no shaft ever reaches.
+    bush = yielding = journal = thermal = asperity = roughness = wear = film = turbulence = inlet = arc = None
     profiles = supply = ()
-    end_pressures, squeeze = (0.0, 0.0), True
+    end_pressures, inner_pressures, outer_pressures, squeeze = (0.0, 0.0), None, (0.0, 0.0), True
+    lower, upper, radial_clearance = False, True, 1e6
 
     checks: ClassVar = {
         **dict.fromkeys(
             ("inner_radius", "outer_radius", "pivot_radius", "clearance", "pad_mass", "pivot_stiffness"), POSITIVE
         ),
         "pads": partial(require_integer, at_least=1),
-        "extent": partial(require_number, at_least=SMALLEST_ARC, below=2.0 * math.pi),
+        "extent": partial(require_number, at_least=1e-3, below=2.0 * math.pi),
         "pivot_angle": POSITIVE,
         "pivot_damping": NOT_NEGATIVE,
         "crown": NOT_NEGATIVE,
@@ -194,10 +183,13 @@ class TiltingThrustPads(Checked):
             )
 
     @property
-    def profile(self) -> SectorCrown | None:
-        """Shape of a pad; None if it is plane."""
-        middle = 0.5 * self.extent - self.pivot_angle
-        return SectorCrown(self.crown, middle, self.extent) if self.crown > 0.0 else None
+    def profile(self) -> TiltingThrustPads | None:
+        """The pads as the shape of their faces; None if they are plane."""
+        return self if self.crown > 0.0 else None
+
+    def depth_at(self, theta: np.ndarray) -> np.ndarray:
+        """Addition of the crown to the gap in m at the angles theta."""
+        return self.crown * (2.0 * (theta + self.pivot_angle) / self.extent - 1.0) ** 2
 
     @property
     def grid(self) -> tuple[int, int, np.ndarray, np.ndarray]:
@@ -207,33 +199,21 @@ class TiltingThrustPads(Checked):
         return self.n_theta, self.n_r, half - self.pivot_angle + theta, weight
 
     @property
-    def pivot_film(self) -> tuple[float, float]:
-        """Film thickness at the pivot of an untilted pad, m, and its slope -r to the tilt bx, m."""
-        crown = 0.0 if self.profile is None else float(self.profile.depth_at(np.zeros(1))[0])
-        return self.clearance + crown, -self.pivot_radius
+    def pivot_film(self) -> float:
+        """Film thickness at the pivot of an untilted pad in the reference configuration, m."""
+        return self.clearance + float(self.depth_at(np.zeros(1))[0])
 
     @property
-    def radial_clearance(self) -> float:
-        """Clearance by the name that it has in cylindrical bearings, m."""
-        return self.clearance
+    def thrust(self) -> TiltingThrustPads:
+        """The pads, as the faces of a bearing that has no other film."""
+        return self
 
     @property
     def journal_radius(self) -> float:
-        """Outer radius by the name that watches know, m."""
+        """Outer radius by the name that it has in cylindrical bearings, m."""
         return self.outer_radius
 
     @property
     def length(self) -> float:
-        """Length of a journal of this radius whose projected area is that of one pad, m."""
-        return 0.25 * self.extent * (self.outer_radius**2 - self.inner_radius**2) / self.outer_radius
-
-    @property
-    def levers(self) -> tuple[float, float, float, float]:
-        """Displacements of the collar at the outer radius by its zeta and slopes."""
-        return 1.0, self.outer_radius, self.outer_radius, 0.0
-
-    def gap_normals(self) -> np.ndarray:
-        """Directions (4, 4) at the corners, the last column 0, from which to tell how near the plane collar is."""
-        theta = np.array([-self.pivot_angle, self.extent - self.pivot_angle])
-        x, y = (np.outer([self.inner_radius, self.outer_radius], part(theta)).ravel() for part in (np.cos, np.sin))
-        return np.column_stack([-np.ones(4), x, y, np.zeros(4)])
+        """Length of the joint to which the film belongs, whose face lies at its upper end, m: the clearance."""
+        return self.clearance

@@ -1,19 +1,20 @@
 """The film and the tilts with which thrust pads carry a steady axial load, with stiffness and damping.
 
-A pad has the coordinates v = (h, phi_x, phi_y): film thickness at the pivot, m, and rotations of the pad about the radial
-and the tangential line through it, rad. Its gap is ``h - phi_x Y + phi_y (X - r_p)`` and the crown's share. The film
-presses the collar up by F and turns the pad by M_x and M_y about its pivot. With W a pad's share of the load
+A pad has the coordinates v = (h, phi_x, phi_y): film thickness at the pivot, m, and rotations of the pad about the
+radial and the tangential line through it, rad. Its gap is ``h - phi_x Y + phi_y (X - r_p)`` and the crown's share. The
+film presses the collar up by F and turns the pad by M_x and M_y about its pivot. With W a pad's share of the load
 
     F(v) = W,   M_x(v) = M_y(v) = 0,
 
-by Newton's method with the exact tangent in the unknowns ln h, phi L / h of ln(F / W), M / (F L): plane pads in unbroken
-films have forces in proportion to 1 / h^2 at fixed phi / h. With K and C (3, 3), ``Q = -(K v + C dv/dt)`` for small
-motions, tilting inertia J and, of a pivot with stiffness k and damping c under a pad of mass m, S = k + i nu c - nu^2 m,
-a collar that moves along the axis at the frequency nu meets of each pad
+by Newton's method with the exact tangent, in the unknowns ln h and phi L / h for ln(F / W) and M / (F L), L the outer
+radius: plane pads in unbroken films have forces in proportion to 1 / h^2 at fixed phi / h. Small motions meet
+``Q = -(K v + C dv/dt)`` with K and C (3, 3). With the tilting inertia J and, of a pivot with stiffness k and damping c
+under a pad of mass m, S = k + i nu c - nu^2 m, the complex stiffness of one pad under a collar that moves along the
+axis at the frequency nu is
 
     Z = Z_f S / (Z_f + S),   Z_f = A_hh - A_h,phi (A_phi,phi - nu^2 J)^-1 A_phi,h,   A = K + i nu C,
 
-and Z_f of a rigid pivot: the pads follow without being held.
+and Z_f on a rigid pivot: the pads follow the film without being held.
 """
 
 from __future__ import annotations
@@ -25,15 +26,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.film.loads import refined_peak
+from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
-from exudyn_ehd.joint.thrust_pad import FACE, SIZE, PadEvaluation, PadModel
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import FilmError, InputError, Status, require_number
+from exudyn_ehd.status import FilmError, Status, require_number
 
 WHERE = "equilibrium"
+ALONG = "of TiltingThrustPads it presses the collar onto the pads along the axis."
 # Gap at the trailing edge of a first guess over that at the pivot; tried in this order.
 STARTS = (0.6, 0.85, 0.3)
-# Residual at which an equilibrium is found: above the round-off of ratios of integrals. Most steps, and halvings of one.
+# Residual at which an equilibrium is found, above round-off of the integrals. Most steps, and halvings of one.
 TOLERANCE, MOST_STEPS, HALVINGS = 1e-10, 50, 12
 # Largest over smallest gap below which a film carries by no wedge, but by a vanishing gap.
 LEAST_WEDGE = 1.001
@@ -53,7 +55,7 @@ class ThrustPadsResult:
     minimum_gap, maximum_gap, peak_pressure : float
         m, m, Pa.
     power_loss, friction_torque : float
-        W; torque on the collar about +z, N m.
+        W; torque on the collar about its own axis, positive about +z, N m.
     flows : (4,) array
         Oil that leaves the pads at their leading, trailing, inner and outer edges, m3/s; negative: that enters. The
         leading edge is that of a positive spin.
@@ -149,101 +151,93 @@ class PadSearch:
     """
 
     def __init__(self, pads: TiltingThrustPads, speed: float, load: float) -> None:
-        self.model, self.speed, self.load, self.count = PadModel(pads), speed, load, 0
-        self.scale, self.thickness = pads.outer_radius, pads.pivot_film[0]
+        self.pads, self.speed, self.load, self.count = pads, speed, load, 0
+        self.film = FaceFilm(pads, 1, pads.cavitation, pads.lubricant.viscosity, (0.0, 0.0))
         # (zeta, bx, by) by v, and force on the collar and moments on the pad by the wrench
         self.by_v = np.array([[1.0, 0.0, -pads.pivot_radius], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
         self.by_wrench = np.zeros((3, 6))
         self.by_wrench[[0, 1, 2, 2], [2, 3, 4, 2]] = 1.0, -1.0, -1.0, -pads.pivot_radius
 
-    def at(self, v: np.ndarray) -> tuple[PadEvaluation, np.ndarray]:
+    def at(self, v: np.ndarray) -> tuple[FaceState, np.ndarray]:
         """The film, and the residuals (3,), infinite where no film presses."""
         self.count += 1
-        motion = np.zeros(SIZE)
-        motion[FACE[:3]], motion[8] = self.by_v @ (v - [self.thickness, 0.0, 0.0]), self.speed
-        found = self.model.evaluate(motion)
+        motion = np.zeros(FACE_SIZE)
+        motion[:3], motion[6] = self.by_v @ (v - [self.pads.pivot_film, 0.0, 0.0]), self.speed
+        found = self.film.evaluate(motion)
         if found.status is not Status.CONVERGED or not found.wrench[2] > 0.0:
             return found, np.full(3, np.inf)
         Q = self.by_wrench @ found.wrench
-        return found, np.array([math.log(Q[0] / self.load), *(Q[1:] / (Q[0] * self.scale))])
+        return found, np.array([math.log(Q[0] / self.load), *(Q[1:] / (Q[0] * self.pads.outer_radius))])
 
-    def matrices(self, found: PadEvaluation) -> tuple[np.ndarray, np.ndarray]:
-        """K and C (3, 3) of the model's last film."""
-        tangent = self.by_wrench @ found.tangent()
-        return -tangent[:, :3] @ self.by_v, -tangent[:, 4:7] @ self.by_v
+    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """K and C (3, 3) of the last film."""
+        tangent = self.by_wrench @ self.film.tangent()
+        return -tangent[:, :3] @ self.by_v, -tangent[:, 3:6] @ self.by_v
 
-    def find(self, trailing: float) -> tuple[np.ndarray, PadEvaluation, np.ndarray] | None:
+    def find(self, trailing: float) -> tuple[np.ndarray, FaceState, np.ndarray] | None:
         """Coordinates, film and residuals of an equilibrium, from a gap at the ``trailing`` edge over the pivot's.
 
         None if none was found.
         """
-        pads, L = self.model.bearing, self.scale
-        ahead = pads.extent - pads.pivot_angle if self.speed > 0.0 else pads.pivot_angle
-        tilt = math.copysign((1.0 - trailing) / (pads.pivot_radius * math.sin(min(ahead, 1.0))), self.speed)
-        v = self.thickness * np.array([1.0, tilt, 0.0])
+        pads, L = self.pads, self.pads.outer_radius
+        behind = pads.extent - pads.pivot_angle if self.speed > 0.0 else pads.pivot_angle
+        tilt = math.copysign((1.0 - trailing) / (pads.pivot_radius * math.sin(min(behind, 1.0))), self.speed)
+        v = pads.pivot_film * np.array([1.0, tilt, 0.0])
         found, r = self.at(v)
         for _ in range(MOST_STEPS):
             if not np.isfinite(r[0]):
                 return None
             if np.abs(r).max() < TOLERANCE:
-                gap = self.model.film.gap
+                gap = self.film.gap
                 return (v, found, r) if gap.max() > LEAST_WEDGE * gap.min() else None
-            F = self.load * math.exp(r[0])
-            rows = -self.matrices(found)[0] / F
+            rows = -self.matrices()[0] / (self.load * math.exp(r[0]))
             rows[1:] = rows[1:] / L - np.outer(r[1:], rows[0])
             step = np.linalg.solve(rows @ np.column_stack([v, v[0] / L * np.eye(3)[:, 1:]]), -r)
-            v, found, r = self._shorter(v, found, r, step)
+            v, found, r = self._shorter(v, r, step)
         return None
 
-    def _shorter(
-        self, v: np.ndarray, found: PadEvaluation, r: np.ndarray, step: np.ndarray
-    ) -> tuple[np.ndarray, PadEvaluation, np.ndarray]:
+    def _shorter(self, v: np.ndarray, r: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, FaceState, np.ndarray]:
         """Take the step, or the part of it that reduces the residuals; they are infinite where no part does."""
         for part in 0.5 ** np.arange(HALVINGS):
             h = v[0] * math.exp(float(np.clip(part * step[0], -2.0, 2.0)))
-            there = h * np.array([1.0, *(v[1:] / v[0] + part * step[1:] / self.scale)])
+            there = h * np.array([1.0, *(v[1:] / v[0] + part * step[1:] / self.pads.outer_radius)])
             found, now = self.at(there)
             if np.linalg.norm(now) < np.linalg.norm(r):
                 return there, found, now
         return v, found, np.full(3, np.inf)
 
 
-def equilibrium_of_pads(pads: TiltingThrustPads, speed: float, load: float) -> ThrustPadsResult:
+def equilibrium_of_pads(pads: TiltingThrustPads, speed: float, load: object) -> ThrustPadsResult:
     """Film and tilts with which pads carry an axial load, N, on a collar that turns at a speed, rad/s."""
-    speed = require_number(f"{WHERE}: speed", speed, "rad/s")
-    if isinstance(load, tuple | list | np.ndarray) or not require_number(f"{WHERE}: load", load, "N", above=0.0):
-        raise InputError(f"{WHERE}: load of TiltingThrustPads must be one number > 0 N along the axis, got {load!r}.")
-    if speed == 0.0:
-        raise InputError(f"{WHERE}: speed must not be zero: without it the film carries no load at any position.")
-    search = PadSearch(pads, speed, load / pads.pads)
+    carried = require_number(f"{WHERE}: load", load, "N", above=0.0, hint=ALONG)  # type: ignore[arg-type]
+    search = PadSearch(pads, speed, carried / pads.pads)
     for trailing in STARTS:
         place = search.find(trailing)
-        if place is not None and np.linalg.eigvals(search.matrices(place[1])[0][1:, 1:]).real.min() > 0.0:
+        if place is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
             return _result(search, *place)
-    behind = pads.pivot_angle if speed > 0.0 else pads.extent - pads.pivot_angle
     raise FilmError(
-        f"{WHERE}: no film was found in which TiltingThrustPads carry {load:.4g} N at {speed:.4g} rad/s with their pivot "
-        f"{behind / pads.extent:.3g} of the extent behind the leading edge: plane pads carry by a wedge, whose load acts "
-        "behind the middle; give them a pivot at about 0.6 of the extent in the sense of rotation and near the middle "
-        "of the radii, or pads for both senses crown=..., about as deep as the film is thick."
+        f"{WHERE}: no film was found in which TiltingThrustPads carry {carried:.4g} N at {speed:.4g} rad/s with their "
+        f"pivot {pads.pivot_angle / pads.extent:.3g} of the extent behind the leading edge of a positive spin: plane "
+        "pads carry by a wedge, whose load acts behind the middle; give them a pivot at about 0.6 of the extent in the "
+        "sense of rotation, near the middle of the radii, or pads for both senses crown=..., about as deep as the film "
+        "is thick."
     )
 
 
-def _result(search: PadSearch, v: np.ndarray, found: PadEvaluation, r: np.ndarray) -> ThrustPadsResult:
+def _result(search: PadSearch, v: np.ndarray, found: FaceState, r: np.ndarray) -> ThrustPadsResult:
     """Result at coordinates of an equilibrium, whose film is the model's last."""
-    pads, film, nu = search.model.bearing, search.model.film, abs(search.speed)
-    K, C = search.matrices(found)
+    pads, film, nu = search.pads, search.film, abs(search.speed)
+    K, C = search.matrices()
     Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
     (inner, outer), (first, last) = film.flows(), film.flows_along()
-    unit = film.scales.pressure
     return ThrustPadsResult(
         film_thickness=float(v[0]),
         inclination=np.array([v[2], -v[1]]),
-        minimum_gap=found.state.minimum_gap,
+        minimum_gap=found.minimum_gap,
         maximum_gap=float(film.gap.max()),
-        peak_pressure=unit * refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.z, False)[0],
-        power_loss=pads.pads * found.state.power_loss,
-        friction_torque=pads.pads * float(found.wrench[5]),
+        peak_pressure=film.scales.pressure * refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.z, False)[0],
+        power_loss=pads.pads * found.power_loss,
+        friction_torque=-pads.pads * found.power_loss / search.speed,
         flows=pads.pads * np.array([-first, last, -inner, outer]),
         stiffness=Z.real,
         damping=Z.imag / nu,
