@@ -103,6 +103,7 @@ from exudyn_ehd.joint.static.steady import ThrustResult as ThrustResult
 from exudyn_ehd.joint.static.steady import steady as steady
 from exudyn_ehd.joint.static.stribeck import StribeckResult as StribeckResult
 from exudyn_ehd.joint.static.stribeck import stribeck as stribeck
+from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult as ThrustPadsResult
 from exudyn_ehd.progress import show_progress as show_progress
 from exudyn_ehd.solid.bush import ANCFBush as ANCFBush
 from exudyn_ehd.solid.bush import ModalBush as ModalBush

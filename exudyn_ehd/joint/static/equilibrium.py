@@ -25,11 +25,11 @@ from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmOnBoreResponse, FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
-from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult, equilibrium_of_pads
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
 if TYPE_CHECKING:
+    from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult
     from exudyn_ehd.joint.thrust import ThrustModel
 
 
@@ -334,6 +334,9 @@ def equilibrium(
                 "equilibrium: tilt, axial_position and axial_load are for a JournalBearing; TiltingThrustPads carry "
                 "load=..., one number along the axis, under a collar that does not tilt."
             )
+        # imported here: a journal needs none of it
+        from exudyn_ehd.joint.static.thrust_pads import equilibrium_of_pads
+
         return equilibrium_of_pads(bearing, omega, load)
     force = require_vector("equilibrium: load", load, 2, "N")  # type: ignore[arg-type]
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
