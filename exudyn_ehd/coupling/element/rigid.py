@@ -377,15 +377,10 @@ class FilmElement:
         tangent, load = self.steps.tangent, self.outer.load
         return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, tangent, load)
 
-    def fields(
-        self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
-    ) -> FilmFields:
+    def fields(self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: _Configuration) -> FilmFields:
         """Fields of the film at the last trial, that of the state in ``configuration``."""
         if not isinstance(trial.evaluation, Evaluation):
-            raise InputError(
-                f"LubricatedJoint '{self.failures.name}' has no film around a journal to look at: the films of thrust "
-                "pads are in its history, in the columns thrust_...; ehd.equilibrium(pads, ...) gives their fields."
-            )
+            raise InputError(f"'{self.failures.name}' has no film around a journal; see thrust_... in its history.")
         return film_fields(trial.evaluation, time, self.bush_displacement(trial, configuration))
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:

@@ -82,7 +82,7 @@ class TiltingThrustPads(Checked):
         Axial damping of one pivot that has a stiffness, N s/m.
     crown : float, default 0.0
         Depth of leading and trailing edge below the middle of the pad, m; a parabola along theta.
-    cavitation : SwiftStieber, Gumbel, FullSommerfeld or Closure, default SwiftStieber()
+    cavitation : SwiftStieber, FullSommerfeld, Gumbel or Closure, default SwiftStieber()
         One that does not conserve mass, with a ``cavity_pressure`` not above 0. The rupture line lies on vertices.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before a gap vanishes; None: a vanishing gap ends the run with an error.

@@ -329,15 +329,9 @@ def equilibrium(
         raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
     if isinstance(bearing, TiltingThrustPads):
-        if np.any(tilt) or axial_position != 0.0 or axial_load is not None:
-            raise InputError(
-                "equilibrium: tilt, axial_position and axial_load are for a JournalBearing; TiltingThrustPads carry "
-                "load=..., one number along the axis, under a collar that does not tilt."
-            )
-        # imported here: a journal needs none of it
         from exudyn_ehd.joint.static.thrust_pads import equilibrium_of_pads
 
-        return equilibrium_of_pads(bearing, omega, load)
+        return equilibrium_of_pads(bearing, omega, load, (tilt, axial_position, axial_load))
     force = require_vector("equilibrium: load", load, 2, "N")  # type: ignore[arg-type]
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
     place = require_number("equilibrium: axial_position", axial_position, "m")

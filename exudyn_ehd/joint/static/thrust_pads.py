@@ -29,7 +29,7 @@ from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import FilmError, Status, require_number
+from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
 WHERE = "equilibrium"
 ALONG = "of TiltingThrustPads it presses the collar onto the pads along the axis."
@@ -207,8 +207,18 @@ class PadSearch:
         return v, found, np.full(3, np.inf)
 
 
-def equilibrium_of_pads(pads: TiltingThrustPads, speed: float, load: object) -> ThrustPadsResult:
-    """Film and tilts with which pads carry an axial load, N, on a collar that turns at a speed, rad/s."""
+def equilibrium_of_pads(
+    pads: TiltingThrustPads, speed: float, load: object, others: tuple[object, ...] = ()
+) -> ThrustPadsResult:
+    """Film and tilts with which pads carry an axial load, N, on a collar that turns at a speed, rad/s.
+
+    ``others``: arguments of journal bearings, 0 or None where they were not given.
+    """
+    if any(np.any(np.asarray(other, dtype=object)) for other in others):
+        raise InputError(
+            f"{WHERE}: tilt, axial_position and axial_load are for a JournalBearing; TiltingThrustPads carry load=..., "
+            "one number along the axis, under a collar that does not tilt."
+        )
     carried = require_number(f"{WHERE}: load", load, "N", above=0.0, hint=ALONG)  # type: ignore[arg-type]
     search = PadSearch(pads, speed, carried / pads.pads)
     for trailing in STARTS:
