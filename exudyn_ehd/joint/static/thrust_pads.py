@@ -80,7 +80,7 @@ class ThrustPadsResult:
 
     >>> rest = ehd.equilibrium(pads, speed=300.0, load=30e3)
     >>> rest
-    <ThrustPadsResult: film 51.9 µm at the pivot, minimum 31.4 µm, peak pressure 4.2 MPa, power loss 6.2 kW>
+    <ThrustPadsResult: film 57.9 µm at the pivot, minimum 35.3 µm, peak pressure 3.63 MPa, power loss 5.83e+03 W>
     >>> rest.dynamic_stiffness([100.0, 1000.0]).shape  # K + i nu C at these frequencies, rad/s
     (2,)
     """
