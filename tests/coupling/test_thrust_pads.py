@@ -4,6 +4,7 @@ import dataclasses
 import math
 
 import exudyn as exu
+import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scenes
@@ -95,6 +96,8 @@ def test_jacobian(crown):
 
     first = force(q, q_t)
     assert np.all(np.isfinite(first)) and np.abs(first).max() > 1.0
+    # pad and shaft are pushed apart, to rounding
+    assert np.abs(first[:3] + first[7:10]).max() < 1e-12 * np.abs(first[:3]).max()
     kinds = np.r_[np.zeros(3), np.ones(4), np.zeros(3), np.ones(4)].astype(int)
     for f_q, f_qt, step in ((1.0, 0.0, 1e-9), (0.0, 1.0, 1e-6)):
         jacobian = element.jacobian(mbs, 0.0, 0, q.tolist(), q_t.tolist(), f_q, f_qt)
@@ -204,6 +207,48 @@ def test_free_vibration(options, mass):
     found = found[found.imag > 0.0][0]
     assert found.imag == pytest.approx(abs(s.imag), rel=0.01)
     assert found.real == pytest.approx(s.real, rel=0.01)
+
+
+def test_markers_and_sensors():
+    """Markers, also ones elsewhere on the axis, hold the same bearing as bodies; sensors read the films."""
+    ends = []
+    for height in (None, 0.0, 0.05):
+        mbs = scenes.new_system()
+        ground, shaft = mbs.CreateGround(), _shaft(mbs, np.eye(3), 300.0)
+        items, position = [ground, shaft], [0, 0, 0.1]
+        if height is not None:
+            places = ((ground, 0.1), (shaft, 0.1 + height))
+            markers = [eii.MarkerBodyRigid(bodyNumber=body, localPosition=[0, 0, z]) for body, z in places]
+            items, position = [mbs.AddMarker(marker) for marker in markers], []
+        thrust = ehd.CreateTiltingPadThrustBearing(mbs, "thrust", items, position, [0, 0, 1], _with(pads=2))
+        names = "thrust_minimum_gap", exu.OutputVariableType.ForceLocal
+        sensors = [thrust.pads[0].AddSensor(name) for name in names]
+        mbs.CreateGenericJoint(itemNumbers=[ground, shaft], position=[0, 0, 0], constrainedAxes=[1, 1, 0, 1, 1, 0])
+        mbs.CreateForce(itemNumber=shaft, loadVector=[0, 0, -LOAD])
+        mbs.Assemble()
+        _run(mbs, 2e-3, 8)
+        history = thrust.pads[0].history
+        gap, load = (mbs.GetSensorStoredData(sensor)[-1] for sensor in sensors)
+        assert gap[1] == history.thrust_minimum_gap[-1]
+        assert load[3] == pytest.approx(-history.thrust_force[-1])
+        ends.append(thrust.film_thickness)
+    assert ends[1] == pytest.approx(ends[0], rel=1e-9) and ends[2] == pytest.approx(ends[0], rel=1e-7)
+    with pytest.raises(ehd.InputError, match="holds a ball or a thrust pad"):
+        ehd.SolveDynamic(mbs, exu.SimulationSettings(), until_periodic=ehd.UntilPeriodic(period=1e-3))
+
+
+def test_wall():
+    """Pads on a collar that does not turn come to rest on their walls, parallel to it."""
+    pads = _with(pads=2, contact=ehd.RegularisedWall(onset=10e-6, pressure=2e7))
+    mbs, thrust, shaft = _scene(pads, height=-45e-6)
+    node = mbs.GetObject(shaft)["nodeNumber"]
+    mbs.SetNodeParameter(node, "initialVelocities", [0.0] * 6)
+    mbs.Assemble()
+    _run(mbs, 0.3, 150)
+    for pad in thrust.pads:
+        assert pad.history.thrust_contact_load[-1] == pytest.approx(LOAD / 2, rel=0.1)
+        assert pad.history.thrust_force[-1] == pytest.approx(LOAD / 2, rel=1e-3)
+        assert 0.0 < pad.history.thrust_minimum_gap[-1] < 10e-6
 
 
 def test_restart(tmp_path):
