@@ -11,7 +11,8 @@ solid      the flexible bush: quadratic elements in absolute nodal coordinates, 
 joint      one bearing as a pure function of its motion; `steady`, `equilibrium`, `stribeck`, `solve_film`, `Audit`,
            `steady_spherical`
 pictures   maps, orbits, traces, the bearing in space: matplotlib, in one style
-coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `CreateFlexibleBush`, solvers, histories
+coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `CreateTiltingPadThrustBearing`,
+           `CreateFlexibleBush`, solvers, histories
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
 tables     columns of numbers as text and as CSV; units by name
 kernels    compilation of first films by two processes

@@ -40,6 +40,8 @@ from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse as SolveDynamicSpa
 from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint as CreateLubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import LubricatedSphericalJoint as LubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import SphericalHistory as SphericalHistory
+from exudyn_ehd.coupling.thrust_pads import CreateTiltingPadThrustBearing as CreateTiltingPadThrustBearing
+from exudyn_ehd.coupling.thrust_pads import TiltingPadThrustBearing as TiltingPadThrustBearing
 from exudyn_ehd.coupling.watch.step_control import StepControl as StepControl
 from exudyn_ehd.film.arcs import Arc as Arc
 from exudyn_ehd.film.arcs import Dam as Dam
@@ -94,6 +96,7 @@ from exudyn_ehd.film.surfaces.profile import ProfileTable as ProfileTable
 from exudyn_ehd.film.thrust.annulus import StepLand as StepLand
 from exudyn_ehd.film.thrust.annulus import TaperLand as TaperLand
 from exudyn_ehd.film.thrust.annulus import ThrustFaces as ThrustFaces
+from exudyn_ehd.film.thrust.tilting import TiltingThrustPads as TiltingThrustPads
 from exudyn_ehd.joint.audit.audit import Audit as Audit
 from exudyn_ehd.joint.audit.audit import Finding as Finding
 from exudyn_ehd.joint.model.fields import FilmFields as FilmFields
@@ -109,6 +112,7 @@ from exudyn_ehd.joint.static.steady import ThrustResult as ThrustResult
 from exudyn_ehd.joint.static.steady import steady as steady
 from exudyn_ehd.joint.static.stribeck import StribeckResult as StribeckResult
 from exudyn_ehd.joint.static.stribeck import stribeck as stribeck
+from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult as ThrustPadsResult
 from exudyn_ehd.progress import show_progress as show_progress
 from exudyn_ehd.solid.bush import ANCFBush as ANCFBush
 from exudyn_ehd.solid.bush import ModalBush as ModalBush

@@ -65,6 +65,12 @@ GROUPS = (
         "StepLand",
     ),
     Group(
+        "Tilting thrust pads",
+        "[Tilting thrust pads](coupling/README.md#tilting-thrust-pads): a bearing of its own beside journal bearings.",
+        "TiltingThrustPads CreateTiltingPadThrustBearing TiltingPadThrustBearing ThrustPadsResult",
+        "ThrustPadsResult",
+    ),
+    Group(
         "Surfaces: shape, roughness, contact, wear",
         "Arguments `profile`, `roughness`, `asperity`, `contact` and `wear` of `JournalBearing`. `d` is the depth that "
         "a profile adds to the gap.",

@@ -60,6 +60,9 @@ bearing = ehd.JournalBearing(**plain)
 faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6)
 orifice = ehd.Orifice(diameter=5e-4, supply_pressure=4e6)
 faced = ehd.JournalBearing(**plain, thrust=faces)
+sector = {"inner_radius": 0.05, "outer_radius": 0.1, "pads": 8, "extent": 0.65, "pivot_radius": 0.077}
+sector |= {"pivot_angle": 0.39, "clearance": 60e-6, "lubricant": oil, "pad_mass": 0.3, "pad_inertia": (6e-5, 6e-5)}
+pads = ehd.TiltingThrustPads(**sector)
 """,
     ),
     "film": Setup(
@@ -440,6 +443,20 @@ faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6, o
 ehd.JournalBearing(**plain, thrust=faces)
 
 ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6, feed=1e5)
+
+ehd.TiltingThrustPads(**sector | {"inner_radius": 0.1})
+
+ehd.TiltingThrustPads(**sector | {"pads": 10})
+
+ehd.TiltingThrustPads(**sector | {"pivot_angle": 22.3})
+
+ehd.TiltingThrustPads(**sector | {"pivot_radius": 0.12})
+
+ehd.TiltingThrustPads(**sector | {"pad_inertia": (6e-5, 0.0)})
+
+ehd.TiltingThrustPads(**sector | {"cavitation": ehd.ElrodAdams()})
+
+ehd.TiltingThrustPads(**sector, contact=ehd.RegularisedWall(onset=80e-6))
 """,
     ),
     Group(
@@ -626,6 +643,14 @@ ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**pl
 
 high = mbs.CreateRigidBody(inertia=cube, initialDisplacement=[0, 0, 1e-4])
 ehd.CreateLubricatedJoint(mbs, "main", [ground, high], centre, z, faced)
+
+ehd.CreateTiltingPadThrustBearing(mbs, "thrust", [mbs.CreateMassPoint(mass=1.0), shaft], centre, z, pads)
+
+sunk = mbs.CreateRigidBody(inertia=cube, initialDisplacement=[0, 0, -1e-4])
+ehd.CreateTiltingPadThrustBearing(mbs, "thrust", [ground, sunk], centre, z, pads)
+
+thrust = ehd.CreateTiltingPadThrustBearing(mbs, "thrust", sides, centre, z, pads); mbs.Assemble()
+thrust.pads[0].film()
 
 ehd.CreateLubricatedSphericalJoint(mbs, "ball", [shaft, shaft], centre, bearing=ball)
 
@@ -1135,6 +1160,12 @@ turning = ehd.Hole(angle=0.0, diameter=0.005, pressure=1e5, rotating=True)
 ehd.equilibrium(ehd.JournalBearing(**plain, supply=(turning,)), speed=300.0, load=(0.0, -500.0))
 
 ehd.equilibrium(faced, speed=300.0, load=(0.0, -500.0), axial_position=1e-6, axial_load=50.0)
+
+ehd.equilibrium(pads, speed=300.0, load=30e3, axial_load=30e3)
+
+ehd.equilibrium(pads, speed=300.0, load=(0.0, -30e3))
+
+ehd.equilibrium(pads, speed=-300.0, load=30e3)
 
 ehd.equilibrium(bearing, speed=300.0, load=(0.0, -1e9))
 

@@ -19,6 +19,7 @@ PURE = {
     "ArchardWear.acceleration", "CarreauShear.exponent", "CarreauShear.residual", "ClassicSOR.tolerance",
     "ClassicSOR.relaxation", "ConfigureSolver.relativeTolerance", "ConfigureSolver.absoluteTolerance",
     "ConfigureSolver.spectralRadius",
+    "CreateTiltingPadThrustBearing.axis", "CreateTiltingPadThrustBearing.rotationMatrixAxes",
     "CreateFlexibleBush.rotationMatrix", "CreateLubricatedSphericalJoint.axis",
     "CreateLubricatedSphericalJoint.color", "CreateLubricatedSphericalJoint.rotationMatrixAxes",
     "CreateFlexibleBush.color", "CreateLubricatedJoint.axis",
@@ -62,6 +63,7 @@ READING = {
     "LubricatedJoint.plot_waterfall.speed", "LubricatedJoint.plot_waterfall.window",
     "CreateFlexibleBush.loads", "Support.nodes", "mesh_from_arrays.held",
     "mesh_from_fem.held", "mesh_from_file.held", "parameter_study.function", "parameter_study.hosts",
+    "CreateTiltingPadThrustBearing.itemNumbers",
     "CreateLubricatedSphericalJoint.itemNumbers", "SolveEquilibrium.rotors", "SolveThreshold.rotors",
     "CreateLubricatedJoint.axisLength", "CreateLubricatedJoint.axisRadius", "CreateLubricatedJoint.bodyNumbers",
     "ReplaceJoint.options", "ReplaceJoints.bearing", "ReplaceJoints.options", "ReplaceJoints.types",
@@ -72,6 +74,7 @@ RESULTS = {
     "SphericalHistory", "SphericalResult",
     "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StepRecommendation",
     "StribeckResult", "StudyTable", "SystemState", "ThrustResult", "RotorResult",
+    "ThrustPadsResult", "TiltingPadThrustBearing",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
 WITH_METHODS = {"LubricatedJoint"}

@@ -25,7 +25,7 @@ from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.pictures.mixins import FilmPictures, HistoryPictures
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import FilmError, InputError, Status
+from exudyn_ehd.status import FilmError, InputError, Status, require_type
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -160,6 +160,8 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         """
         # imported here: runs need none of it
         from exudyn_ehd.joint.audit.audit import audit_record
+
+        require_type("LubricatedJoint.audit: bearing", self.bearing, JournalBearing, hint="no other one is audited.")
 
         return audit_record(self.bearing, self._audited(), liner=liner, measure_time=measure_time)
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, cast
 
 import exudyn as exu
@@ -22,7 +21,7 @@ from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
+from exudyn_ehd.coupling.items.joint_frame import in_the_name_of, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.history import PACK, JointHistory, make_row
@@ -371,7 +370,7 @@ def CreateLubricatedSphericalJoint(
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_vector(f"{_WHERE}.color", color, 4)
     require_new(_WHERE, mbs, name)
-    with _in_the_name_of_this():
+    with in_the_name_of(_WHERE, "socket", "ball"):
         socket, ball = resolve_pair(mbs, itemNumbers)
         rotation = joint_rotation(
             socket, () if rotationMatrixAxes is not None else axis, rotationMatrixAxes, useGlobalFrame
@@ -400,16 +399,6 @@ def CreateLubricatedSphericalJoint(
     make = functools.partial(LubricatedSphericalJoint, name=name, element=element, number=number)
     register_joint(mbs, make)
     return make(mbs)
-
-
-@contextmanager
-def _in_the_name_of_this() -> Iterator[None]:
-    """Let the checks that this call shares with `CreateLubricatedJoint` speak of this one."""
-    try:
-        yield
-    except InputError as error:
-        said = str(error).replace("CreateLubricatedJoint", _WHERE).replace("housing", "socket")
-        raise InputError(said.replace("journal", "ball")) from None
 
 
 def _check_start(

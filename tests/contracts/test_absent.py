@@ -175,6 +175,8 @@ SHARED = {
     "reynolds.balance",
     "banded.assemble",
     "lubricant.density_field",
+    # a bearing of its own
+    "thrust.tilting",
 }
 
 

@@ -338,6 +338,5 @@ def add_faces(mbs: exu.MainSystem, element: FilmElement, items: tuple[Item, Item
         raise InputError(
             f"CreateLubricatedJoint: the journal is outside the thrust faces of '{element.failures.name}' in the "
             f"initial configuration: axial position {place:.6g} m, tilt ({bx:.3g}, {by:.3g}), smallest gap "
-            f"{start.minimum_gap:.6g} m; check the initial positions, and whether ThrustFaces.clearance is that of one "
-            "face."
+            f"{start.minimum_gap:.6g} m; check the initial positions, and whether the clearance is that of one face."
         )

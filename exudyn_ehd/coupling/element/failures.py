@@ -290,9 +290,10 @@ class Failures:
         """Describe the journal's position at a motion (10,), followed by `tilting`; messages put advice behind it."""
         bearing = self.bearing
         mid, largest = eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
-        gap = self.bore.smallest(motion)
+        gap, is_pad = self.bore.smallest(motion), getattr(bearing, "thrust", None) is bearing
         ratios = f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end"
-        return f"{ratios}, minimum gap of the rigid surfaces {gap:.6g} m; {self.tilting(motion)}"
+        # pads have no bore
+        return "" if is_pad else f"{ratios}, minimum gap of the rigid surfaces {gap:.6g} m; {self.tilting(motion)}"
 
     def tilting(self, motion: np.ndarray) -> str:
         """Advice for a journal at a motion (10,) that touches by its tilt, before all other; empty for another."""

@@ -32,7 +32,7 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import InputError, Status
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.thrust import ThrustModel
@@ -319,11 +319,10 @@ class FilmElement:
         tangent, load = self.steps.tangent, self.outer.load
         return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, tangent, load)
 
-    def fields(
-        self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
-    ) -> FilmFields:
+    def fields(self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: _Configuration) -> FilmFields:
         """Fields of the film at the last trial, that of the state in ``configuration``."""
-        assert isinstance(trial.evaluation, Evaluation)
+        if not isinstance(trial.evaluation, Evaluation):
+            raise InputError(f"'{self.failures.name}' has no film around a journal; see thrust_... in its history.")
         return film_fields(trial.evaluation, time, self.bush_displacement(trial, configuration))
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:

@@ -7,7 +7,8 @@ tilting.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -182,10 +183,7 @@ def hold(
             )
         if item is journal:
             point = point - rotation[:, 2] * axial_offset
-        transform = np.eye(4)
-        transform[:3, :3] = item.node_rotation.T @ rotation
-        transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
-        markers.append(_rigid_marker(mbs, f"{name} {label}", item, transform, asked))
+        markers.append(rigid_marker(mbs, f"{name} {label}", item, point, rotation, f"{asked}=Held()"))
         turns.append(np.eye(3))
     if housing.kind is None:
         raise InputError(
@@ -205,13 +203,28 @@ def hold(
     )
 
 
-def _rigid_marker(mbs: exu.MainSystem, name: str, item: Item, transform: np.ndarray, asked: str) -> Index:
-    """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
+def rigid_marker(
+    mbs: exu.MainSystem, name: str, item: Item, point: np.ndarray, rotation: np.ndarray, asked: str
+) -> Index:
+    """Marker on the body of a rigid item, or on ground, at a point (3,) with a frame (3, 3), global."""
+    transform = np.eye(4)
+    transform[:3, :3] = item.node_rotation.T @ rotation
+    transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
     if item.node is None or item.kind in POINTS:
         # a ground object of our own at the origin holds the marker; a point turns as little
         body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
     else:
         body = body_of_node(mbs, item.node)
         if body is None:
-            raise InputError(f"{_WHERE}: {asked}=Held() needs the rigid body of node {int(item.node)}, add it before.")
+            raise InputError(f"{_WHERE}: {asked} needs the rigid body of node {int(item.node)}, add it before.")
     return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))
+
+
+@contextmanager
+def in_the_name_of(where: str, housing: str, journal: str) -> Iterator[None]:
+    """Let the checks that a call shares with `CreateLubricatedJoint` speak of that call and of its two items."""
+    try:
+        yield
+    except InputError as error:
+        said = str(error).replace(_WHERE, where).replace("housing", housing)
+        raise InputError(said.replace("journal", journal)) from None

@@ -288,7 +288,9 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     def __repr__(self) -> str:
         if not self.time.size:
             return "<JointHistory without steps: run a solver first>"
-        gap, peak = float(self.minimum_gap.min()), float(self.peak_pressure.max())
+        # of all films, those on end faces included
+        gap = float(np.fmin(self.minimum_gap, self.thrust_minimum_gap).min())
+        peak = float(np.fmax(self.peak_pressure, self.thrust_peak_pressure).max())
         steps = f"{self.step_count[-1] - self.step_count[0] + 1} steps"
         steps += f" in {self.time.size} rows" if self.is_thinned else ""
         steps = "the initial state, without a run," if self.step_count[-1] == 0 else steps

@@ -131,9 +131,10 @@ class Closing:
         if not joints:
             raise InputError(f"{where}: the system has no lubricated joints whose orbits could close.")
         for joint in joints:
-            if joint.element.kinematics is not relative:
+            if joint.element.kinematics is not relative or getattr(joint.bearing, "thrust", None) is joint.bearing:
                 raise InputError(
-                    f"{where}: joint '{joint.name}' holds a ball, whose record has no orbit; leave out until_periodic."
+                    f"{where}: joint '{joint.name}' holds a ball or a thrust pad, whose record has no orbit; leave out "
+                    "until_periodic."
                 )
             if joint.element.steps.record.is_thinned:
                 raise InputError(

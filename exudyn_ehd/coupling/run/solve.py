@@ -325,7 +325,8 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
             continue
         parts.append(
             f"LubricatedJoint '{joint.name}': {joint.element.failures.place(history.motion[-1])}minimum film thickness "
-            f"{history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
+            f"{np.fmin(history.minimum_gap, history.thrust_minimum_gap)[-1]:.6g} m, "
+            f"force {np.linalg.norm(history.force[-1]):.6g} N; "
         )
     if static:
         parts.append(f"{_unheld(mbs)[:-1]}; ")

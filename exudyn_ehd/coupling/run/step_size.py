@@ -146,7 +146,9 @@ class StepSize:
         run, solution = settings.timeIntegration, settings.solution
         self.begin, self.end = run.startTime, run.endTime
         self.usual = (self.end - self.begin) / run.numberOfSteps
-        self.joints = [_JointError(film, error) for film in films]
+        # joints with nothing but faces have no estimate
+        known = (film for film in films if getattr(film.model.bearing, "thrust", None) is not film.model.bearing)
+        self.joints = [_JointError(film, error) for film in known]
         self.periods = [solution.file.writePeriod] if solution.file.write else []
         self.periods += [solution.sensors.writePeriod] if sensors else []
         self.beyond = 2.0 * run.discontinuous.iterationTolerance

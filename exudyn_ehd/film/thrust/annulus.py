@@ -225,6 +225,11 @@ class ThrustFaces(Checked):
         "upper": require_bool,
     }
 
+    @property
+    def grid(self) -> tuple[int, int, np.ndarray | None, None]:
+        """Arguments of the `Annulus` of a face behind its radii."""
+        return *face_grid(self), None
+
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.inner_radius < 0.99 * self.outer_radius:
@@ -330,7 +335,10 @@ def pad_columns(profile: TaperLand | StepLand, count: int) -> np.ndarray:
 
 
 class Annulus:
-    """Grid of an annulus with its weights; lengths over R.
+    """Grid of an annulus, or of a sector of one, with its weights; lengths over R.
+
+    The pressure at both edges of a sector is prescribed, and has to be that at its radii: ``along`` and ``across``
+    count no flow along its edges.
 
     Parameters
     ----------
@@ -339,7 +347,9 @@ class Annulus:
     n_theta, n_r : int
         Vertices around, intervals across.
     columns : (n,) array, optional
-        Angles of the vertices, increasing from 0 on, rad; they replace ``n_theta`` equal steps.
+        Angles of the vertices, increasing, rad; they replace ``n_theta`` equal steps.
+    sector : (n,) array, optional
+        Integration weights of these columns, of which the first and the last are the edges of a sector.
 
     Attributes
     ----------
@@ -370,6 +380,7 @@ class Annulus:
         n_theta: int,
         n_r: int,
         columns: np.ndarray | None = None,
+        sector: np.ndarray | None = None,
     ) -> None:
         length = math.log(outer / inner)
         self.scale = R = math.sqrt(inner * outer)
@@ -378,8 +389,9 @@ class Annulus:
         weight = _exact_load(r, s, weight)
         self.grid: FilmGrid = bearing_grid(R, R * length, n_theta, n_r, rows=(s, weight))
         if columns is not None:
-            self.grid = _on_columns(self.grid, columns)
-        steps = np.diff(self.grid.x, append=2.0 * math.pi + self.grid.x[0])
+            self.grid = _on_columns(self.grid, columns, sector)
+        # nothing lies between the last column of a sector and its first
+        steps = np.diff(self.grid.x, append=self.grid.x[-1] if sector is not None else 2.0 * math.pi + self.grid.x[0])
         self.sides = 0.5 * np.array([np.roll(steps, 1), steps])[:, :, None] / self.grid.width_x[:, None]
         self.link_weight = np.outer(steps, weight * r**2)
         self.r, width = r, self.grid.width_z
@@ -407,17 +419,20 @@ class Annulus:
         return to_ends(self.across * z, -1), self.along * x
 
 
-def _on_columns(grid: FilmGrid, theta: np.ndarray) -> FilmGrid:
-    """Return the grid with its columns at these angles (n,)."""
-    step = np.diff(theta, append=2.0 * math.pi + theta[0])
-    width = 0.5 * (step + np.roll(step, 1))
+def _on_columns(grid: FilmGrid, theta: np.ndarray, sector: np.ndarray | None) -> FilmGrid:
+    """Return the grid with its columns at these angles (n,); ``sector`` (n,) as in `Annulus`."""
+    step = np.diff(theta, append=2.0 * math.pi + theta[0] if sector is None else theta[-1])
+    width, fixed = 0.5 * (step + np.roll(step, 1)), np.zeros((theta.size, grid.z.size), dtype=np.bool_)
+    fixed[:, [0, -1]] = True
+    fixed[[0, -1]] |= sector is not None
     return replace(
         grid,
         x=theta,
         x_face=theta + 0.5 * step,
         width_x=width,
-        link_x=1.0 / step,
-        weight=np.outer(width, grid.weight_z),
+        link_x=np.divide(1.0, step, out=np.zeros_like(step), where=step > 0.0),
+        weight=np.outer(width if sector is None else sector, grid.weight_z),
+        fixed=fixed,
     )
 
 

@@ -35,7 +35,8 @@ from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
-from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, ThrustFaces, face_grid, products
+from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, ThrustFaces, products
+from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.status import Status
 
 FACE_SIZE = 9
@@ -77,11 +78,11 @@ class FaceFilm:
 
     Parameters
     ----------
-    faces : ThrustFaces
+    faces : ThrustFaces or TiltingThrustPads
     side : int
-        1 for the upper face, -1 for the lower one.
+        1 for the upper face and for a pad, -1 for the lower face.
     closure : Closure
-        One that does not conserve mass; of faces with pads Swift-Stieber's line lies on vertices.
+        One that does not conserve mass; Swift-Stieber's line lies on vertices where there are pads.
     viscosity : float
         Pa s.
     pressures : (float, float)
@@ -92,7 +93,7 @@ class FaceFilm:
 
     def __init__(
         self,
-        faces: ThrustFaces,
+        faces: ThrustFaces | TiltingThrustPads,
         side: int,
         closure: Closure,
         viscosity: float,
@@ -100,10 +101,12 @@ class FaceFilm:
         squeeze: bool = True,
     ) -> None:
         self.side, self.closure, self.squeeze = side, closure, float(squeeze)
-        if faces.profile is not None and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
+        # columns of pads are not equal
+        has_pads = faces.profile is not None or faces.grid[3] is not None
+        if has_pads and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
             # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
             self.closure = closure = replace(closure, line_in_cells=False)  # type: ignore[type-var]
-        self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *face_grid(faces))
+        self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *faces.grid)
         self.scales = FaceScales(viscosity, faces.clearance, a.scale)
         self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)
         self.known = np.array([*pressures, closure.cavity_pressure]) / self.scales.pressure
@@ -111,7 +114,9 @@ class FaceFilm:
         # on the links, and of the half control volumes behind and ahead of the vertices
         link, sides = np.zeros((shape[0], 1)), np.zeros((2, shape[0], 1))
         if faces.profile is not None:
-            quarters = 0.5 * a.sides * grid.width_x[:, None] * np.array([-1.0, 1.0])[:, None, None]
+            # crowns of sectors have no steps
+            apart = np.array([-0.5, 0.5]) if faces.grid[3] is None else np.zeros(2)
+            quarters = a.sides * grid.width_x[:, None] * apart[:, None, None]
             link = faces.profile.depth_at(grid.x_face)[:, None] / faces.clearance
             sides = faces.profile.depth_at(grid.x[:, None] + quarters) / faces.clearance
         self.link_depth, self.depth = link, (a.sides * sides).sum(axis=0)
@@ -144,6 +149,13 @@ class FaceFilm:
         (fx, fz, rate), (P, full) = s.couette_flows(), s.flow_pressures()
         inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
         return -unit * inner, unit * outer
+
+    def flows_along(self) -> tuple[float, float]:
+        """Flows of the last solution in at the first edge of a sector and out at the last one, m3/s."""
+        s, unit = self.solver, self.scales.c * self.scales.R**2
+        fx, P, ends = s.couette_flows()[0], s.flow_pressures()[0], np.array([0, -2])
+        first, last = (fx[ends] + s.system.kx[ends] * (P[ends] - P[ends + 1])).sum(axis=1).tolist()
+        return unit * first, unit * last
 
     @property
     def pressure(self) -> np.ndarray:

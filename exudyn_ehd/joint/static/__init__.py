@@ -6,5 +6,6 @@ solve_film          film in any gap
 steady              prescribed position; films on the end faces there
 equilibrium         position under a load, the steadiest of several; stiffness and damping
 dynamic_stiffness   both at any frequency, for films that remember their oil and between surfaces that yield
+thrust_pads         film and tilts of thrust pads under an axial load; stiffness and damping with pads that follow
 stribeck            friction over speed
 """

@@ -9,11 +9,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.joint.balance.newton import Place, evaluate_at
 from exudyn_ehd.joint.balance.position import INSIDE, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
@@ -26,6 +27,7 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
 if TYPE_CHECKING:
+    from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult
     from exudyn_ehd.joint.thrust import ThrustModel
 
 
@@ -225,6 +227,9 @@ class EquilibriumResult:
         return np.array([self.response.at(float(f))[:2, :2] for f in nu]).reshape(-1, 2, 2)
 
 
+@overload
+def equilibrium(bearing: TiltingThrustPads, *, speed: float, load: float) -> ThrustPadsResult: ...
+@overload
 def equilibrium(
     bearing: JournalBearing,
     *,
@@ -233,7 +238,16 @@ def equilibrium(
     tilt: tuple[float, float] = (0.0, 0.0),
     axial_position: float = 0.0,
     axial_load: float | None = None,
-) -> EquilibriumResult:
+) -> EquilibriumResult: ...
+def equilibrium(
+    bearing: JournalBearing | TiltingThrustPads,
+    *,
+    speed: float,
+    load: tuple[float, float] | float,
+    tilt: tuple[float, float] = (0.0, 0.0),
+    axial_position: float = 0.0,
+    axial_load: float | None = None,
+) -> EquilibriumResult | ThrustPadsResult:
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     One bearing, alone, with a fixed tilt: a rotor in several bearings, or a journal that moments tilt, is for
@@ -258,20 +272,25 @@ def equilibrium(
     it converges to. With supply areas, tilt or `ElrodAdams` it looks for others if K is not positive definite there: a
     UserWarning names all that it found, and the most stable one is returned.
 
+    `TiltingThrustPads` carry an axial load: give ``speed`` and ``load`` alone. The result has the film thickness and
+    the tilts of the pads, which have no moment about their pivots, and the axial stiffness and damping with pads that
+    follow (`exudyn_ehd.joint.static.thrust_pads`).
+
     Method: Newton's with the exact tangent, at most 60 % of the remaining gap a step; where it fails, damped steps of
     Levenberg and Marquardt.
 
     Parameters
     ----------
-    bearing : JournalBearing
-        With ``inlet=Periodic()``.
+    bearing : JournalBearing or TiltingThrustPads
+        A journal bearing with ``inlet=Periodic()``.
     speed : float
         Spin of the journal against the housing, rad/s, positive about +z, not 0.
-    load : (float, float)
+    load : (float, float), or float
         External force on the journal in x and y of the joint frame, N, which the film balances: weight down is
         (0, -W). Under no load, (0, 0), the journal of a bearing that is the same in all directions lies at the exact
         centre. A film that ruptures has one-sided derivatives there; stiffness and damping are those a little off the
-        centre, `exudyn_ehd.joint.model.centre`.
+        centre, `exudyn_ehd.joint.model.centre`. Of thrust pads one number: the force, above 0, that presses the collar
+        onto all pads.
     tilt : (float, float), default (0.0, 0.0)
         Slopes (bx, by) of the journal axis, rad, held fixed.
     axial_position : float, default 0.0
@@ -282,7 +301,7 @@ def equilibrium(
 
     Returns
     -------
-    EquilibriumResult
+    EquilibriumResult or ThrustPadsResult
 
     Raises
     ------
@@ -303,14 +322,18 @@ def equilibrium(
     array([[ 175.,   99.],
            [-295.,  181.]])
     """
-    require_type("equilibrium: bearing", bearing, JournalBearing)
-    force = require_vector("equilibrium: load", load, 2, "N")
+    require_type("equilibrium: bearing", bearing, JournalBearing, TiltingThrustPads)
     omega = require_number("equilibrium: speed", speed, "rad/s")
-    b = require_vector("equilibrium: tilt", tilt, 2, "rad")
-    place = require_number("equilibrium: axial_position", axial_position, "m")
     if omega * bearing.journal_radius == 0.0:
         raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    if isinstance(bearing, TiltingThrustPads):
+        from exudyn_ehd.joint.static.thrust_pads import equilibrium_of_pads
+
+        return equilibrium_of_pads(bearing, omega, load, (tilt, axial_position, axial_load))
+    force = require_vector("equilibrium: load", load, 2, "N")  # type: ignore[arg-type]
+    b = require_vector("equilibrium: tilt", tilt, 2, "rad")
+    place = require_number("equilibrium: axial_position", axial_position, "m")
     size = float(np.hypot(*force))
     if size == 0.0:
         fed = max((getattr(area.supply, "supply_pressure", 0.0) for area in bearing.supply), default=0.0)

@@ -1,0 +1,264 @@
+"""The film and the tilts with which thrust pads carry a steady axial load, with stiffness and damping.
+
+A pad has the coordinates v = (h, phi_x, phi_y): film thickness at the pivot, m, and rotations of the pad about the
+radial and the tangential line through it, rad. Its gap is ``h - phi_x Y + phi_y (X - r_p)`` and the crown's share. The
+film presses the collar up by F and turns the pad by M_x and M_y about its pivot. With W a pad's share of the load
+
+    F(v) = W,   M_x(v) = M_y(v) = 0,
+
+by Newton's method with the exact tangent, in the unknowns ln h and phi L / h for ln(F / W) and M / (F L), L the outer
+radius: plane pads in unbroken films have forces in proportion to 1 / h^2 at fixed phi / h. Small motions meet
+``Q = -(K v + C dv/dt)`` with K and C (3, 3). With the tilting inertia J and, of a pivot with stiffness k and damping c
+under a pad of mass m, S = k + i nu c - nu^2 m, the complex stiffness of one pad under a collar that moves along the
+axis at the frequency nu is
+
+    Z = Z_f S / (Z_f + S),   Z_f = A_hh - A_h,phi (A_phi,phi - nu^2 J)^-1 A_phi,h,   A = K + i nu C,
+
+and Z_f on a rigid pivot: the pads follow the film without being held.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_ehd.film.loads import refined_peak
+from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
+from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
+from exudyn_ehd.pictures.records import shown
+from exudyn_ehd.status import FilmError, InputError, Status, require_number
+
+WHERE = "equilibrium"
+ALONG = "of TiltingThrustPads it presses the collar onto the pads along the axis."
+# Gap at the trailing edge of a first guess over that at the pivot; tried in this order.
+STARTS = (0.6, 0.85, 0.3)
+# Residual at which an equilibrium is found, above round-off of the integrals. Most steps, and halvings of one.
+TOLERANCE, MOST_STEPS, HALVINGS = 1e-10, 50, 12
+# Largest over smallest gap below which a film carries by no wedge, but by a vanishing gap.
+LEAST_WEDGE = 1.001
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ThrustPadsResult:
+    """Result of `equilibrium` for `TiltingThrustPads`: all pads are alike, and quantities are of all of them together.
+
+    Attributes
+    ----------
+    film_thickness : float
+        At the pivot, m.
+    inclination : (2,) array
+        Slopes of the gap at the pivot along the radius, dh / dr, and in the sense of +theta, dh / (r dtheta), rad;
+        without a crown's.
+    minimum_gap, maximum_gap, peak_pressure : float
+        m, m, Pa.
+    power_loss, friction_torque : float
+        W; torque on the collar about its own axis, positive about +z, N m.
+    flows : (4,) array
+        Oil that leaves the pads at their leading, trailing, inner and outer edges, m3/s; negative: that enters. The
+        leading edge is that of a positive spin.
+    stiffness, damping : float
+        Axial, of the collar on pads that follow, N/m and N s/m, at ``frequency``.
+    frequency : float
+        Size of the speed, rad/s.
+    pad_stiffness, pad_damping : (3, 3) arrays
+        K and C of one film for film thickness at the pivot, m, and rotations of the pad about the radial and the
+        tangential line through it, rad; SI units.
+    residual, iterations : float, int
+        Largest residual of force and moments, over the load and the load times the outer radius; films solved.
+    theta, r : (n,), (m,) arrays
+        Grid of a pad: angle from the line through the pivot, rad, and radius, m.
+    pressure, gap : (n, m) arrays
+        Pa (gauge), m.
+    bearing : TiltingThrustPads
+
+    Examples
+    --------
+    After the example of `TiltingThrustPads`:
+
+    >>> rest = ehd.equilibrium(pads, speed=300.0, load=30e3)
+    >>> rest
+    <ThrustPadsResult: film 57.9 µm at the pivot, minimum 35.3 µm, peak pressure 3.63 MPa, power loss 5.83e+03 W>
+    >>> rest.dynamic_stiffness([100.0, 1000.0]).shape  # K + i nu C at these frequencies, rad/s
+    (2,)
+    """
+
+    film_thickness: float
+    inclination: np.ndarray
+    minimum_gap: float
+    maximum_gap: float
+    peak_pressure: float
+    power_loss: float
+    friction_torque: float
+    flows: np.ndarray
+    stiffness: float
+    damping: float
+    frequency: float
+    pad_stiffness: np.ndarray
+    pad_damping: np.ndarray
+    residual: float
+    iterations: int
+    theta: np.ndarray = field(repr=False)
+    r: np.ndarray = field(repr=False)
+    pressure: np.ndarray = field(repr=False)
+    gap: np.ndarray = field(repr=False)
+    bearing: TiltingThrustPads = field(repr=False)
+
+    def __repr__(self) -> str:
+        film, gap = shown("length", self.film_thickness), shown("length", self.minimum_gap)
+        peak, loss = shown("pressure", self.peak_pressure), shown("power", self.power_loss)
+        return f"<ThrustPadsResult: film {film} at the pivot, minimum {gap}, peak pressure {peak}, power loss {loss}>"
+
+    def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
+        """Z = K + i nu C along the axis: the force on the collar is -Z z for a small motion z exp(i nu t).
+
+        Parameters
+        ----------
+        frequencies : (k,) array
+            nu, rad/s (not Hz).
+
+        Returns
+        -------
+        ndarray (k,)
+            Complex, N/m.
+        """
+        return np.array([axial(self.bearing, self.pad_stiffness, self.pad_damping, float(nu)) for nu in frequencies])
+
+
+def axial(pads: TiltingThrustPads, K: np.ndarray, C: np.ndarray, nu: float) -> complex:
+    """Complex axial stiffness of all pads, N/m, for K and C (3, 3) of one film at the frequency nu, rad/s."""
+    A = K + 1j * nu * C
+    tilting = A[1:, 1:] - nu**2 * np.diag(pads.pad_inertia)
+    Z = A[0, 0] - A[0, 1:] @ np.linalg.solve(tilting, A[1:, 0])
+    if pads.pivot_stiffness is not None:
+        S = pads.pivot_stiffness + 1j * nu * pads.pivot_damping - nu**2 * pads.pad_mass
+        Z = Z * S / (Z + S)
+    return complex(pads.pads * Z)
+
+
+class PadSearch:
+    """Films of a pad at coordinates v under a collar that turns at a speed.
+
+    Parameters
+    ----------
+    pads : TiltingThrustPads
+    speed : float
+        rad/s.
+    load : float
+        Of one pad, N.
+    """
+
+    def __init__(self, pads: TiltingThrustPads, speed: float, load: float) -> None:
+        self.pads, self.speed, self.load, self.count = pads, speed, load, 0
+        self.film = FaceFilm(pads, 1, pads.cavitation, pads.lubricant.viscosity, (0.0, 0.0))
+        # (zeta, bx, by) by v, and force on the collar and moments on the pad by the wrench
+        self.by_v = np.array([[1.0, 0.0, -pads.pivot_radius], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+        self.by_wrench = np.zeros((3, 6))
+        self.by_wrench[[0, 1, 2, 2], [2, 3, 4, 2]] = 1.0, -1.0, -1.0, -pads.pivot_radius
+
+    def at(self, v: np.ndarray) -> tuple[FaceState, np.ndarray]:
+        """The film, and the residuals (3,), infinite where no film presses."""
+        self.count += 1
+        motion = np.zeros(FACE_SIZE)
+        motion[:3], motion[6] = self.by_v @ (v - [self.pads.pivot_film, 0.0, 0.0]), self.speed
+        found = self.film.evaluate(motion)
+        if found.status is not Status.CONVERGED or not found.wrench[2] > 0.0:
+            return found, np.full(3, np.inf)
+        Q = self.by_wrench @ found.wrench
+        return found, np.array([math.log(Q[0] / self.load), *(Q[1:] / (Q[0] * self.pads.outer_radius))])
+
+    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """K and C (3, 3) of the last film."""
+        tangent = self.by_wrench @ self.film.tangent()
+        return -tangent[:, :3] @ self.by_v, -tangent[:, 3:6] @ self.by_v
+
+    def find(self, trailing: float) -> tuple[np.ndarray, FaceState, np.ndarray] | None:
+        """Coordinates, film and residuals of an equilibrium, from a gap at the ``trailing`` edge over the pivot's.
+
+        None if none was found.
+        """
+        pads, L = self.pads, self.pads.outer_radius
+        behind = pads.extent - pads.pivot_angle if self.speed > 0.0 else pads.pivot_angle
+        tilt = math.copysign((1.0 - trailing) / (pads.pivot_radius * math.sin(min(behind, 1.0))), self.speed)
+        v = pads.pivot_film * np.array([1.0, tilt, 0.0])
+        found, r = self.at(v)
+        for _ in range(MOST_STEPS):
+            if not np.isfinite(r[0]):
+                return None
+            if np.abs(r).max() < TOLERANCE:
+                gap = self.film.gap
+                return (v, found, r) if gap.max() > LEAST_WEDGE * gap.min() else None
+            rows = -self.matrices()[0] / (self.load * math.exp(r[0]))
+            rows[1:] = rows[1:] / L - np.outer(r[1:], rows[0])
+            step = np.linalg.solve(rows @ np.column_stack([v, v[0] / L * np.eye(3)[:, 1:]]), -r)
+            v, found, r = self._shorter(v, r, step)
+        return None
+
+    def _shorter(self, v: np.ndarray, r: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, FaceState, np.ndarray]:
+        """Take the step, or the part of it that reduces the residuals; they are infinite where no part does."""
+        for part in 0.5 ** np.arange(HALVINGS):
+            h = v[0] * math.exp(float(np.clip(part * step[0], -2.0, 2.0)))
+            there = h * np.array([1.0, *(v[1:] / v[0] + part * step[1:] / self.pads.outer_radius)])
+            found, now = self.at(there)
+            if np.linalg.norm(now) < np.linalg.norm(r):
+                return there, found, now
+        return v, found, np.full(3, np.inf)
+
+
+def equilibrium_of_pads(
+    pads: TiltingThrustPads, speed: float, load: object, others: tuple[object, ...] = ()
+) -> ThrustPadsResult:
+    """Film and tilts with which pads carry an axial load, N, on a collar that turns at a speed, rad/s.
+
+    ``others``: arguments of journal bearings, 0 or None where they were not given.
+    """
+    if any(np.any(np.asarray(other, dtype=object)) for other in others):
+        raise InputError(
+            f"{WHERE}: tilt, axial_position and axial_load are for a JournalBearing; TiltingThrustPads carry load=..., "
+            "one number along the axis, under a collar that does not tilt."
+        )
+    carried = require_number(f"{WHERE}: load", load, "N", above=0.0, hint=ALONG)  # type: ignore[arg-type]
+    search = PadSearch(pads, speed, carried / pads.pads)
+    for trailing in STARTS:
+        place = search.find(trailing)
+        if place is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
+            return _result(search, *place)
+    raise FilmError(
+        f"{WHERE}: no film was found in which TiltingThrustPads carry {carried:.4g} N at {speed:.4g} rad/s with their "
+        f"pivot {pads.pivot_angle / pads.extent:.3g} of the extent behind the leading edge of a positive spin: plane "
+        "pads carry by a wedge, whose load acts behind the middle; give them a pivot at about 0.6 of the extent in the "
+        "sense of rotation, near the middle of the radii, or pads for both senses crown=..., about as deep as the film "
+        "is thick."
+    )
+
+
+def _result(search: PadSearch, v: np.ndarray, found: FaceState, r: np.ndarray) -> ThrustPadsResult:
+    """Result at coordinates of an equilibrium, whose film is the model's last."""
+    pads, film, nu = search.pads, search.film, abs(search.speed)
+    K, C = search.matrices()
+    Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
+    (inner, outer), (first, last) = film.flows(), film.flows_along()
+    return ThrustPadsResult(
+        film_thickness=float(v[0]),
+        inclination=np.array([v[2], -v[1]]),
+        minimum_gap=found.minimum_gap,
+        maximum_gap=float(film.gap.max()),
+        peak_pressure=film.scales.pressure * refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.z, False)[0],
+        power_loss=pads.pads * found.power_loss,
+        friction_torque=-pads.pads * found.power_loss / search.speed,
+        flows=pads.pads * np.array([-first, last, -inner, outer]),
+        stiffness=Z.real,
+        damping=Z.imag / nu,
+        frequency=nu,
+        pad_stiffness=K,
+        pad_damping=C,
+        residual=float(np.abs(r).max()),
+        iterations=search.count,
+        theta=grid.x,
+        r=a.scale * a.r,
+        pressure=film.pressure,
+        gap=film.gap,
+        bearing=pads,
+    )
