@@ -71,10 +71,11 @@ class Periodic:
 
 @dataclass(frozen=True, kw_only=True)
 class MaximumGap:
-    """``inlet`` of classical tables: ambient pressure on the line of maximum gap; for `steady` only.
+    """``inlet`` of design charts: ambient pressure on the line of maximum gap; for `steady` and `equilibrium`.
 
-    `InputError` in joints and `equilibrium`, as the line is undefined for a concentric journal and jumps with a moving
-    one. At L/D = 1 and eccentricity ratio 0.1 the load is 2 % lower than with `Periodic`.
+    The line lies opposite to the journal's position. `InputError` in joints, as it is undefined for a concentric
+    journal and jumps with a moving one. At L/D = 1 and eccentricity ratio 0.1 the load is 2 % lower than with
+    `Periodic`.
 
     Examples
     --------
@@ -114,7 +115,7 @@ class JournalBearing(Checked):
         Cavitation model; `Closure` is one of your own, see "Extension points" in the package's README.
     inlet : Periodic or MaximumGap, default Periodic()
         Periodic: the film closes around the bearing. MaximumGap: it begins at ambient pressure where the gap is
-        largest; for `steady` only.
+        largest; for `steady` and `equilibrium`.
     arc : Arc or None, default None
         Bore on a part of the circle; None: all around.
     end_pressures : (float, float), default (0.0, 0.0)

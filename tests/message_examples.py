@@ -1091,7 +1091,9 @@ ehd.equilibrium(bearing, speed=0.0, load=(0.0, -500.0))
 
 ehd.equilibrium(bearing, speed=300.0, load=500.0)
 
-ehd.equilibrium(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), speed=300.0, load=(0.0, -500.0))
+ehd.stribeck(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), load=500.0, speeds=[300.0])
+
+ehd.equilibrium(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), speed=300.0, load=(0, -500), tilt=(1e-4, 0))
 
 turning = ehd.Hole(angle=0.0, diameter=0.005, pressure=1e5, rotating=True)
 ehd.equilibrium(ehd.JournalBearing(**plain, supply=(turning,)), speed=300.0, load=(0.0, -500.0))

@@ -58,3 +58,17 @@ def test_charts(table, make_bearing, measured, ratio):
     for name, errors in worst.items():
         measured(f"{name}, printed", errors[0], LIMITS[name][0])
         measured(f"{name}, independent", errors[1], LIMITS[name][1])
+
+
+def test_charts_at_a_load(table, make_bearing, measured):
+    """`equilibrium` with the line of the charts reads them at a given load: the row's S gives its other columns."""
+    worst, rng = 0.0, np.random.default_rng(3)
+    for row in (r for r in table("raimondi_boyd1958") if r["eps"] <= 0.9):
+        bearing, speed, angle = make_bearing(row["L_over_D"], inlet=ehd.MaximumGap()), rng.choice((-SPEED, SPEED)), 2.0
+        load = bearing.reference_force(speed) / (2.0 * math.pi * row["S_own"])
+        rest = ehd.equilibrium(bearing, speed=speed, load=(load * math.cos(angle), load * math.sin(angle)))
+        found = variables(rest.film) | {"eps": rest.eccentricity_ratio}
+        errors = [found[name] / row[OWN.get(name, name)] - 1.0 for name in ("eps", "f_R_over_c", "Q_over_RcNL")]
+        worst = np.maximum(worst, np.abs(errors))
+    for name, error, limit in zip(("eps", "friction", "inlet flow"), worst, (2e-3, 3e-3, 3e-3), strict=True):
+        measured(name, error, limit)

@@ -288,9 +288,7 @@ class SteadyResult(FilmRecord, FilmPictures):
         -------
         Audit
         """
-        open_ring = isinstance(self.bearing.inlet, MaximumGap)
-        start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
-        model = build_study_model(replace(self.bearing, thrust=None), start)
+        model = model_at(replace(self.bearing, thrust=None), self.motion)
         near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
@@ -387,10 +385,16 @@ def steady(
     return replace(result_at(model, motion, "steady"), faces=faces)
 
 
+def model_at(bearing: JournalBearing, motion: np.ndarray) -> BearingModel:
+    """Model for one position; a film with `MaximumGap` begins opposite to it, on -x for a concentric journal."""
+    turned = isinstance(bearing.inlet, MaximumGap)
+    return build_study_model(bearing, math.atan2(motion[1], motion[0]) + math.pi if turned else 0.0)
+
+
 def require_rest(bearing: JournalBearing, where: str) -> None:
     """Raise `InputError` for a bearing in which a journal under a constant load has no position of rest."""
     if isinstance(bearing.inlet, MaximumGap):
-        raise InputError(f"{where}: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
+        raise InputError(f"{where}: inlet=MaximumGap() is for `steady` and `equilibrium`; use Periodic().")
     for k, area in enumerate(bearing.supply):
         if area.rotating:
             raise InputError(
