@@ -51,6 +51,7 @@ from exudyn_ehd.film.grid import slider_grid as slider_grid
 from exudyn_ehd.film.heat.options import Conduction as Conduction
 from exudyn_ehd.film.heat.options import FilmEnergy as FilmEnergy
 from exudyn_ehd.film.heat.options import LumpedThermal as LumpedThermal
+from exudyn_ehd.film.heat.options import Sump as Sump
 from exudyn_ehd.film.lubricant.density import DowsonHigginson as DowsonHigginson
 from exudyn_ehd.film.lubricant.lubricant import Lubricant as Lubricant
 from exudyn_ehd.film.lubricant.lubricant import oil as oil

@@ -128,7 +128,7 @@ class JournalBearing(Checked):
     supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket, default ()
         Areas with a prescribed supply pressure; empty: none.
     thermal : LumpedThermal, FilmEnergy or None, default None
-        Temperature of the film; needs a lubricant with a ``temperature_law``, such as those of `oil`. None: isothermal,
+        Temperature of the film, which the viscosity follows by the lubricant's ``temperature_law``. None: isothermal,
         at ``lubricant.temperature``.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None, default None
         Flexible bore that deflects under the film's pressure; the outer surface of a bush moves with the housing.

@@ -194,6 +194,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "temperature": (
         "Lubricant.temperature",
         "LumpedThermal.supply_temperature",
+        "Sump.ambient",
         "LumpedThermal.housing_temperature",
         "LumpedThermal.initial_temperature",
         "FilmEnergy.supply_temperature",
@@ -292,7 +293,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "LubricatedJoint.stop_at.force",
     ),
     "line force": ("LineLoad.force_per_length",),
-    "heat conductance": ("LumpedThermal.housing_conductance", "Conduction.conductance"),
+    "heat conductance": ("LumpedThermal.housing_conductance", "Conduction.conductance", "Sump.conductance"),
     "heat capacity": ("LumpedThermal.capacity",),
     "heat transfer": ("FilmEnergy.bush_coefficient", "FilmEnergy.journal_coefficient"),
     "conductivity": ("FilmEnergy.conductivity", "Conduction.conductivity"),

@@ -73,7 +73,7 @@ GROUPS = (
     Group(
         "Heat",
         "Argument `thermal` of `JournalBearing`.",
-        "LumpedThermal FilmEnergy Conduction",
+        "LumpedThermal FilmEnergy Conduction Sump",
     ),
     Group(
         "Put it into a model",

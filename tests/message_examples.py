@@ -472,8 +472,6 @@ ehd.ArchardWear(wear_rate=1e-7)
         """
 ehd.LumpedThermal(supply_temperature=-5.0)
 
-ehd.JournalBearing(**plain, thermal=ehd.LumpedThermal(supply_temperature=313.0))
-
 ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thermal=ehd.LumpedThermal(supply_temperature=40.0))
 
 ehd.LumpedThermal(supply_temperature=313.0, carry_over=1.5)
@@ -587,6 +585,9 @@ Path("notes.txt").write_text("my notes")
 ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing, record=ehd.File(path="notes.txt"))
 
 ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()))
+
+heat = ehd.LumpedThermal(supply_temperature=ehd.Sump(conductance=10.0, ambient=293.15))
+ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**plain, thermal=heat))
 
 high = mbs.CreateRigidBody(inertia=cube, initialDisplacement=[0, 0, 1e-4])
 ehd.CreateLubricatedJoint(mbs, "main", [ground, high], centre, z, faced)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.heat.options import FilmEnergy
+from exudyn_ehd.film.heat.options import FilmEnergy, known_supply
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
@@ -88,17 +88,12 @@ def _check_turbulence(bearing: BearingOptions) -> None:
 
 
 def _check_heat(bearing: BearingOptions) -> None:
-    """Refuse an oil without a law of the temperature, temperatures at which the law gives no viscosity, as for degrees
-    Celsius given as kelvin, and a temperature field that does not go with the bearing."""
+    """Refuse temperatures at which the oil's law gives no viscosity, as for degrees Celsius given as kelvin, and a
+    temperature field that does not go with the bearing."""
     thermal, oil = bearing["thermal"], bearing["lubricant"]
     law = oil.temperature_law
-    if law is None:
-        raise InputError(
-            f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on "
-            'temperature, got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
-        )
-    for name, value in vars(thermal).items():
-        if value is None or not name.endswith("temperature"):
+    for name, value in (vars(thermal) | {"supply_temperature": known_supply(thermal)}).items():
+        if law is None or value is None or not name.endswith("temperature"):
             continue
         with np.errstate(all="ignore"):
             viscosity = float(law.viscosity(value, oil.density))

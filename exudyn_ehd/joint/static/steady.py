@@ -216,6 +216,9 @@ class SteadyResult(FilmRecord, FilmPictures):
         Highest temperature of the film, K; None for an isothermal bearing.
     heat_by_oil, heat_to_walls : float or None
         Heat that the oil carries out of the bearing, and that its walls give off, W; None for an isothermal bearing.
+    supply_temperature : float or None
+        Temperature of the oil that enters, K: the given one, or that of a `Sump`; None for an isothermal bearing. The
+        oil leaves at this temperature plus ``heat_by_oil`` over ``oil_flow`` times density and specific heat.
     walls : Walls or None
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
@@ -265,6 +268,7 @@ class SteadyResult(FilmRecord, FilmPictures):
     peak_temperature: float | None = None
     heat_by_oil: float | None = None
     heat_to_walls: float | None = None
+    supply_temperature: float | None = None
     bore_coordinates: np.ndarray | None = None
     faces: ThrustResult | None = None
 
@@ -485,5 +489,6 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         peak_temperature=q.get("peak_temperature"),
         heat_by_oil=heat.get("convected"),
         heat_to_walls=heat.get("conducted"),
+        supply_temperature=heat.get("supply_temperature"),
         bore_coordinates=None if film.bore is None else film.bore.coordinates.copy(),
     )
