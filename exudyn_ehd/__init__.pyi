@@ -59,6 +59,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure as BarusP
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure as RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear as CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature as ReynoldsTemperature
+from exudyn_ehd.film.lubricant.temperature_viscosity import TableViscosity as TableViscosity
 from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature as VogelTemperature
 from exudyn_ehd.film.lubricant.temperature_viscosity import WaltherTemperature as WaltherTemperature
 from exudyn_ehd.film.models import FiniteLength as FiniteLength

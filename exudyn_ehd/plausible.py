@@ -213,6 +213,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "VogelTemperature.second",
         "WaltherTemperature.first",
         "WaltherTemperature.second",
+        "TableViscosity.temperatures",
     ),
     "pressure": (
         "JournalBearing.end_pressures",

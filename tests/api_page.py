@@ -47,8 +47,8 @@ GROUPS = (
     Group(
         "Oil: how viscosity and density change",
         "Arguments of `Lubricant`.",
-        "BarusPressure RoelandsPressure ReynoldsTemperature VogelTemperature WaltherTemperature CarreauShear "
-        "DowsonHigginson",
+        "BarusPressure RoelandsPressure ReynoldsTemperature VogelTemperature WaltherTemperature TableViscosity "
+        "CarreauShear DowsonHigginson",
     ),
     Group(
         "Film and cavitation",

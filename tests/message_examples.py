@@ -265,6 +265,11 @@ ehd.oil("ISO VG 46", temperature=40.0)
 
 oil.at(350.0)
 
+ehd.TableViscosity(temperatures=(293.0, 313.0), viscosities=(0.04, 0.1))
+
+table = ehd.TableViscosity(temperatures=(293.0, 333.0), viscosities=(0.1, 0.02))
+ehd.Lubricant(temperature_law=table, temperature=353.0)
+
 ehd.Lubricant(viscosity=1e-5, pressure_law=ehd.RoelandsPressure(coefficient=2e-8))
 
 ehd.BarusPressure(coefficient=20.0)

@@ -43,6 +43,7 @@ PURE = {
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
+    "TableViscosity.viscosities",
     "mesh_from_arrays.nodes",
     "mesh_from_file.bore_radius",
     "EquilibriumPoint.speed",
@@ -140,6 +141,7 @@ CLASS_NEEDS = {
     "ReynoldsTemperature": {"point": (313.0, 0.04), "coefficient": 0.03},
     "VogelTemperature": {"first": (313.0, 0.04), "second": (373.0, 0.006)},
     "WaltherTemperature": {"first": (313.0, 46e-6), "second": (373.0, 7e-6)},
+    "TableViscosity": {"temperatures": (300.0, 350.0), "viscosities": (0.04, 0.01)},
     "AxialProfile": {"positions": [-0.01, 0.01], "depths": [0.0, 1e-6]},
     "ProfileTable": {
         "angles": [0.0, 1.0, 2.0, 3.0],
@@ -207,6 +209,7 @@ SAID_OTHERWISE = {
     "JournalBearing.radial_clearance", "AxialGroove.width_angle", "Pocket.width_angle", "VogelTemperature.pole",
     "solve_film.history", "solve_film.step", "ProfileTable.angles", "WaltherTemperature.expansion",
     "VogelTemperature.first", "VogelTemperature.second", "WaltherTemperature.first", "WaltherTemperature.second",
+    "TableViscosity.temperatures",
 }  # fmt: skip
 
 
@@ -248,6 +251,10 @@ def _bearing(**options):
 
 # (what a scene writes, None for a warning or what the message must name)
 TRAPS = {
+    "table in degrees": (
+        lambda: ehd.TableViscosity(temperatures=(20.0, 40.0, 100.0), viscosities=(0.1, 0.04, 0.006)),
+        "273.15",
+    ),
     "oil at 90 degrees": (lambda: ehd.oil("ISO VG 46", temperature=90.0), "273.15"),
     "length in mm": (lambda: _bearing(length=20.0), "in mm, give 0.02"),
     "hole in mm": (lambda: ehd.Hole(angle=1.0, diameter=5.0), "give 0.005"),

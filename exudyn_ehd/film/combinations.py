@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.heat.options import FilmEnergy, known_supply
+from exudyn_ehd.film.lubricant.temperature_viscosity import require_covered
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
@@ -95,6 +96,7 @@ def _check_heat(bearing: BearingOptions) -> None:
     for name, value in (vars(thermal) | {"supply_temperature": known_supply(thermal)}).items():
         if law is None or value is None or not name.endswith("temperature"):
             continue
+        require_covered(f"JournalBearing.thermal.{name}", law, value)
         with np.errstate(all="ignore"):
             viscosity = float(law.viscosity(value, oil.density))
         if not LEAST_VISCOSITY <= viscosity <= LARGEST_VISCOSITY:
