@@ -84,6 +84,7 @@ from exudyn_ehd.film.surfaces.profile import Crown as Crown
 from exudyn_ehd.film.surfaces.profile import EdgeRelief as EdgeRelief
 from exudyn_ehd.film.surfaces.profile import OutOfRound as OutOfRound
 from exudyn_ehd.film.surfaces.profile import ProfileTable as ProfileTable
+from exudyn_ehd.film.surfaces.profile import WornArc as WornArc
 from exudyn_ehd.film.thrust.annulus import StepLand as StepLand
 from exudyn_ehd.film.thrust.annulus import TaperLand as TaperLand
 from exudyn_ehd.film.thrust.annulus import ThrustFaces as ThrustFaces

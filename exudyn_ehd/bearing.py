@@ -141,7 +141,8 @@ class JournalBearing(Checked):
     roughness : PatirCheng or None, default None
         Flow factors of rough surfaces; with ``asperity`` both must have the same ``composite_roughness``.
     profile : SurfaceProfile, tuple of SurfaceProfile or None, default None
-        Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
+        Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`,
+        `WornArc`.
     wear : ArchardWear or None, default None
         Wear of the bore by the asperity contact; needs ``asperity``.
     turbulence : NgPan, Hirs or None, default None

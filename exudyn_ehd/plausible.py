@@ -152,7 +152,12 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "mesh_from_arrays.origin",
         "OnPlane.point",
     ),
-    "clearance": ("JournalBearing.radial_clearance", "SphericalBearing.radial_clearance", "ThrustFaces.clearance"),
+    "clearance": (
+        "JournalBearing.radial_clearance",
+        "SphericalBearing.radial_clearance",
+        "ThrustFaces.clearance",
+        "WornArc.clearance",
+    ),
     "gap": (
         "solve_film.gap",
         "solve_film.history",
@@ -162,6 +167,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "form": (
         "OutOfRound.amplitude",
+        "WornArc.worn_depth",
         "OnPlane.tolerance",
         "Crown.drop",
         "EdgeRelief.drop",
@@ -179,6 +185,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "Hole.angle",
         "Pocket.angle",
         "OutOfRound.phase",
+        "WornArc.angle",
         "bearing_grid.start_angle",
         "steady.direction",
         "recommend.direction",

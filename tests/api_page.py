@@ -67,7 +67,7 @@ GROUPS = (
         "Surfaces: shape, roughness, contact, wear",
         "Arguments `profile`, `roughness`, `asperity`, `contact` and `wear` of `JournalBearing`. `d` is the depth that "
         "a profile adds to the gap.",
-        "Crown EdgeRelief OutOfRound AxialProfile ProfileTable PatirCheng GreenwoodTripp composite_modulus "
+        "Crown EdgeRelief OutOfRound AxialProfile ProfileTable WornArc PatirCheng GreenwoodTripp composite_modulus "
         "RegularisedWall ArchardWear",
     ),
     Group(

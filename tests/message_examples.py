@@ -420,6 +420,8 @@ ehd.Crown(drop=5.0)
 
 ehd.OutOfRound(order=1, amplitude=1e-6)
 
+ehd.WornArc(worn_depth=50e-6, angle=0.0, clearance=25e-6)
+
 egg = ehd.JournalBearing(**plain, profile=ehd.OutOfRound(order=2, amplitude=40e-6))
 ehd.steady(egg, speed=300.0, eccentricity_ratio=0.0)
 
@@ -1098,6 +1100,10 @@ ehd.equilibrium(bearing, speed=0.0, load=(0.0, -500.0))
 ehd.equilibrium(bearing, speed=300.0, load=500.0)
 
 ehd.stribeck(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), load=500.0, speeds=[300.0])
+
+wet = ehd.Lubricant(temperature_law=ehd.TableViscosity(temperatures=(300, 330), viscosities=(0.05, 0.02)))
+hot = ehd.JournalBearing(**size, lubricant=wet, thermal=ehd.LumpedThermal(supply_temperature=313.0))
+ehd.stribeck(hot, load=500.0, speeds=[3000.0])
 
 ehd.equilibrium(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), speed=300.0, load=(0, -500), tilt=(1e-4, 0))
 

@@ -130,6 +130,7 @@ CLASS_NEEDS = {
     "ArchardWear": {"wear_rate": 1e-16},
     "OutOfRound": {"order": 2, "amplitude": 1e-6},
     "Crown": {"drop": 1e-6},
+    "WornArc": {"worn_depth": 5e-6, "angle": 0.0, "clearance": 25e-6},
     "EdgeRelief": {"drop": 1e-6, "relief_length": 2e-3},
     "LumpedThermal": {"supply_temperature": 320.0},
     "FilmEnergy": {"supply_temperature": 320.0},

@@ -110,11 +110,12 @@ def seized(walls: Walls | None) -> str:
     )
 
 
-def outside_table(film: SolvedFilm | None) -> str:
-    """Return the message for a film with temperatures outside the limits of the oil's law; empty if there is none."""
-    law = None if film is None else film.parts.bearing.lubricant.temperature_law
-    limits = getattr(law, "limits", None)
-    if film is None or film.temperature is None or limits is None:
+def outside_table(film: object) -> str:
+    """Return the message for a film with temperatures outside the limits of the oil's law; empty for any other film."""
+    if not isinstance(film, SolvedFilm) or film.temperature is None:
+        return ""
+    law = film.parts.bearing.lubricant.temperature_law
+    if (limits := getattr(law, "limits", None)) is None:
         return ""
     T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
     low, high = float(np.min(T)), float(np.max(T))
