@@ -30,7 +30,7 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmOnBoreResponse, FilmResponse, threshold
-from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, model_at, require_rest, result_at
+from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, model_at, require_rest, result_at, result_of
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
@@ -340,9 +340,7 @@ def equilibrium(
     search = kind(model, "equilibrium", np.append(force, along), size=size, faces=faces)
     found = steadiest(search, search.find(motion))
     K, C, response = _small_motions(model, found)
-    if line:
-        K, C = -found.slope, turning(found.motion) @ C @ turning(found.motion).T
-        model = model_at(bearing, found.motion)
+    model = model_at(bearing, found.motion) if line else model
     ratio, mass = whirl_threshold(K, C, abs(omega)) if response is None else threshold(response.at, abs(omega))
     frequency = abs(omega) * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)
@@ -351,8 +349,6 @@ def equilibrium(
         frequency = 0.0
     film = result_at(model, found.motion[:MOTION_SIZE], "equilibrium", found.film.history)
     if found.faces is not None:
-        from exudyn_ehd.joint.static.steady import result_of
-
         film = replace(film, faces=result_of(found.faces, found.faces.tangent()))
     return EquilibriumResult(
         position=found.motion[:2],
@@ -381,6 +377,9 @@ def _small_motions(model: BearingModel, found: Place) -> tuple[np.ndarray, np.nd
     if central:
         require_derivatives(evaluation, "equilibrium")
     K, C = own = _slow_motions(evaluation)
+    if isinstance(model.bearing.inlet, MaximumGap):
+        back = turning(found.motion)
+        return -found.slope, back @ C @ back.T, None
     if found.faces is not None:
         beside = found.faces.tangent()
         K, C = K - beside[:2, :2], C - beside[:2, 4:6]

@@ -65,7 +65,7 @@ def test_film_of_a_journal_that_has_worn_the_bore(make_bearing):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_film_is_that_of_a_table(make_bearing, seed):
-    """The same arc as a table of 720 depths around the bore, both with an equilibrium under the same load."""
+    """Equilibria under one load in the arc, and in a table of its depths at 720 angles."""
     rng = np.random.default_rng(seed)
     arc = ehd.WornArc(worn_depth=rng.uniform(3e-6, 12e-6), angle=rng.uniform(-3.0, 3.0), clearance=CLEARANCE)
     angles = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
