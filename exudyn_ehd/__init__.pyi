@@ -58,6 +58,7 @@ from exudyn_ehd.film.grid import slider_grid as slider_grid
 from exudyn_ehd.film.heat.options import Conduction as Conduction
 from exudyn_ehd.film.heat.options import FilmEnergy as FilmEnergy
 from exudyn_ehd.film.heat.options import LumpedThermal as LumpedThermal
+from exudyn_ehd.film.heat.options import Sump as Sump
 from exudyn_ehd.film.lubricant.density import DowsonHigginson as DowsonHigginson
 from exudyn_ehd.film.lubricant.lubricant import Lubricant as Lubricant
 from exudyn_ehd.film.lubricant.lubricant import oil as oil
@@ -65,6 +66,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure as BarusP
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure as RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear as CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature as ReynoldsTemperature
+from exudyn_ehd.film.lubricant.temperature_viscosity import TableViscosity as TableViscosity
 from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature as VogelTemperature
 from exudyn_ehd.film.lubricant.temperature_viscosity import WaltherTemperature as WaltherTemperature
 from exudyn_ehd.film.models import FiniteLength as FiniteLength
@@ -93,6 +95,7 @@ from exudyn_ehd.film.surfaces.profile import Crown as Crown
 from exudyn_ehd.film.surfaces.profile import EdgeRelief as EdgeRelief
 from exudyn_ehd.film.surfaces.profile import OutOfRound as OutOfRound
 from exudyn_ehd.film.surfaces.profile import ProfileTable as ProfileTable
+from exudyn_ehd.film.surfaces.profile import WornArc as WornArc
 from exudyn_ehd.film.thrust.annulus import StepLand as StepLand
 from exudyn_ehd.film.thrust.annulus import TaperLand as TaperLand
 from exudyn_ehd.film.thrust.annulus import ThrustFaces as ThrustFaces

@@ -72,10 +72,11 @@ class Periodic:
 
 @dataclass(frozen=True, kw_only=True)
 class MaximumGap:
-    """``inlet`` of classical tables: ambient pressure on the line of maximum gap; for `steady` only.
+    """``inlet`` of design charts: ambient pressure on the line of maximum gap; for `steady` and `equilibrium`.
 
-    `InputError` in joints and `equilibrium`, as the line is undefined for a concentric journal and jumps with a moving
-    one. At L/D = 1 and eccentricity ratio 0.1 the load is 2 % lower than with `Periodic`.
+    The line lies opposite to the journal's position. `InputError` in joints, as it is undefined for a concentric
+    journal and jumps with a moving one. At L/D = 1 and eccentricity ratio 0.1 the load is 2 % lower than with
+    `Periodic`.
 
     Examples
     --------
@@ -116,7 +117,7 @@ class JournalBearing(Checked):
         Cavitation model; `Closure` is one of your own, see "Extension points" in the package's README.
     inlet : Periodic or MaximumGap, default Periodic()
         Periodic: the film closes around the bearing. MaximumGap: it begins at ambient pressure where the gap is
-        largest; for `steady` only.
+        largest; for `steady` and `equilibrium`.
     arc : Arc or None, default None
         Bore on a part of the circle; None: all around.
     arcs : tuple of Arc, default ()
@@ -135,7 +136,7 @@ class JournalBearing(Checked):
     supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket, default ()
         Areas with a prescribed supply pressure, or fed through a restrictor; empty: none.
     thermal : LumpedThermal, FilmEnergy or None, default None
-        Temperature of the film; needs a lubricant with a ``temperature_law``, such as those of `oil`. None: isothermal,
+        Temperature of the film, which the viscosity follows by the lubricant's ``temperature_law``. None: isothermal,
         at ``lubricant.temperature``.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None, default None
         Flexible bore that deflects under the film's pressure; the outer surface of a bush moves with the housing.
@@ -148,7 +149,8 @@ class JournalBearing(Checked):
     roughness : PatirCheng or None, default None
         Flow factors of rough surfaces; with ``asperity`` both must have the same ``composite_roughness``.
     profile : SurfaceProfile, tuple of SurfaceProfile or None, default None
-        Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
+        Addition to the gap by the surfaces' shape: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`,
+        `WornArc`.
     wear : ArchardWear or None, default None
         Wear of the bore by the asperity contact; needs ``asperity``.
     turbulence : NgPan, Hirs or None, default None

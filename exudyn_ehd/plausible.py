@@ -162,6 +162,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "SphericalBearing.radial_clearance",
         "ThrustFaces.clearance",
         "TiltingThrustPads.clearance",
+        "WornArc.clearance",
     ),
     "gap": (
         "solve_film.gap",
@@ -172,6 +173,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "form": (
         "OutOfRound.amplitude",
+        "WornArc.worn_depth",
         "OnPlane.tolerance",
         "Crown.drop",
         "EdgeRelief.drop",
@@ -189,6 +191,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         *(f"{bore}.angle" for bore in ("two_lobe", "three_lobe", "offset_halves", "pressure_dam")),
         *(f"{area}.angle" for area in _AREAS if area != "CircumferentialGroove"),
         "OutOfRound.phase",
+        "WornArc.angle",
         "bearing_grid.start_angle",
         "steady.direction",
         "recommend.direction",
@@ -206,6 +209,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "specific heat of a solid": ("Conduction.specific_heat",),
     "temperature": (
         "Lubricant.temperature",
+        "Sump.ambient",
         *(f"LumpedThermal.{of}_temperature" for of in ("supply", "housing", "initial")),
         *(f"FilmEnergy.{of}_temperature" for of in ("supply", "bush", "journal", "initial")),
         *(f"Conduction.{of}_temperature" for of in ("ambient", "initial", "clearance")),
@@ -214,10 +218,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "oil.temperature",
         "Lubricant.at.temperature",
         "ReynoldsTemperature.point",
-        "VogelTemperature.first",
-        "VogelTemperature.second",
-        "WaltherTemperature.first",
-        "WaltherTemperature.second",
+        *(f"{law}Temperature.{point}" for law in ("Vogel", "Walther") for point in ("first", "second")),
+        "TableViscosity.temperatures",
     ),
     "pressure": (
         "JournalBearing.end_pressures",
@@ -295,7 +297,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "LubricatedJoint.stop_at.force",
     ),
     "line force": ("LineLoad.force_per_length",),
-    "heat conductance": ("LumpedThermal.housing_conductance", "Conduction.conductance"),
+    "heat conductance": ("LumpedThermal.housing_conductance", "Conduction.conductance", "Sump.conductance"),
     "heat capacity": ("LumpedThermal.capacity",),
     "heat transfer": ("FilmEnergy.bush_coefficient", "FilmEnergy.journal_coefficient"),
     "conductivity": ("FilmEnergy.conductivity", "Conduction.conductivity"),

@@ -47,8 +47,8 @@ GROUPS = (
     Group(
         "Oil: how viscosity and density change",
         "Arguments of `Lubricant`.",
-        "BarusPressure RoelandsPressure ReynoldsTemperature VogelTemperature WaltherTemperature CarreauShear "
-        "DowsonHigginson",
+        "BarusPressure RoelandsPressure ReynoldsTemperature VogelTemperature WaltherTemperature TableViscosity "
+        "CarreauShear DowsonHigginson",
     ),
     Group(
         "Film and cavitation",
@@ -74,13 +74,13 @@ GROUPS = (
         "Surfaces: shape, roughness, contact, wear",
         "Arguments `profile`, `roughness`, `asperity`, `contact` and `wear` of `JournalBearing`. `d` is the depth that "
         "a profile adds to the gap.",
-        "Crown EdgeRelief OutOfRound AxialProfile ProfileTable PatirCheng GreenwoodTripp composite_modulus "
+        "Crown EdgeRelief OutOfRound AxialProfile ProfileTable WornArc PatirCheng GreenwoodTripp composite_modulus "
         "RegularisedWall ArchardWear",
     ),
     Group(
         "Heat",
         "Argument `thermal` of `JournalBearing`.",
-        "LumpedThermal FilmEnergy Conduction",
+        "LumpedThermal FilmEnergy Conduction Sump",
     ),
     Group(
         "Put it into a model",

@@ -269,6 +269,11 @@ ehd.oil("ISO VG 46", temperature=40.0)
 
 oil.at(350.0)
 
+ehd.TableViscosity(temperatures=(293.0, 313.0), viscosities=(0.04, 0.1))
+
+table = ehd.TableViscosity(temperatures=(293.0, 333.0), viscosities=(0.1, 0.02))
+ehd.Lubricant(temperature_law=table, temperature=353.0)
+
 ehd.Lubricant(viscosity=1e-5, pressure_law=ehd.RoelandsPressure(coefficient=2e-8))
 
 ehd.BarusPressure(coefficient=20.0)
@@ -468,6 +473,8 @@ ehd.Crown(drop=5.0)
 
 ehd.OutOfRound(order=1, amplitude=1e-6)
 
+ehd.WornArc(worn_depth=50e-6, angle=0.0, clearance=25e-6)
+
 egg = ehd.JournalBearing(**plain, profile=ehd.OutOfRound(order=2, amplitude=40e-6))
 ehd.steady(egg, speed=300.0, eccentricity_ratio=0.0)
 
@@ -524,8 +531,6 @@ ehd.ArchardWear(wear_rate=1e-7)
         "bearing",
         """
 ehd.LumpedThermal(supply_temperature=-5.0)
-
-ehd.JournalBearing(**plain, thermal=ehd.LumpedThermal(supply_temperature=313.0))
 
 ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thermal=ehd.LumpedThermal(supply_temperature=40.0))
 
@@ -640,6 +645,9 @@ Path("notes.txt").write_text("my notes")
 ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing, record=ehd.File(path="notes.txt"))
 
 ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()))
+
+heat = ehd.LumpedThermal(supply_temperature=ehd.Sump(conductance=10.0, ambient=293.15))
+ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**plain, thermal=heat))
 
 high = mbs.CreateRigidBody(inertia=cube, initialDisplacement=[0, 0, 1e-4])
 ehd.CreateLubricatedJoint(mbs, "main", [ground, high], centre, z, faced)
@@ -1154,7 +1162,13 @@ ehd.equilibrium(bearing, speed=0.0, load=(0.0, -500.0))
 
 ehd.equilibrium(bearing, speed=300.0, load=500.0)
 
-ehd.equilibrium(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), speed=300.0, load=(0.0, -500.0))
+ehd.stribeck(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), load=500.0, speeds=[300.0])
+
+wet = ehd.Lubricant(temperature_law=ehd.TableViscosity(temperatures=(300, 330), viscosities=(0.05, 0.02)))
+hot = ehd.JournalBearing(**size, lubricant=wet, thermal=ehd.LumpedThermal(supply_temperature=313.0))
+ehd.stribeck(hot, load=500.0, speeds=[3000.0])
+
+ehd.equilibrium(ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()), speed=300.0, load=(0, -500), tilt=(1e-4, 0))
 
 turning = ehd.Hole(angle=0.0, diameter=0.005, pressure=1e5, rotating=True)
 ehd.equilibrium(ehd.JournalBearing(**plain, supply=(turning,)), speed=300.0, load=(0.0, -500.0))

@@ -26,7 +26,7 @@ PURE = {
     "CreateLubricatedJoint.rotationMatrixAxes", "CreateLubricatedJoint.color", "Crown.exponent",
     "DeadPressure.distribution", "ElasticLiner.poisson_ratio", "FactorReuse.contractivity", "FEBore.radius_tolerance",
     "FEJournal.radius_tolerance",
-    "FilmEnergy.carry_over", "LumpedThermal.carry_over",
+    "FilmEnergy.carry_over", "LumpedThermal.carry_over", "LumpedThermal.effective_rise",
     "FiniteLength.stretch", "FollowerPressure.distribution", "GreenwoodTripp.density_radius_roughness",
     "Orifice.discharge_coefficient",
     "GreenwoodTripp.roughness_radius_ratio", "GreenwoodTripp.friction_coefficient", "GreenwoodTripp.residual_film",
@@ -46,6 +46,7 @@ PURE = {
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
+    "TableViscosity.viscosities",
     "mesh_from_arrays.nodes",
     "mesh_from_file.bore_radius",
     "EquilibriumPoint.speed",
@@ -134,16 +135,19 @@ CLASS_NEEDS = {
     "ArchardWear": {"wear_rate": 1e-16},
     "OutOfRound": {"order": 2, "amplitude": 1e-6},
     "Crown": {"drop": 1e-6},
+    "WornArc": {"worn_depth": 5e-6, "angle": 0.0, "clearance": 25e-6},
     "EdgeRelief": {"drop": 1e-6, "relief_length": 2e-3},
     "LumpedThermal": {"supply_temperature": 320.0},
     "FilmEnergy": {"supply_temperature": 320.0},
     "Conduction": {"thickness": 0.02, "conductance": 1.0},
+    "Sump": {"conductance": 5.0, "ambient": 293.0},
     "BarusPressure": {"coefficient": 2e-8},
     "RoelandsPressure": {"coefficient": 2e-8},
     "CarreauShear": {"relaxation_time": 1e-6, "exponent": 0.8},
     "ReynoldsTemperature": {"point": (313.0, 0.04), "coefficient": 0.03},
     "VogelTemperature": {"first": (313.0, 0.04), "second": (373.0, 0.006)},
     "WaltherTemperature": {"first": (313.0, 46e-6), "second": (373.0, 7e-6)},
+    "TableViscosity": {"temperatures": (300.0, 350.0), "viscosities": (0.04, 0.01)},
     "AxialProfile": {"positions": [-0.01, 0.01], "depths": [0.0, 1e-6]},
     "ProfileTable": {
         "angles": [0.0, 1.0, 2.0, 3.0],
@@ -211,6 +215,7 @@ SAID_OTHERWISE = {
     "JournalBearing.radial_clearance", "AxialGroove.width_angle", "Pocket.width_angle", "VogelTemperature.pole",
     "solve_film.history", "solve_film.step", "ProfileTable.angles", "WaltherTemperature.expansion",
     "VogelTemperature.first", "VogelTemperature.second", "WaltherTemperature.first", "WaltherTemperature.second",
+    "TableViscosity.temperatures",
 }  # fmt: skip
 
 
@@ -252,6 +257,10 @@ def _bearing(**options):
 
 # (what a scene writes, None for a warning or what the message must name)
 TRAPS = {
+    "table in degrees": (
+        lambda: ehd.TableViscosity(temperatures=(20.0, 40.0, 100.0), viscosities=(0.1, 0.04, 0.006)),
+        "273.15",
+    ),
     "oil at 90 degrees": (lambda: ehd.oil("ISO VG 46", temperature=90.0), "273.15"),
     "length in mm": (lambda: _bearing(length=20.0), "in mm, give 0.02"),
     "hole in mm": (lambda: ehd.Hole(angle=1.0, diameter=5.0), "give 0.005"),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.heat.options import FilmEnergy
+from exudyn_ehd.film.heat.options import FilmEnergy, Sump, known_supply
+from exudyn_ehd.film.lubricant.temperature_viscosity import require_covered
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
@@ -102,11 +103,12 @@ def _check_restrictors(bearing: BearingOptions) -> None:
         return
     others = [f"Lubricant.{law}" for law in ("density_law", "shear_law") if getattr(bearing["lubricant"], law)]
     others += [f"JournalBearing.{side}" for side in ("bush", "journal") if bearing[side] is not None]
+    others += ["Sump"] if isinstance(getattr(bearing["thermal"], "supply_temperature", None), Sump) else []
     if others:
         raise InputError(
             f"JournalBearing.supply[{fed[0]}] with a restrictor does not go with {others[0]}: the pressure of the area "
-            "is unknown, which needs rigid surfaces and an oil whose density and viscosity do not follow pressure or "
-            "shear, but for a pressure_law; give the area a pressure, or leave the other out."
+            "is unknown, which needs rigid surfaces, a known supply temperature, and an oil whose density and viscosity "
+            "do not follow pressure or shear, but for a pressure_law; give the area a pressure, or leave the other out."
         )
     if isinstance(bearing["film"], LongBearing) and any(isinstance(a.supply, GivenFlow) for a in bearing["supply"]):
         raise InputError(
@@ -119,7 +121,7 @@ def _check_seals(bearing: BearingOptions) -> None:
     """Refuse films that take their pressure at an end as given, and those without any pressure that is given."""
     seals, supply = bearing["end_seals"], bearing["supply"]
     others = [f"Lubricant.{law}" for law in _FOLLOWING if getattr(bearing["lubricant"], law) is not None]
-    others += [f"JournalBearing.{name}" for name in ("arc", "bush", "journal") if bearing[name] is not None]
+    others += [f"JournalBearing.{name}" for name in ("arcs", "bush", "journal") if bearing[name]]
     others += [] if isinstance(bearing["film"], FiniteLength) else ["JournalBearing.film"]
     others += ["JournalBearing.thermal"] if isinstance(bearing["thermal"], FilmEnergy) else []
     if others:
@@ -152,18 +154,14 @@ def _check_turbulence(bearing: BearingOptions) -> None:
 
 
 def _check_heat(bearing: BearingOptions) -> None:
-    """Refuse an oil without a law of the temperature, temperatures at which the law gives no viscosity, as for degrees
-    Celsius given as kelvin, and a temperature field that does not go with the bearing."""
+    """Refuse temperatures at which the oil's law gives no viscosity, as for degrees Celsius given as kelvin, and a
+    temperature field that does not go with the bearing."""
     thermal, oil = bearing["thermal"], bearing["lubricant"]
     law = oil.temperature_law
-    if law is None:
-        raise InputError(
-            f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on "
-            'temperature, got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
-        )
-    for name, value in vars(thermal).items():
-        if value is None or not name.endswith("temperature"):
+    for name, value in (vars(thermal) | {"supply_temperature": known_supply(thermal)}).items():
+        if law is None or value is None or not name.endswith("temperature"):
             continue
+        require_covered(f"JournalBearing.thermal.{name}", law, value)
         with np.errstate(all="ignore"):
             viscosity = float(law.viscosity(value, oil.density))
         if not LEAST_VISCOSITY <= viscosity <= LARGEST_VISCOSITY:

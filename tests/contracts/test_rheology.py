@@ -164,7 +164,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         monkeypatch.setattr(f"exudyn_ehd.film.lubricant.{target}", forbidden)
     for target in (
         "heat.temperature.OilTemperature.viscosity_ratio",
-        "heat.power.film_flows",
+        "heat.temperature.heat_and_exchange",
         "balance.newton.foreseen",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)

@@ -32,6 +32,7 @@ from exudyn_ehd.joint.balance.limits import (
     hottest,
     is_above,
     mean_pressure,
+    outside_table,
     seized,
 )
 from exudyn_ehd.joint.solved_film import History
@@ -136,7 +137,8 @@ class Failures:
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
         """The state of an accepted step is none of a bearing; None if it is one."""
-        if message := seized(getattr(getattr(trial.evaluation, "film", None), "walls", None)):
+        film = getattr(trial.evaluation, "film", None)
+        if message := seized(getattr(film, "walls", None)) or outside_table(film):
             return self._at(time, message)
         pressure = self._pressure(row)
         if pressure > self._bearable:

@@ -41,15 +41,62 @@ from exudyn_ehd.status import (
 
 
 @dataclass(frozen=True, kw_only=True)
+class Sump(Checked):
+    """Oil tank whose temperature follows from the heat that the oil brings: ``supply_temperature`` of a film.
+
+    ``conductance (T_sump - ambient) = H``, with the heat H that the oil carries out of the bearing, which is
+    `SteadyResult.heat_by_oil`. Several bearings on one tank: give each the part of the conductance that is its part of
+    the heat.
+
+    For steady films: `steady`, `equilibrium`, `stribeck`. In a joint it raises `InputError`, because a tank takes
+    minutes to hours to warm up, which no run lasts: take the number `SteadyResult.supply_temperature` there. Other
+    temperatures that are None are that of the ambient. `FilmEnergy` takes up to four times as long.
+
+    Parameters
+    ----------
+    conductance : float
+        Heat that the tank gives off per kelvin, W/K: its surface times the heat transfer coefficient there, some 10 to
+        20 W/(m2 K) in air, or that of a cooler.
+    ambient : float
+        Temperature of the ambient or of the cooling water, K.
+
+    Examples
+    --------
+    >>> thermal = ehd.LumpedThermal(supply_temperature=ehd.Sump(conductance=6.0, ambient=293.15))
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.oil("ISO VG 46"))
+    >>> film = ehd.steady(ehd.JournalBearing(**b, thermal=thermal), speed=314.0, eccentricity_ratio=0.8)
+    >>> round(film.supply_temperature - 273.15, 1), round(film.temperature - 273.15, 1)  # degrees Celsius
+    (49.6, 76.2)
+    """
+
+    conductance: float
+    ambient: float
+
+    checks: ClassVar = {"conductance": POSITIVE, "ambient": KELVIN}
+
+
+def _supply(where: str, value: float | Sump) -> None:
+    if not isinstance(value, Sump):
+        KELVIN(where, value)
+
+
+def known_supply(thermal: LumpedThermal | FilmEnergy) -> float:
+    """Return the known temperature outside a film, K: that of its supply, or the ambient of its sump."""
+    supply = thermal.supply_temperature
+    return supply.ambient if isinstance(supply, Sump) else supply
+
+
+@dataclass(frozen=True, kw_only=True)
 class LumpedThermal(Checked):
     """One temperature T for the whole film; for warm-up and a first idea of the viscosity.
 
-    Needs a lubricant with a ``temperature_law``, such as those of `oil`. Adds at most 5 % to the time of a step, 17 %
-    with a density law.
+    The viscosity follows it by the lubricant's ``temperature_law``, such as those of `oil`; without one it stays, and T
+    tells how warm the film gets. Adds at most 5 % to the time of a step, 17 % with a density law.
 
-    ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``, with the mechanical and pumping power P that the
-    film dissipates, the flow Q that leaves the film and is replaced by supply oil, and
-    ``C = rho c_p 2 pi R L c + capacity``, rho at ambient pressure. Of a supply area Q counts the net flow: an area is a
+    ``C dT/dt = P - rho c_p Q (T_out - T_supply) - G (T - T_housing)``, with the mechanical and pumping power P that the
+    film dissipates, the flow Q that leaves the film and is replaced by supply oil, its temperature T_out, and
+    ``C = rho c_p 2 pi R L c + capacity``, rho at ambient pressure. The film is mixed, T_out = T, or warms up along its
+    way: ``T - T_supply = effective_rise (T_out - T_supply)``. Of a supply area Q counts the net flow: an area is a
     well-mixed volume, see `FilmEnergy`. Heat of compression is omitted: some 1.3 K per 10 MPa, reversible.
 
     In time: backward Euler over the accepted steps, first order. The force of a step uses the temperature at its start;
@@ -58,7 +105,7 @@ class LumpedThermal(Checked):
 
     Parameters
     ----------
-    supply_temperature : float
+    supply_temperature : float or Sump
         T_supply of the oil that enters, K.
     housing_conductance : float, default 0.0
         G from film to housing, W/K.
@@ -70,6 +117,10 @@ class LumpedThermal(Checked):
         Temperature of the film at the start of a motion, K; None: the supply temperature.
     carry_over : float, default 1.0
         As for `FilmEnergy`.
+    effective_rise : float, default 1.0
+        Above 0 up to 1: rise of the film's temperature T above T_supply, over that of the oil that leaves. 1: the film
+        is mixed, and has the temperature of its outlet. 0.5: the effective temperature of ISO 7902 and of Raimondi and
+        Boyd, the mean of inlet and outlet.
 
     Examples
     --------
@@ -80,17 +131,19 @@ class LumpedThermal(Checked):
     63.1
     """
 
-    supply_temperature: float
+    supply_temperature: float | Sump
     housing_conductance: float = 0.0
     housing_temperature: float | None = None
     capacity: float = 0.0
     initial_temperature: float | None = None
     carry_over: float = 1.0
+    effective_rise: float = 1.0
 
     checks: ClassVar = {
-        **dict.fromkeys(("supply_temperature", "housing_temperature", "initial_temperature"), KELVIN),
+        "supply_temperature": _supply,
+        **dict.fromkeys(("housing_temperature", "initial_temperature"), KELVIN),
         **dict.fromkeys(("housing_conductance", "capacity"), NOT_NEGATIVE),
-        "carry_over": SHARE,
+        **dict.fromkeys(("carry_over", "effective_rise"), SHARE),
     }
 
 
@@ -168,9 +221,9 @@ class Conduction(Checked):
 class FilmEnergy(Checked):
     """Temperature field T(theta, z) of the film; where heating decides load or peak temperature.
 
-    Needs a lubricant with a ``temperature_law``, such as those of `oil`. Adds a third to the time of a step with
-    `ElrodAdams`, doubles it with `SwiftStieber` (half more with a density law). With ``across=2`` a step takes four to
-    six times as long.
+    The viscosity follows it by the lubricant's ``temperature_law``, such as those of `oil`; without one it stays, and
+    the field tells where the film is how warm. Adds a third to the time of a step with `ElrodAdams`, doubles it with
+    `SwiftStieber` (half more with a density law). With ``across=2`` a step takes four to six times as long.
 
     ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``, with the film content m (oil per area),
     the flow q per width (pressure and Couette flow), and the heat Phi of shear and pressure flow per area. With a
@@ -212,7 +265,7 @@ class FilmEnergy(Checked):
 
     Parameters
     ----------
-    supply_temperature : float
+    supply_temperature : float or Sump
         T_supply of the oil that enters, K.
     bush_coefficient, journal_coefficient : float, default 0.0
         U_b, U_j, heat transfer from the film's mean temperature to bush and journal, W/(m2 K). 0: adiabatic.
@@ -246,7 +299,7 @@ class FilmEnergy(Checked):
     True
     """
 
-    supply_temperature: float
+    supply_temperature: float | Sump
     bush_coefficient: float = 0.0
     bush_temperature: float | None = None
     journal_coefficient: float = 0.0
@@ -259,9 +312,8 @@ class FilmEnergy(Checked):
     across: int = 1
 
     checks: ClassVar = {
-        **dict.fromkeys(
-            ("supply_temperature", "bush_temperature", "journal_temperature", "initial_temperature"), KELVIN
-        ),
+        "supply_temperature": _supply,
+        **dict.fromkeys(("bush_temperature", "journal_temperature", "initial_temperature"), KELVIN),
         **dict.fromkeys(("bush_coefficient", "journal_coefficient"), NOT_NEGATIVE),
         "conductivity": POSITIVE,
         "carry_over": SHARE,

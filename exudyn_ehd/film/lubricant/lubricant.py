@@ -38,9 +38,11 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear, ShearLaw
 from exudyn_ehd.film.lubricant.temperature_viscosity import (
     ReynoldsTemperature,
+    TableViscosity,
     TemperatureLaw,
     VogelTemperature,
     WaltherTemperature,
+    require_covered,
 )
 from exudyn_ehd.status import KELVIN, POSITIVE, Checked, InputError, require_type
 
@@ -108,7 +110,8 @@ class Lubricant(Checked):
     specific_heat : float, default 2000.0
         J/(kg K); only used by thermal effects.
     pressure_law : BarusPressure, RoelandsPressure, PressureOption or None, default None
-    temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature, TemperatureLaw or None, default None
+    temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature, TableViscosity or None, default None
+        Or a `TemperatureLaw`. None: the viscosity does not depend on the temperature.
     shear_law : CarreauShear, ShearLaw or None, default None
     density_law : DowsonHigginson, DensityLaw or None, default None
         Density under pressure, at any temperature: reported flows, m3/s, are then mass flows over ``density``. None:
@@ -131,7 +134,9 @@ class Lubricant(Checked):
     temperature: float = 313.15
     specific_heat: float = 2000.0
     pressure_law: BarusPressure | RoelandsPressure | PressureOption | None = None
-    temperature_law: ReynoldsTemperature | VogelTemperature | WaltherTemperature | TemperatureLaw | None = None
+    temperature_law: (
+        ReynoldsTemperature | VogelTemperature | WaltherTemperature | TableViscosity | TemperatureLaw | None
+    ) = None
     shear_law: CarreauShear | ShearLaw | None = None
     density_law: DowsonHigginson | DensityLaw | None = None
 
@@ -143,6 +148,8 @@ class Lubricant(Checked):
             require_type(
                 f"Lubricant.{name}", getattr(self, name), *laws, hint="laws are objects, not strings or classes."
             )
+        if self.temperature_law is not None:
+            require_covered("Lubricant.temperature", self.temperature_law, self.temperature)
         if self.viscosity is None:
             if self.temperature_law is None:
                 raise InputError(
@@ -175,6 +182,7 @@ class Lubricant(Checked):
             raise InputError("Lubricant.at needs a temperature_law, which says how the viscosity changes; got None.")
         POSITIVE("Lubricant.at: temperature", temperature)
         law = self.temperature_law
+        require_covered("Lubricant.at: temperature", law, temperature)
         ratio = law.viscosity(temperature, self.density) / law.viscosity(self.temperature, self.density)
         return replace(self, temperature=float(temperature), viscosity=float(self.viscosity * ratio))
 

@@ -1,4 +1,5 @@
-"""Viscosity that depends on temperature: Reynolds, Vogel and Walther laws, in closed form through published points.
+"""Viscosity that depends on temperature: Reynolds, Vogel and Walther laws, in closed form through published points, and
+a table.
 
 A law returns the dynamic viscosity at ambient pressure. Temperatures in kelvin. Laws are monotone: hotter oil is
 thinner.
@@ -7,22 +8,29 @@ thinner.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_vector
 
 # Walther's constant for viscosities above 2 mm2/s, ASTM D341.
 WALTHER_SHIFT = 0.7
 CELSIUS_15 = 288.15
+# Pa s, of the double logarithm of a table's viscosity: below that of liquids. A smaller one straightens oils less.
+TABLE_UNIT = 1e-5
 
 
 @runtime_checkable
 class TemperatureLaw(Protocol):
-    """Viscosity that depends on temperature: a law of this module or one's own."""
+    """Viscosity that depends on temperature: a law of this module or one's own.
+
+    ``limits``, if it has any: lowest and highest temperature, K, at which a film may have it.
+    """
 
     def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
         """Dynamic viscosity, Pa s, at ambient pressure, temperatures in K and the lubricant's density, kg/m3."""
@@ -166,6 +174,81 @@ class WaltherTemperature(Checked):
             return mu
         x = self.expansion * (T - CELSIUS_15)
         return mu * np.exp(-x * (1.0 + 0.8 * x))
+
+
+@dataclass(frozen=True, kw_only=True)
+class TableViscosity(Checked):
+    """Viscosity over temperature from measured points, by monotone cubics of ``ln ln (mu / 1e-5 Pa s)`` over ``ln T``.
+
+    Oils are nearly straight lines in these coordinates, as in Walther's law. Between two points the viscosity stays
+    between theirs and has a continuous slope (F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
+    Points 20 K apart give ISO and multigrade oils within 0.1 %, SAE single grades, which bend more, within 1.2 %;
+    points 10 K apart within 0.01 and 0.2 %.
+
+    A film outside the table is an error: `InputError` for a given temperature, `FilmError` for one that a film takes.
+
+    Parameters
+    ----------
+    temperatures : sequence of float
+        Increasing, K; at least 2.
+    viscosities : sequence of float
+        Dynamic viscosity at these temperatures, Pa s; each below the one before, above 1e-5.
+
+    Examples
+    --------
+    >>> law = ehd.TableViscosity(temperatures=(293.15, 313.15, 333.15), viscosities=(0.108, 0.0397, 0.0178))
+    >>> round(float(law.viscosity(323.15, 870.0)), 4)  # Pa s at 50 degrees Celsius
+    0.026
+    """
+
+    temperatures: Sequence[float]
+    viscosities: Sequence[float]
+
+    def __post_init__(self) -> None:
+        for name in ("temperatures", "viscosities"):
+            values = getattr(self, name)
+            size = len(values) if isinstance(values, Sequence | np.ndarray) else 2
+            # a list or an array compares and hashes like the tuple that it is
+            object.__setattr__(self, name, tuple(require_vector(f"TableViscosity.{name}", values, size).tolist()))
+        T, mu = np.array(self.temperatures), np.array(self.viscosities)
+        rising = T.size > 1 and T[0] > 0.0 and np.all(np.diff(T) > 0.0)
+        if not (rising and mu.shape == T.shape and mu[-1] > TABLE_UNIT and np.all(np.diff(mu) < 0.0)):
+            raise InputError(
+                "TableViscosity needs at least two increasing temperatures above 0 K, each with a viscosity below the "
+                f"one before and above {TABLE_UNIT:g} Pa s, got temperatures={self.temperatures!r} and "
+                f"viscosities={self.viscosities!r}; sort the points, and leave out those that measure the same."
+            )
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Lowest and highest temperature of the table, K."""
+        return self.temperatures[0], self.temperatures[-1]
+
+    @cached_property
+    def curve(self) -> CubicHermiteSpline:
+        """Double logarithm of the viscosity over the logarithm of the temperature; straight beyond both ends.
+
+        Searches for a film's temperature pass through such states; results are within the ends.
+        """
+        x, y = np.log(self.temperatures), np.log(np.log(np.array(self.viscosities) / TABLE_UNIT))
+        slopes = PchipInterpolator(x, y)(x, 1)
+        first, last = slopes[0], slopes[-1]
+        wide, values = (x[0] - 1.0, *x, x[-1] + 1.0), (y[0] - first, *y, y[-1] + last)
+        return CubicHermiteSpline(wide, values, (first, *slopes, last))
+
+    def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
+        """Dynamic viscosity, Pa s, at temperatures in K; the density does not matter."""
+        return TABLE_UNIT * np.exp(np.exp(self.curve(np.log(_kelvin(temperature)))))
+
+
+def require_covered(where: str, law: TemperatureLaw, temperature: float) -> None:
+    """Raise `InputError` for a temperature, K, outside the ``limits`` of a law that has any."""
+    low, high = getattr(law, "limits", (0.0, math.inf))
+    if not low <= temperature <= high:
+        raise InputError(
+            f"{where} = {temperature!r} K is outside the {type(law).__name__}, which reaches from {low:g} to {high:g} "
+            "K; extend the table."
+        )
 
 
 def _kelvin(temperature: float | np.ndarray) -> float | np.ndarray:

@@ -234,7 +234,63 @@ class ProfileTable:
         return np.asarray(ring(np.mod(theta - at[0], turn)))
 
 
-SurfaceProfile = OutOfRound | Crown | EdgeRelief | AxialProfile | ProfileTable
+@dataclass(frozen=True, kw_only=True)
+class WornArc(Checked):
+    """Arc worn into a bore by starts and slow turning: ``d = worn_depth - clearance (1 - cos(theta - angle))`` above 0.
+
+    F. W. Dufrane, J. W. Kannel and T. H. McCloskey, J. Lubrication Technology 105 (1983) 313, with theta from the
+    deepest place. The worn surface is a part of a circle of the radius ``journal_radius + worn_depth`` about the place
+    of a journal that touches the unworn bore at ``angle``: there the film is as thick as the arc is deep, all over the
+    arc. It ends with a kink, where d is 0, at ``cos(extent / 2) = 1 - worn_depth / clearance``, and is the same along
+    the bearing.
+
+    Parameters
+    ----------
+    worn_depth : float
+        Largest depth, m, at most the clearance; then half of the bore is worn.
+    angle : float
+        Angle of the deepest place, from the joint's x about its z axis, rad.
+    clearance : float
+        Radial clearance of the unworn bearing, m. For an arc of a measured extent: ``worn_depth / (1 - cos(extent /
+        2))``.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> worn = ehd.WornArc(worn_depth=5e-6, angle=-np.pi / 2, clearance=25e-6)
+    >>> round(float(np.degrees(worn.extent)), 1)
+    73.7
+    >>> rest = ehd.equilibrium(ehd.JournalBearing(**b, profile=worn), speed=314.0, load=(0.0, -2000.0))
+    >>> round(rest.eccentricity_ratio, 3), round(1e6 * rest.film.minimum_gap, 2)  # um
+    (0.488, 12.79)
+    """
+
+    worn_depth: float
+    angle: float
+    clearance: float
+
+    checks: ClassVar = {"worn_depth": POSITIVE, "angle": require_number, "clearance": POSITIVE}
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.worn_depth > self.clearance:
+            raise InputError(
+                f"WornArc.worn_depth must be at most the clearance, {self.clearance:g} m, got {self.worn_depth!r} m: a "
+                "journal wears no more than half of a larger bore; both are in metres, the clearance is radial."
+            )
+
+    @property
+    def extent(self) -> float:
+        """Angle of the arc, rad, from one end to the other."""
+        return 2.0 * math.acos(1.0 - self.worn_depth / self.clearance)
+
+    def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
+        """Addition to the gap; see `OutOfRound.depth`."""
+        worn = self.worn_depth - self.clearance * (1.0 - np.cos(theta - self.angle))
+        return np.outer(np.clip(worn, 0.0, None), np.ones(z.size))
+
+
+SurfaceProfile = OutOfRound | Crown | EdgeRelief | AxialProfile | ProfileTable | WornArc
 
 
 class ProfileTerm:

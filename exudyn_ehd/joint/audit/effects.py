@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.options import FilmEnergy
+from exudyn_ehd.film.heat.options import FilmEnergy, known_supply
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
 from exudyn_ehd.joint.audit.samples import adiabatic_rise, time_mean
@@ -215,13 +215,14 @@ def _temperature_rise(case: Case) -> float:
 
 def heating(case: Case) -> Finding:
     """Change of viscosity by the film's own heat."""
-    b, is_on = case.bearing, case.bearing.thermal is not None
-    law, coefficient = b.lubricant.temperature_law, TYPICAL_TEMPERATURE_COEFFICIENT
+    b, coefficient = case.bearing, TYPICAL_TEMPERATURE_COEFFICIENT
+    law, is_warm = b.lubricant.temperature_law, b.thermal is not None
+    is_on = is_warm and law is not None
     if law is not None:
         T, rho = b.lubricant.temperature, b.lubricant.density
         hot, cold = float(law.viscosity(T + 1.0, rho)), float(law.viscosity(T - 1.0, rho))
         coefficient = 0.5 * abs(math.log(hot / cold))
-    rise = float(case.numbers["rise"].max()) if is_on else _temperature_rise(case)
+    rise = float(case.numbers["rise"].max()) if is_warm else _temperature_rise(case)
     return judged(
         case,
         "heating",
@@ -267,7 +268,7 @@ def temperature(case: Case) -> Finding | None:
     thermal = case.bearing.thermal
     if thermal is None:
         return None
-    value, advice = thermal.supply_temperature + case.numbers["rise"].max(), "mineral oils do not bear this for long: "
+    value, advice = known_supply(thermal) + case.numbers["rise"].max(), "mineral oils do not bear this for long: "
     indicator = "highest temperature of the film, K"
     return judged(case, "oil temperature", indicator, value, None, mattering=advice + COOLER)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.heat.options import known_supply
 from exudyn_ehd.joint.audit.switches import STEEL
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
@@ -271,7 +272,7 @@ def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float
         "minimum_gap": max(q["minimum_gap"], 1e-6 * b.radial_clearance),
         "flow": max(q["leakage"], q.get("supply_flow", 0.0), 0.0),
         "viscosity": _smallest_viscosity(film),
-        "rise": 0.0 if b.thermal is None else q["peak_temperature"] - b.thermal.supply_temperature,
+        "rise": 0.0 if b.thermal is None else q["peak_temperature"] - known_supply(b.thermal),
         "to_bush": to_bush,
         "to_journal": to_journal,
         "cavitated": float(np.sum(weight[~unbroken])),

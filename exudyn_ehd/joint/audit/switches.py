@@ -11,7 +11,7 @@ from scipy.special import lambertw
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import ElrodAdams, SwiftStieber
-from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal
+from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal, known_supply
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature
@@ -85,12 +85,15 @@ def piezoviscous(bearing: JournalBearing) -> JournalBearing:
 
 
 def heated(bearing: JournalBearing) -> JournalBearing:
-    """Return the bearing with one film temperature, inflow at the lubricant's temperature, and a mineral oil's law."""
+    """Return the bearing with a mineral oil's law of the temperature, and with one film temperature unless it has any.
+
+    Oil enters that film at the lubricant's temperature.
+    """
     oil = bearing.lubricant
     if oil.temperature_law is None:
         law = ReynoldsTemperature(point=(oil.temperature, oil.viscosity), coefficient=TYPICAL_TEMPERATURE_COEFFICIENT)
         bearing = _oil(bearing, temperature_law=law)
-    return replace(bearing, thermal=LumpedThermal(supply_temperature=oil.temperature))
+    return replace(bearing, thermal=bearing.thermal or LumpedThermal(supply_temperature=oil.temperature))
 
 
 def typical_conductance(bearing: JournalBearing) -> float:
@@ -122,7 +125,7 @@ def walled(bearing: JournalBearing) -> JournalBearing:
 def isothermal(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing with its oil at the supply temperature throughout."""
     assert bearing.thermal is not None
-    oil, supply = bearing.lubricant, bearing.thermal.supply_temperature
+    oil, supply = bearing.lubricant, known_supply(bearing.thermal)
     oil = oil if oil.temperature_law is None else oil.at(supply)
     return replace(bearing, thermal=None, lubricant=oil)
 

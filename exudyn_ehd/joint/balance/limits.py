@@ -13,6 +13,7 @@ from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
 
@@ -24,6 +25,8 @@ PRESSED_THROUGH = "the journal was pressed through its contact by more than the 
 # K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
 # beyond any oil, so that a film of one is a wrong answer.
 HOT, HOTTEST = 423.15, 700.0
+# K, round-off of temperatures.
+ROUNDING = 1e-6
 COOLER = (
     "let more oil flow through (end pressures, supply, clearance), give the thermal effect heat transfer to the "
     "surfaces (housing_conductance, bush_coefficient, journal_coefficient), or take a thinner oil, less load or speed."
@@ -118,6 +121,23 @@ def seized(walls: Walls | None) -> str:
     return (
         f"the bearing seizes: bush and journal have grown by more than the radial clearance, of which "
         f"{walls.clearance:.3g} m are left; {ROOM}"
+    )
+
+
+def outside_table(film: object) -> str:
+    """Return the message for a film with temperatures outside the limits of the oil's law; empty for any other film."""
+    if not isinstance(film, SolvedFilm) or film.temperature is None:
+        return ""
+    law = film.parts.bearing.lubricant.temperature_law
+    if (limits := getattr(law, "limits", None)) is None:
+        return ""
+    T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
+    low, high = float(np.min(T)), float(np.max(T))
+    if limits[0] - ROUNDING <= low and high <= limits[1] + ROUNDING:
+        return ""
+    return (
+        f"the film's temperatures reach from {low:.4g} to {high:.4g} K, but the oil's {type(law).__name__} from "
+        f"{limits[0]:g} to {limits[1]:g} K only; extend the table, or take WaltherTemperature through two points of it."
     )
 
 

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.linalg import norm
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, require_oil_bears, seized
+from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, outside_table, require_oil_bears, seized
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
@@ -414,6 +414,6 @@ def evaluate_at(
     balance = Balance(model, where, held=history_at(model, motion, where, near))
     found = balance.at(motion, balance.cold)
     require_oil_bears(found.film.temperature, model.grid, where)
-    if message := seized(found.film.walls):
+    if message := seized(found.film.walls) or outside_table(found.film):
         raise FilmError(f"{where}: {message}")
     return found.evaluation, found.film

@@ -1,4 +1,4 @@
-"""Search for the position in which a film carries a load."""
+"""Searches for the position in which a film carries a load."""
 
 from __future__ import annotations
 
@@ -8,15 +8,17 @@ from collections.abc import Callable
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
 from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
 from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, PATIENCE, ROUNDS, Balance, Place
-from exudyn_ehd.status import FilmError
+from exudyn_ehd.status import FilmError, InputError
 
 # Eccentricity ratio in the direction of the load of the second start of damped steps: inside, where neither a gap is
 # thin nor a cavity large. Larger ones are nearer to both.
 INSIDE = 0.3
 # Continuation from small loads: first and smallest step, shares of the load.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
+QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 class LoadSearch(Balance):
@@ -125,6 +127,57 @@ class LoadSearch(Balance):
             "the loaded zone, a starved film or an arc beside the load may carry no such load at any position: look at "
             f"ehd.steady(...) around there.{too_hot(place.film.temperature, carried)}"
         )
+
+
+class LineSearch(LoadSearch):
+    """Search for the position of a journal whose film begins on the line of its largest gap, opposite to it.
+
+    Of a bearing that is the same in all directions the film turns with the position: at the eccentricity e in the
+    direction phi the force is ``F = R(phi) F_0(e)``, with the rotation R and the force F_0 in the direction x. So the
+    model's line stays where it is, on -x, and
+
+        dF/de = R dF_0/de,    dF / (e dphi) = R J F_0 / e,    J: by a right angle,
+
+    along the eccentricity and across it; at the centre both limits are dF_0/de, the second one turned by J.
+    """
+
+    def at(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
+        """The steady film at a motion (11,), whose journal the film sees in the direction x."""
+        e, turned = float(np.hypot(*motion[:2])), motion.copy()
+        turned[:2] = e, 0.0
+        place = super().at(turned, temperature)
+        force = place.unbalance - self.share * self.load
+        across = QUARTER_TURN @ (force / e if e > 0.0 else place.slope[:, 0])
+        back = turning(motion)
+        place.motion[:2], place.unbalance = motion[:2], self.share * self.load + back @ force
+        place.slope = back @ np.column_stack((place.slope[:, 0], across)) @ back.T
+        return place
+
+
+def require_turning(bearing: JournalBearing, load: np.ndarray, tilt: np.ndarray) -> None:
+    """Raise `InputError` where the film of a bearing with `MaximumGap` does not turn with the journal's position."""
+    around = [profile for profile in bearing.profiles if not isinstance(profile, Crown | EdgeRelief | AxialProfile)]
+    reasons = {
+        "load=(0, 0): the gap is the same all around": not np.any(load),
+        f"tilt={tuple(tilt.tolist())!r}": bool(np.any(tilt)),
+        f"JournalBearing.cavitation={bearing.cavitation!r}": bearing.cavitation.conserves_mass,
+        f"JournalBearing.profile={around[:1]!r}": bool(around),
+        "JournalBearing.bush or journal": bearing.yielding is not None,
+        f"JournalBearing.end_pressures={bearing.end_pressures!r}": any(bearing.end_pressures),
+        "JournalBearing.thrust": bearing.thrust is not None,
+    }
+    if found := [name for name, given in reasons.items() if given]:
+        raise InputError(
+            f"equilibrium: inlet=MaximumGap() does not go with {found[0]}. Its line follows the journal, as in design "
+            "charts, in a rigid bearing that is the same in all directions, under a load, aligned, with ambient ends "
+            "and without ElrodAdams; use inlet=Periodic() with a supply, or steady(...) at a prescribed position."
+        )
+
+
+def turning(motion: np.ndarray) -> np.ndarray:
+    """Rotation (2, 2) from the direction x to that of a motion's eccentricity."""
+    angle = math.atan2(motion[1], motion[0])
+    return math.cos(angle) * np.eye(2) + math.sin(angle) * QUARTER_TURN
 
 
 def continued(

@@ -40,7 +40,7 @@ class PairBalance(HeatBalance):
     Parameters
     ----------
     thermal : CubicTemperature
-    film, step, passage, band
+    film, step, passage, band, supply
         As for `HeatBalance`.
     """
 
@@ -135,9 +135,9 @@ class CubicTemperature(FilmTemperature):
         power = film.parts.flow_scale * film.scales.pressure
         return power * (sheared(film) * sliding + flow * pressed + crossed)
 
-    def equations(self, film: SolvedFilm, step: float) -> PairBalance:
-        """Return the equations of a solved film over a step, s; 0: steady state."""
-        return PairBalance(self, film, step, self.passage(film), self.band)
+    def equations(self, film: SolvedFilm, step: float, supply: float) -> PairBalance:
+        """Return the equations of a solved film over a step, see `FilmTemperature.equations`."""
+        return PairBalance(self, film, step, self.passage(film), self.band, supply)
 
     def _blocks(self, state: np.ndarray) -> np.ndarray:
         """Mean, tilt and both surfaces (4, n, m) of a state."""

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.bearing import MaximumGap
 from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, film_heat, outside_flows
 from exudyn_ehd.film.solvers.film import ends_of_cavities
 from exudyn_ehd.joint.solved_film import SolvedFilm
@@ -118,6 +119,9 @@ class OilFlows:
         Share of ``found`` that has the mixed temperature of ``lost``, the rest being fresh oil.
     areas : list of (n, m) bool arrays
         Vertices of the areas that mix.
+    lines : list of (n, m) bool arrays
+        Vertices of the line of `MaximumGap` whose cavity does not conserve mass. It loses or finds oil there as where
+        a closed ring's film begins: all that leaves the bearing does so at its ends.
     """
 
     def __init__(self, film: SolvedFilm, carry_over: float) -> None:
@@ -148,6 +152,10 @@ class OilFlows:
             inside = np.logical_or.reduce(self.areas)
             ended = supply is not None and not supply.rotating
             np.copyto(self.outside, s.inflow(ended), where=inside)
+        self.lines: list[np.ndarray] = []
+        if not conserves and film.grid.flows_along_z and isinstance(film.parts.bearing.inlet, MaximumGap):
+            self.lines = [(np.arange(len(fixed)) == 0)[:, None] & (np.abs(film.grid.z) < film.grid.z[-1])]
+            self.outside[self.lines[0]] = 0.0
         found = s.nothing if conserves else balance - self.outside
         self.found, self.lost = np.maximum(found, 0.0), np.maximum(-found, 0.0)
         self.total_found, self.total_lost = float(self.found.sum()), float(self.lost.sum())
@@ -233,7 +241,7 @@ def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float
     P, cavity = film.oil.P, np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
     pressure = P - cavity if oil is None else oil.flow_work(P) - oil.flow_work(cavity)
     entering = flows.outside - film.solver.area * flows.rate
-    for area in flows.areas:
+    for area in [*flows.areas, *flows.lines]:
         entering[area] += flows.found[area] - flows.lost[area]
     work = float(np.sum(pressure * entering))
     power = film.scales.pressure * film.parts.flow_scale

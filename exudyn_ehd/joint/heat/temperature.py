@@ -19,7 +19,7 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.heat.energy import ViscosityField, through_surfaces, transport_slopes
-from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Walls
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Sump, Walls, known_supply
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
 from exudyn_ehd.joint.solved_film import SolvedFilm
@@ -67,10 +67,12 @@ class OilTemperature:
     """Common part of both kinds of film temperature."""
 
     def __init__(self, spec: LumpedThermal | FilmEnergy, lubricant: Lubricant) -> None:
-        assert lubricant.temperature_law is not None
         self.law, self.density = lubricant.temperature_law, lubricant.density
-        self.reference = float(self.law.viscosity(float(lubricant.temperature), self.density))
-        self.supply = spec.supply_temperature
+        if self.law is not None:
+            self.reference = float(self.law.viscosity(float(lubricant.temperature), self.density))
+        self.supply, supply = known_supply(spec), spec.supply_temperature
+        # without a sump the supply is as a tank of any conductance
+        self.conductance = supply.conductance if isinstance(supply, Sump) else math.inf
         self.initial = self._or_supply(spec.initial_temperature)
         self.flow_capacity = lubricant.density * lubricant.specific_heat
         self.carry_over = spec.carry_over
@@ -84,6 +86,8 @@ class OilTemperature:
 
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """mu(T) / mu at the lubricant's own temperature."""
+        if self.law is None:
+            return np.ones_like(np.asarray(temperature, dtype=float))
         return self.law.viscosity(temperature, self.density) / self.reference
 
     def follows(self, T: Field, heat: Field, store: Field) -> Field:
@@ -138,9 +142,10 @@ class LumpedTemperature(OilTemperature):
         return self._last[1]
 
     def _rates(self, film: SolvedFilm) -> tuple[float, float]:
-        """Heat, W, and heat capacity flow of the oil that fresh oil replaces, W/K, of a solved film."""
+        """Heat, W, and conductance of the oil from the film to its supply, or on to a sump's ambient, W/K."""
         heat, exchanged = heat_and_exchange(film, self.carry_over)
-        return heat, self.flow_capacity * film.parts.flow_scale * exchanged
+        flow = self.flow_capacity * film.parts.flow_scale * exchanged / self.spec.effective_rise
+        return heat, flow / (1.0 + flow / self.conductance)
 
     def advance(self, film: SolvedFilm) -> float:
         """Temperature at the end of a solved film's step."""
@@ -169,6 +174,7 @@ class LumpedTemperature(OilTemperature):
             "convected": flow * (temperature - self.supply),
             "conducted": self.spec.housing_conductance * (temperature - self.housing),
             "stored": stored,
+            "supply_temperature": self.supply + flow * (temperature - self.supply) / self.conductance,
         }
 
 
@@ -210,10 +216,16 @@ class HeatBalance:
     """
 
     def __init__(
-        self, thermal: OilTemperature, film: SolvedFilm, step: float, passage: PassageData, band: BandSolver
+        self,
+        thermal: OilTemperature,
+        film: SolvedFilm,
+        step: float,
+        passage: PassageData,
+        band: BandSolver,
+        supply: float,
     ) -> None:
         area, shape = film.solver.area, film.grid.shape
-        self.film, self.step, self.supply, self.thermal, self.band = film, step, thermal.supply, thermal, band
+        self.film, self.step, self.supply, self.thermal, self.band = film, step, supply, thermal, band
         self.old, self.heat = temperature_of(film), heat_of(film)
         self.scale = thermal.flow_capacity * film.parts.flow_scale
         self.flows = OilFlows(film, thermal.carry_over)

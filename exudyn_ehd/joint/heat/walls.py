@@ -10,6 +10,7 @@ which is factored once, and from `exudyn_ehd.film.heat.energy`.
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -148,7 +149,7 @@ class FilmTemperature(OilTemperature):
     def advance(self, film: SolvedFilm) -> np.ndarray:
         """State at the end of a solved film's step."""
         old = self.state_of(film.history)
-        return old if film.step <= 0.0 else self._settled(film, film.step, old)
+        return old if film.step <= 0.0 else self._settled(film, film.step, old, self.supply)
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """State in balance with the heat of a solved film; not finite without a way out for the heat."""
@@ -156,14 +157,34 @@ class FilmTemperature(OilTemperature):
         stagnant = flows.exchanged <= NO_FLOW * float(np.abs(flows.x).max())
         if self.transfer == 0.0 and stagnant and heat_of(film).max() > 0.0:
             return np.full((self.shape[0], self.size), np.inf)
-        return self._settled(film, 0.0, self.state_of(film.history))
+        old = self.state_of(film.history)
+        state = self._settled(film, 0.0, old, self.supply)
+        if math.isinf(self.conductance):
+            return state
+        # all is linear in the temperature of the supply
+        warmer = self._settled(film, 0.0, old, self.supply + 1.0)
+        carried = self._carried(film, state, self.supply), self._carried(film, warmer, self.supply + 1.0)
+        return state + self._sump_rise(*carried) * (warmer - state)
+
+    def _carried(self, film: SolvedFilm, state: np.ndarray, supply: float) -> float:
+        """Heat that the oil carries out of the film in a steady state, W, with a temperature of the supply, K."""
+        at = [self._surface(side, state) for side in (0, 1)]
+        return self.equations(film, 0.0, supply).totals(self._of_film(state), at)["convected"]
+
+    def _sump_rise(self, cold: float, warm: float) -> float:
+        """Rise of the sump over its ambient, K, from the heat of the oil, W, without a rise and with 1 K."""
+        return cold / (self.conductance + cold - warm)
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, convected, conducted to ambient or given walls, and stored, W, of a step that ends at a state.
 
-        Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them.
+        Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them, and the
+        temperature of the supply, K.
         """
-        T, old, film_only = self._of_film(temperature), self.state_of(film.history), self.equations(film, film.step)
+        T, old, supply = self._of_film(temperature), self.state_of(film.history), self.supply
+        if math.isfinite(self.conductance):
+            supply += self._sump_rise(*(self._carried(film, temperature, supply + rise) for rise in (0.0, 1.0)))
+        film_only = self.equations(film, film.step, supply)
         at = [self._surface(side, temperature) for side in (0, 1)]
         out, q = film_only.totals(T, at), film_only.passed(T, at)
         out["conducted"] = 0.0
@@ -175,7 +196,7 @@ class FilmTemperature(OilTemperature):
             lost, stored = wall.heat(temperature, old)
             out["conducted"] += lost
             out["stored"] += stored
-        return out | {"bush": float(q[0].sum()), "journal": float(q[1].sum())}
+        return out | {"bush": float(q[0].sum()), "journal": float(q[1].sum()), "supply_temperature": supply}
 
     def state_of(self, history: History | None) -> np.ndarray:
         """State that a history keeps, that of the start without one."""
@@ -187,11 +208,11 @@ class FilmTemperature(OilTemperature):
         wall = self.sides[side]
         return np.full((1, 1), self.walls[side][1]) if wall is None else wall.of(state)[:, :1]
 
-    def _settled(self, film: SolvedFilm, step: float, old: np.ndarray) -> np.ndarray:
-        """State at the end of a step."""
+    def _settled(self, film: SolvedFilm, step: float, old: np.ndarray, supply: float) -> np.ndarray:
+        """State at the end of a step with a temperature of the supply, K."""
         for wall in self.conducting:
             wall.rings.bring_to(step)
-        between = self.equations(film, step)
+        between = self.equations(film, step, supply)
         at = [self._surface(side, old) for side in (0, 1)]
         if self.conducting:
             change = self._surfaces_change(between, old, between.passed(between.between(at), at))
@@ -226,9 +247,9 @@ class FilmTemperature(OilTemperature):
         enough = AGREED * float(np.linalg.norm(lu_solve(lead, given)))
         return solve_by_products(led, lu_solve(lead, missing + given), enough, self.unknowns)
 
-    def equations(self, film: SolvedFilm, step: float) -> HeatBalance:
-        """Return the equations of a solved film over a step, s; 0: steady state."""
-        return HeatBalance(self, film, step, self.passage(film), self.band)
+    def equations(self, film: SolvedFilm, step: float, supply: float) -> HeatBalance:
+        """Return the equations of a solved film over a step, s, 0: steady state, with a supply of some temperature."""
+        return HeatBalance(self, film, step, self.passage(film), self.band, supply)
 
     def passage(self, film: SolvedFilm) -> PassageData:
         """Return the passage of heat from a solved film to both sides."""

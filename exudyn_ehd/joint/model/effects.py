@@ -14,7 +14,7 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.arcs import lobe_term, mixing_grooves
 from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.heat.energy import ViscosityField
-from exudyn_ehd.film.heat.options import LumpedThermal
+from exudyn_ehd.film.heat.options import LumpedThermal, known_supply
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.models import film_grid, film_solver
@@ -49,7 +49,7 @@ def _reservoirs(bearing: JournalBearing, supply: SupplyMap, effects: Effects) ->
     """Supply areas with a restrictor, whose oil has the viscosity of the supply temperature."""
     oil, thermal, viscosity = bearing.lubricant, bearing.thermal, bearing.lubricant.viscosity
     if thermal is not None and oil.temperature_law is not None:
-        viscosity = float(oil.temperature_law.viscosity(thermal.supply_temperature, oil.density))
+        viscosity = float(oil.temperature_law.viscosity(known_supply(thermal), oil.density))
     scale = bearing.radial_clearance * bearing.journal_radius**2
     masks = [mask for mask, fed in zip(supply.masks, supply.fed, strict=True) if fed]
     restrictors = [area.supply for area in bearing.supply if area.supply is not None]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from exudyn_ehd.film import loads
-from exudyn_ehd.joint.heat.power import powers
+from exudyn_ehd.joint.heat.power import OilFlows, powers
 from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
 
@@ -156,6 +156,33 @@ def pocket_pressures(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     if supply is not None and reservoirs is not None:
         pressures[supply.fed], flows[supply.fed] = reservoirs.pressures, reservoirs.flows()
     return pressures, flows
+
+
+def passing_flows(film: SolvedFilm) -> tuple[float, float]:
+    """Return the oil that enters the loaded zone around the bearing, and the fresh oil that passes the film, m3/s.
+
+    The first is, with the spin, through the section at the angle theta_1 at which the film begins,
+
+        Q_1 = int q_theta dz,    q_theta = fill U h / 2 - h^3 / (12 mu R) dp/dtheta,    U = R omega,
+
+    ISO 7902's flow at the entrance of the gap, Raimondi and Boyd's Q. Against the spin from the largest pressure on,
+    along its row of the grid, theta_1 is the first vertex at an edge of an arc or of a supply area, next to a cavity,
+    on the line of `MaximumGap`, or with the largest gap of the row; the flow is that of the link that begins there. nan
+    without a spin. The second one is `exudyn_ehd.joint.heat.power.OilFlows.exchanged`; oil leaves an arc for good, and
+    what enters at its edges is fresh.
+    """
+    g, p, omega = film.grid, film.parts, film.journal.omega
+    flows = OilFlows(film, getattr(p.bearing.thermal, "carry_over", 1.0))
+    through = p.flow_scale * flows.exchanged if p.bearing.arc is None else float(supply_flows(film).sum())
+    if omega == 0.0:
+        return math.nan, through
+    k, row = divmod(int(np.argmax(np.where(g.fixed, -math.inf, film.oil.P))), g.z.size)
+    begins = g.fixed[:, row] | ~film.solver.work.active[:, row]
+    begins[film.solver.H[:, row].argmax()] = True
+    way = 1 if omega > 0.0 else -1
+    while not begins[k := (k - way) % g.x.size]:
+        pass
+    return p.flow_scale * abs(float(flows.x[k if way > 0 else k - 1].sum())), through
 
 
 def leakages(film: SolvedFilm) -> tuple[float, float]:

@@ -13,16 +13,23 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.joint.balance.newton import Place, evaluate_at
-from exudyn_ehd.joint.balance.position import INSIDE, LoadSearch, first_guess
+from exudyn_ehd.joint.balance.position import (
+    INSIDE,
+    LineSearch,
+    LoadSearch,
+    first_guess,
+    require_turning,
+    turning,
+)
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, response_of, slow_motions, threshold
-from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
+from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, model_at, require_rest, result_at, result_of
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
 
@@ -188,12 +195,13 @@ class EquilibriumResult:
         b, motion = self.film.bearing, self.film.motion[:MOTION_SIZE]
         if b.thermal is None:
             return self.stiffness if self.response is None else self.response.at(0.0).real[:2, :2]
-        model = build_study_model(b, 0.0)
+        model = model_at(b, motion)
         step = SETTLED_STEP * max(self.film.minimum_gap, 1e-3 * b.radial_clearance)
         near = remembered(self.film)
 
         def force(shift: np.ndarray) -> np.ndarray:
-            return evaluate_at(model, motion + shift, "settled_stiffness", near)[0].wrench[:2]
+            there = model_at(b, motion + shift) if isinstance(b.inlet, MaximumGap) else model
+            return evaluate_at(there, motion + shift, "settled_stiffness", near)[0].wrench[:2]
 
         return np.array([force(-s) - force(s) for s in step * np.eye(2, MOTION_SIZE)]).T / (2.0 * step)
 
@@ -257,6 +265,8 @@ def equilibrium(
 
     - `ElrodAdams`: both depend on the frequency, because the cavity's oil follows with a delay. Those returned hold at
       the frequency of the whirl threshold; `EquilibriumResult.dynamic_stiffness` gives others.
+    - ``inlet=MaximumGap()``: the film begins opposite to the journal wherever that moves, and K contains the turn of
+      its line, as in the closed forms of short and long bearings; C is that at a line at rest.
     - ``thermal``: at constant temperature; in `EquilibriumResult.settled_stiffness` the temperature follows.
     - liner, flexible bore or journal: K of the steady film, C of slow motions. Quick motions deflect a surface with a
       delay, which the threshold and `EquilibriumResult.dynamic_stiffness` include. With `ElrodAdams` K and C hold at
@@ -282,7 +292,8 @@ def equilibrium(
     Parameters
     ----------
     bearing : JournalBearing or TiltingThrustPads
-        A journal bearing with ``inlet=Periodic()``.
+        A journal bearing with ``inlet=MaximumGap()`` is a rigid one that is the same in all directions, with an aligned
+        journal, ambient ends and a film that does not conserve mass, without ``thrust``.
     speed : float
         Spin of the journal against the housing, rad/s, positive about +z, not 0.
     load : (float, float), or float
@@ -306,7 +317,7 @@ def equilibrium(
     Raises
     ------
     InputError
-        For zero speed, an inlet that a moving journal can't have, supply areas that turn with the journal, an axial
+        For zero speed, an inlet that does not go with the bearing, supply areas that turn with the journal, an axial
         load without faces or at a given axial position.
     FilmError
         If no equilibrium was found, or if it is the exact centre and stiffness and damping depend on the direction.
@@ -341,13 +352,19 @@ def equilibrium(
         size = NO_LOAD * bearing.reference_force(omega) + NO_LOAD_FED * area * fed
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
-    require_rest(bearing, "equilibrium")
-    model = build_study_model(bearing, 0.0)
+    line, kind = isinstance(bearing.inlet, MaximumGap), LoadSearch
+    if line:
+        require_turning(bearing, force, b)
+        kind = LineSearch
+    else:
+        require_rest(bearing, "equilibrium")
+    model = build_study_model(bearing, math.pi if line else 0.0)
     faces, along = _faces(bearing, place, axial_load)
     motion = np.array([*first_guess(bearing, omega, force, b), *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0, place])
-    search = LoadSearch(model, "equilibrium", np.append(force, along), size=size, faces=faces)
+    search = kind(model, "equilibrium", np.append(force, along), size=size, faces=faces)
     found = steadiest(search, search.find(motion))
     K, C, response = _small_motions(found)
+    model = model_at(bearing, found.motion) if line else model
     ratio, mass = whirl_threshold(K, C, abs(omega)) if response is None else threshold(response.at, abs(omega))
     frequency = abs(omega) * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)[:2, :2]
@@ -356,8 +373,6 @@ def equilibrium(
         frequency = 0.0
     film = result_at(model, found.motion[:MOTION_SIZE], "equilibrium", found.film.history)
     if found.faces is not None:
-        from exudyn_ehd.joint.static.steady import result_of
-
         film = replace(film, faces=result_of(found.faces, found.faces.tangent()))
     return EquilibriumResult(
         position=found.motion[:2],
@@ -385,6 +400,9 @@ def _small_motions(found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse |
     if is_central(evaluation):
         require_derivatives(evaluation, "equilibrium")
     K, C = (part[:2, :2] for part in slow_motions(evaluation.steady_tangent(exact=True)))
+    if isinstance(evaluation.model.bearing.inlet, MaximumGap):
+        back = turning(found.motion)
+        return -found.slope, back @ C @ back.T, None
     if found.faces is not None:
         beside = found.faces.tangent()
         K, C = K - beside[:2, :2], C - beside[:2, 4:6]

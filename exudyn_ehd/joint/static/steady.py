@@ -20,7 +20,7 @@ from exudyn_ehd.joint.balance.newton import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
-from exudyn_ehd.joint.model.quantities import pocket_pressures, refined_peak, supply_flows
+from exudyn_ehd.joint.model.quantities import passing_flows, pocket_pressures, refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
@@ -187,6 +187,13 @@ class SteadyResult(FilmRecord, FilmPictures):
         an arc this vector sum is less than the integral of the contact pressure (3 % over 0.8 rad).
     pocket_pressures, restrictor_flows : (k,) arrays
         Pressure of every area of ``bearing.supply``, Pa; flow through its restrictor, m3/s, nan without one.
+    inlet_flow : float
+        Oil that enters the loaded zone around the bearing, Q_1, m3/s; nan at zero speed:
+        `exudyn_ehd.joint.model.quantities.inlet_flow`. Tables have the side flow ratio Q_s / Q = leakage / inlet_flow
+        and the flow variable Q / (R c N L) = inlet_flow / (R c N L), N = omega / (2 pi).
+    oil_flow : float
+        Total oil flow: fresh oil that passes through the film, m3/s. It replaces what leaves through ends and supply
+        areas; without end pressures and supply areas it is the leakage. With an arc: oil that enters at its edges.
     supply_flows : (k,) array
         Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs: oil that enters at the
         leading and at the trailing edge of every arc in turn, 0 where it leaves.
@@ -194,14 +201,26 @@ class SteadyResult(FilmRecord, FilmPictures):
         Boundary friction of the contacts on the journal about its own axis, N m, part of ``friction_torque``; its
         loss, W, part of ``power_loss``; largest contact pressure, Pa.
     sommerfeld_number, attitude_angle : float
-        So = F psi^2 / (L D mu |omega|) with F the size of ``force`` across the axis, psi = c / R, D = 2 R and mu of the
-        lubricant; nan at zero speed. Angle from the load (minus ``force``) to the eccentricity in the sense of
-        rotation, rad.
+        So = p psi^2 / (mu |omega|) of ISO 7902 and DIN 31652 with p = F / (L D), F the size of ``force`` across the
+        axis, psi = c / R, D = 2 R and mu of the lubricant; nan at zero speed. Angle from the load (minus ``force``) to
+        the eccentricity in the sense of rotation, rad.
+    characteristic_number : float
+        S = (R / c)^2 mu N / p with N = |omega| / (2 pi) in revolutions per second: the Sommerfeld number of Raimondi
+        and Boyd and of American tables, 1 / (2 pi So); inf without a force.
+    friction_number : float
+        f R / c with the coefficient of friction f = |friction_torque| / (R F); inf without a force.
     status, iterations : Status, int
     fill : (n, m) array or None
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
         Temperature of the film, K; None for an isothermal bearing.
+    peak_temperature : float or None
+        Highest temperature of the film, K; None for an isothermal bearing.
+    heat_by_oil, heat_to_walls : float or None
+        Heat that the oil carries out of the bearing, and that its walls give off, W; None for an isothermal bearing.
+    supply_temperature : float or None
+        Temperature of the oil that enters, K: the given one, or that of a `Sump`; None for an isothermal bearing. The
+        oil leaves at this temperature plus ``heat_by_oil`` over ``oil_flow`` times density and specific heat.
     walls : Walls or None
         Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
         the film has one temperature across it.
@@ -238,14 +257,22 @@ class SteadyResult(FilmRecord, FilmPictures):
     contact_load: float
     pocket_pressures: np.ndarray
     restrictor_flows: np.ndarray
+    inlet_flow: float
+    oil_flow: float
     supply_flows: np.ndarray
     contact_torque: float
     contact_power_loss: float
     peak_contact_pressure: float
     sommerfeld_number: float
     attitude_angle: float
+    characteristic_number: float
+    friction_number: float
     status: Status
     iterations: int
+    peak_temperature: float | None = None
+    heat_by_oil: float | None = None
+    heat_to_walls: float | None = None
+    supply_temperature: float | None = None
     bore_coordinates: np.ndarray | None = None
     faces: ThrustResult | None = None
 
@@ -269,9 +296,7 @@ class SteadyResult(FilmRecord, FilmPictures):
         -------
         Audit
         """
-        open_ring = isinstance(self.bearing.inlet, MaximumGap)
-        start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
-        model = build_study_model(replace(self.bearing, thrust=None), start)
+        model = model_at(replace(self.bearing, thrust=None), self.motion)
         near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
@@ -368,10 +393,16 @@ def steady(
     return replace(result_at(model, motion, "steady"), faces=faces)
 
 
+def model_at(bearing: JournalBearing, motion: np.ndarray) -> BearingModel:
+    """Model for one position; a film with `MaximumGap` begins opposite to it, on -x for a concentric journal."""
+    turned = isinstance(bearing.inlet, MaximumGap)
+    return build_study_model(bearing, math.atan2(motion[1], motion[0]) + math.pi if turned else 0.0)
+
+
 def require_rest(bearing: JournalBearing, where: str) -> None:
     """Raise `InputError` for a bearing in which a journal under a constant load has no position of rest."""
     if isinstance(bearing.inlet, MaximumGap):
-        raise InputError(f"{where}: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
+        raise InputError(f"{where}: inlet=MaximumGap() is for `steady` and `equilibrium`; use Periodic().")
     for k, area in enumerate(bearing.supply):
         if area.rotating:
             raise InputError(
@@ -430,6 +461,11 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
+    inlet, through = passing_flows(film)
+    sommerfeld = force / reference if reference > 0.0 else math.nan
+    heat: dict[str, float] = {}
+    if model.effects.thermal is not None and film.history is not None:
+        heat = model.effects.thermal.balance(film, film.history.temperature)
     return SteadyResult(
         **vars(film_record(film)),
         minimum_gap=q["minimum_gap"],
@@ -443,13 +479,23 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         contact_load=q["contact_load"],
         pocket_pressures=pressures,
         restrictor_flows=flows,
+        inlet_flow=inlet,
+        oil_flow=through,
         supply_flows=supply_flows(film),
         contact_torque=q["contact_torque"],
         contact_power_loss=q["contact_power_loss"],
         peak_contact_pressure=q["peak_contact_pressure"],
-        sommerfeld_number=force / reference if reference > 0.0 else math.nan,
+        sommerfeld_number=sommerfeld,
         attitude_angle=attitude,
+        characteristic_number=0.5 / (math.pi * sommerfeld) if force > 0.0 else math.inf,
+        friction_number=(
+            abs(q["friction_torque"]) / (model.bearing.radial_clearance * force) if force > 0.0 else math.inf
+        ),
         status=evaluation.status,
         iterations=evaluation.iterations,
+        peak_temperature=q.get("peak_temperature"),
+        heat_by_oil=heat.get("convected"),
+        heat_to_walls=heat.get("conducted"),
+        supply_temperature=heat.get("supply_temperature"),
         bore_coordinates=None if film.bore is None else film.bore.coordinates.copy(),
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.balance.limits import warn_of_heat
+from exudyn_ehd.joint.balance.limits import outside_table, warn_of_heat
 from exudyn_ehd.joint.balance.newton import Place
 from exudyn_ehd.joint.balance.position import LoadSearch, continued, first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
@@ -152,6 +152,8 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     for k in order:
         found = _follow(search, found, motion, float(values[k]))
         film, where = found.film, f"stribeck at {values[k]:.4g} rad/s"
+        if message := outside_table(film):
+            raise FilmError(f"{where}: {message}")
         told = told or warn_of_heat(film.temperature, film.grid, where)
         coarse = coarse or warn_of_grid(film, where)
         rows[k] = _row(found.evaluation, float(values[k]), size)

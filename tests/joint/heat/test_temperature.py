@@ -4,7 +4,6 @@ One bearing throughout: R = 25 mm, L = 50 mm, c = 25 um. Couette heat per area o
 / c.
 """
 
-import dataclasses
 import math
 
 import numpy as np
@@ -290,9 +289,6 @@ def test_no_way_out_for_the_heat_is_an_error():
 
 
 def test_input_errors_name_what_is_missing():
-    plain = dataclasses.replace(OIL, temperature_law=None)
-    with pytest.raises(ehd.InputError, match=r"needs a lubricant whose viscosity depends on temperature"):
-        bearing(ehd.LumpedThermal(supply_temperature=SUPPLY), lubricant=plain)
     with pytest.raises(ehd.InputError, match=r"JournalBearing\.thermal must be LumpedThermal"):
         bearing("lumped")
     with pytest.raises(ehd.InputError, match=r"LumpedThermal\.supply_temperature must be > 0 K"):

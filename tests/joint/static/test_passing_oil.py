@@ -1,0 +1,108 @@
+"""Oil and heat that pass a film: `SteadyResult.inlet_flow`, `oil_flow`, `heat_by_oil`, `heat_to_walls`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+
+GROOVE = ehd.AxialGroove(angle=1.2, width_angle=0.3, pressure=2e5)
+ELROD = {"cavitation": ehd.ElrodAdams(), "supply": (GROOVE,)}
+"""Film that conserves the oil, and that a groove feeds."""
+
+
+def flow_through(film, theta):
+    """Q = int (U h / 2 - h^3 / (12 mu R) dp/dtheta) dz through the section at an angle, from the fields of a result.
+
+    By the means of both sides of the links, and trapezoids along z.
+    """
+    b, mu = film.bearing, film.bearing.lubricant.viscosity
+    R, omega = b.journal_radius, film.motion[8]
+    h = 0.5 * (film.gap + np.roll(film.gap, -1, axis=0))
+    slope = (np.roll(film.pressure, -1, axis=0) - film.pressure) / (film.theta[1] - film.theta[0])
+    q = 0.5 * R * omega * h - h**3 / (12.0 * mu * R) * slope
+    middle = np.mod(film.theta + 0.5 * (film.theta[1] - film.theta[0]) - theta, 2.0 * math.pi)
+    order = np.argsort(middle)
+    return float(np.interp(0.0, middle[order], np.trapezoid(q, film.z, axis=1)[order], period=2.0 * math.pi))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("inlet", (ehd.Periodic(), ehd.MaximumGap()))
+def test_inlet_flow_is_the_flow_through_the_largest_gap(make_bearing, seed, inlet):
+    """Aligned and tilted journals at the middle of their bearing, both senses of rotation, flooded film."""
+    rng = np.random.default_rng(seed)
+    bearing = make_bearing(rng.uniform(0.3, 1.0), inlet=inlet, film=ehd.FiniteLength(n_theta=192, n_z=20))
+    speed, direction, e = rng.choice((-1.0, 1.0)) * 200.0, rng.uniform(-math.pi, math.pi), rng.uniform(0.2, 0.9)
+    film = ehd.steady(bearing, speed=speed, eccentricity_ratio=e, direction=direction)
+    along = math.copysign(0.5 * (film.theta[1] - film.theta[0]), speed)
+    assert film.inlet_flow == pytest.approx(abs(flow_through(film, direction + math.pi + along)), rel=3e-3)
+    # oil that enters the loaded zone leaves it at its sides, or goes on through the smallest gap
+    past = 0.5 * bearing.journal_radius * 200.0 * bearing.length * bearing.radial_clearance * (1.0 - e)
+    if inlet == ehd.MaximumGap():
+        assert past < film.inlet_flow - film.leakage < 1.7 * past
+    assert film.oil_flow == pytest.approx(film.leakage, rel=3e-3)
+
+
+@pytest.mark.parametrize("spin", (1.0, -1.0))
+def test_film_begins_behind_its_groove(make_bearing, spin):
+    """Behind a groove in the cavity the film begins at the groove's edge: feed and oil from the cavity are its inflow.
+
+    The feed is the total oil flow, and leaves through the ends.
+    """
+    groove = ehd.AxialGroove(angle=1.2, width_angle=0.3, length=0.0249, pressure=1e4)
+    bearing = make_bearing(0.5, cavitation=ehd.ElrodAdams(), supply=(groove,))
+    film = ehd.steady(bearing, speed=spin * 200.0, eccentricity_ratio=0.7, direction=1.2 + spin * 2.4)
+    assert film.inlet_flow == pytest.approx(abs(flow_through(film, 1.2 + spin * 0.2)), rel=0.02)
+    assert film.oil_flow == pytest.approx(film.supply_flows.sum(), rel=1e-9)
+    assert film.oil_flow == pytest.approx(film.leakage, rel=1e-9)
+
+
+def test_ends_and_edges_count_what_enters(make_bearing):
+    """Oil that one end takes and the other gives passes the film without net leakage; an arc is fed at its edges."""
+    film = ehd.steady(make_bearing(0.5, end_pressures=(2e6, 0.0)), speed=1.0, eccentricity_ratio=0.0)
+    b = film.bearing
+    through = math.pi * b.journal_radius * b.radial_clearance**3 * 2e6 / (6.0 * b.lubricant.viscosity * b.length)
+    assert film.oil_flow == pytest.approx(through, rel=1e-6)
+    assert abs(film.leakage) < 1e-6 * through
+    arc = make_bearing(0.5, arc=ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0)))
+    film = ehd.steady(arc, speed=200.0, eccentricity_ratio=0.6, direction=-1.2)
+    assert film.inlet_flow == pytest.approx(film.supply_flows[0], rel=1e-3)
+    assert film.oil_flow == film.supply_flows.sum()
+
+
+@pytest.mark.parametrize("options", ({}, {"inlet": ehd.MaximumGap()}, ELROD), ids=("flooded", "line", "groove"))
+def test_heat_leaves_with_the_oil_and_through_walls(make_bearing, options):
+    """Both parts sum to the power loss; one temperature T carries rho c Q (T - T_supply) with the total oil flow Q."""
+    oil, e = ehd.oil("ISO VG 46"), 0.65
+    lumped = ehd.LumpedThermal(supply_temperature=313.15, housing_conductance=4.0)
+    field = ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=800.0, conductivity=0.13)
+    for thermal, error in ((lumped, 4e-3), (field, 4e-3)):
+        bearing = make_bearing(0.5, lubricant=oil, thermal=thermal, **options)
+        film = ehd.steady(bearing, speed=300.0, eccentricity_ratio=e, direction=1.2 + 2.4)
+        assert film.heat_by_oil > 0.0 < film.heat_to_walls
+        assert film.heat_by_oil + film.heat_to_walls == pytest.approx(film.power_loss, rel=error)
+        assert film.peak_temperature == np.max(film.temperature)
+        if thermal is lumped:
+            carried = oil.density * oil.specific_heat * film.oil_flow
+            assert film.heat_by_oil == pytest.approx(carried * (film.temperature - 313.15), rel=1e-9)
+            assert film.heat_to_walls == pytest.approx(4.0 * (film.temperature - 313.15), rel=1e-12)
+    assert ehd.steady(make_bearing(0.5), speed=300.0, eccentricity_ratio=0.5).heat_by_oil is None
+
+
+def test_numbers_of_the_charts(make_bearing):
+    """S = 1 / (2 pi So), and the friction number is f R / c; without a force both are infinite."""
+    bearing = make_bearing(0.5)
+    film = ehd.steady(bearing, speed=-150.0, eccentricity_ratio=0.6)
+    R, c, load = bearing.journal_radius, bearing.radial_clearance, float(np.hypot(*film.force[:2]))
+    mean = load / (2.0 * R * bearing.length)
+    number = bearing.lubricant.viscosity * 150.0 / (2.0 * math.pi) / mean * (R / c) ** 2
+    assert film.characteristic_number == pytest.approx(number, rel=1e-12)
+    assert 2.0 * math.pi * film.characteristic_number * film.sommerfeld_number == pytest.approx(1.0, rel=1e-12)
+    assert film.friction_number == pytest.approx(film.friction_torque / (R * load) * R / c, rel=1e-12)
+    at_centre = ehd.steady(bearing, speed=150.0, eccentricity_ratio=0.0)
+    assert at_centre.characteristic_number == at_centre.friction_number == math.inf
+    squeezed = ehd.steady(bearing, speed=0.0, eccentricity_ratio=0.5, velocity=(1e-3, 0.0))
+    assert math.isnan(squeezed.characteristic_number) and math.isnan(squeezed.inlet_flow)
