@@ -3,7 +3,7 @@
 Module map
 ----------
 areas        what a scene names: AxialGroove, CircumferentialGroove, Hole, Pocket
-restrictors  what they are fed through: Orifice, Capillary, GivenFlow; pressures that follow from it
+restrictors  Orifice, Capillary, GivenFlow and EndSeal; pressures behind them, which follow from the film
 rows         rows of the grid on the areas' axial edges; what is refused
 holes        round holes, down to a source within a cell
 cuts         prescribed vertices, shares of the control volumes, links that end at an edge; shear of the oil

@@ -1,4 +1,4 @@
-"""Restrictors of supply areas: the pressure of an area follows from the balance of its restrictor and the film.
+"""Restrictors of supply areas, and seals: the pressure behind them follows from their balance with the film.
 
 The flow Q that the film takes from an area with the pressure p comes through the restrictor, from the supply pressure
 p_s (W. B. Rowe, Hydrostatic, Aerostatic and Hybrid Bearing Design, 2012):
@@ -21,8 +21,10 @@ S, the derivative of the film's flows to the pressures of the areas, is an M-mat
 solution, which Newton's method finds. No pressure is below the cavity's: an area from which the film takes more than
 comes through its restrictor has the cavity pressure and no balance. Derivatives are those of u and p together.
 
-With ``compressible_volume`` V and the bulk modulus K of the oil in it, Q is that of the film and ``V / K dp/dt``, by
-backward Euler over a step in time.
+The oil in an area and its restrictor is incompressible: the pressure follows without a delay.
+
+Seals at the ends of the film are restrictors all around: their flow per length is ``C (p_end - p_outside)``, and the
+pressure at the end one more unknown of the film (`sealed_grid`).
 """
 
 from __future__ import annotations
