@@ -107,8 +107,9 @@ def _check_restrictors(bearing: BearingOptions) -> None:
     if others:
         raise InputError(
             f"JournalBearing.supply[{fed[0]}] with a restrictor does not go with {others[0]}: the pressure of the area "
-            "is unknown, which needs rigid surfaces, a known supply temperature, and an oil whose density and viscosity "
-            "do not follow pressure or shear, but for a pressure_law; give the area a pressure, or leave the other out."
+            "is unknown, which needs rigid surfaces, a known supply temperature, and an oil whose density and "
+            "viscosity do not follow pressure or shear, but for a pressure_law; give the area a pressure, or leave the "
+            "other out."
         )
     if isinstance(bearing["film"], LongBearing) and any(isinstance(a.supply, GivenFlow) for a in bearing["supply"]):
         raise InputError(
