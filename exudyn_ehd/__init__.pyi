@@ -93,6 +93,8 @@ from exudyn_ehd.joint.spherical.steady import SphericalResult as SphericalResult
 from exudyn_ehd.joint.spherical.steady import steady_spherical as steady_spherical
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult as EquilibriumResult
 from exudyn_ehd.joint.static.equilibrium import equilibrium as equilibrium
+from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult as TiltingPadResult
+from exudyn_ehd.joint.static.pads import TiltingPads as TiltingPads
 from exudyn_ehd.joint.static.solve_film import FilmResult as FilmResult
 from exudyn_ehd.joint.static.solve_film import solve_film as solve_film
 from exudyn_ehd.joint.static.steady import SteadyResult as SteadyResult

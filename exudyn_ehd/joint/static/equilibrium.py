@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, cast, overload
 
 import numpy as np
 
@@ -23,6 +23,8 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmOnBoreResponse, FilmResponse, threshold
+from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult, pad_equilibrium
+from exudyn_ehd.joint.static.pads import TiltingPads
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_rest, result_at
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
@@ -226,6 +228,14 @@ class EquilibriumResult:
         return np.array([self.response.at(float(f)) for f in nu]).reshape(-1, 2, 2)
 
 
+@overload
+def equilibrium(
+    bearing: TiltingPads,
+    *,
+    speed: float,
+    load: tuple[float, float],
+) -> TiltingPadResult: ...
+@overload
 def equilibrium(
     bearing: JournalBearing,
     *,
@@ -234,11 +244,21 @@ def equilibrium(
     tilt: tuple[float, float] = (0.0, 0.0),
     axial_position: float = 0.0,
     axial_load: float | None = None,
-) -> EquilibriumResult:
+) -> EquilibriumResult: ...
+def equilibrium(
+    bearing: JournalBearing | TiltingPads,
+    *,
+    speed: float,
+    load: tuple[float, float],
+    tilt: tuple[float, float] = (0.0, 0.0),
+    axial_position: float = 0.0,
+    axial_load: float | None = None,
+) -> EquilibriumResult | TiltingPadResult:
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     One bearing, alone, with a fixed tilt: a rotor in several bearings, or a journal that moments tilt, is for
-    `SolveEquilibrium`; friction over the speed for `stribeck`.
+    `SolveEquilibrium`; friction over the speed for `stribeck`. With `TiltingPads` every pad is in balance, too; the
+    journal is parallel to them, and the result is a `TiltingPadResult`.
 
     For which motions stiffness K and damping C hold:
 
@@ -264,7 +284,7 @@ def equilibrium(
 
     Parameters
     ----------
-    bearing : JournalBearing
+    bearing : JournalBearing or TiltingPads
         With ``inlet=Periodic()``.
     speed : float
         Spin of the journal against the housing, rad/s, positive about +z, not 0.
@@ -283,7 +303,7 @@ def equilibrium(
 
     Returns
     -------
-    EquilibriumResult
+    EquilibriumResult or TiltingPadResult
 
     Raises
     ------
@@ -304,7 +324,7 @@ def equilibrium(
     array([[ 175.,   99.],
            [-295.,  181.]])
     """
-    require_type("equilibrium: bearing", bearing, JournalBearing)
+    require_type("equilibrium: bearing", bearing, JournalBearing, TiltingPads)
     force = require_vector("equilibrium: load", load, 2, "N")
     omega = require_number("equilibrium: speed", speed, "rad/s")
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
@@ -314,9 +334,17 @@ def equilibrium(
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
     size = float(np.hypot(*force))
     if size == 0.0:
-        size = NO_LOAD * bearing.reference_force(omega)
+        one = bearing.pad(0) if isinstance(bearing, TiltingPads) else bearing
+        size = NO_LOAD * one.reference_force(omega)
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
+    if isinstance(bearing, TiltingPads):
+        if np.any(b) or place != 0.0 or axial_load is not None:
+            raise InputError(
+                "equilibrium: tilt, axial_position and axial_load are not for TiltingPads(...), whose pads follow a "
+                "parallel journal only and hold nothing along the axis; leave them out."
+            )
+        return pad_equilibrium(bearing, omega, force, size)
     require_rest(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
     faces, along = _faces(bearing, place, axial_load)
