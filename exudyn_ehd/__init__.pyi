@@ -13,6 +13,9 @@ from exudyn_ehd.coupling.bush.object import FlexibleBush as FlexibleBush
 from exudyn_ehd.coupling.bush.object import FreeOuter as FreeOuter
 from exudyn_ehd.coupling.bush.object import Support as Support
 from exudyn_ehd.coupling.handle import LubricatedJoint as LubricatedJoint
+from exudyn_ehd.coupling.pads import CreateTiltingPadBearing as CreateTiltingPadBearing
+from exudyn_ehd.coupling.pads import TiltingPadHistory as TiltingPadHistory
+from exudyn_ehd.coupling.pads import TiltingPadJoint as TiltingPadJoint
 from exudyn_ehd.coupling.record.history import JointHistory as JointHistory
 from exudyn_ehd.coupling.record.history import Quantity as Quantity
 from exudyn_ehd.coupling.record.on_disk import File as File

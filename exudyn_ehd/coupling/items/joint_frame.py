@@ -187,7 +187,7 @@ def hold(
         transform = np.eye(4)
         transform[:3, :3] = item.node_rotation.T @ rotation
         transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
-        markers.append(_rigid_marker(mbs, f"{name} {label}", item, transform, asked))
+        markers.append(rigid_marker(mbs, f"{name} {label}", item, transform, asked))
         turns.append(np.eye(3))
     if housing.kind is None:
         raise InputError(
@@ -207,7 +207,7 @@ def hold(
     )
 
 
-def _rigid_marker(mbs: exu.MainSystem, name: str, item: Item, transform: np.ndarray, asked: str) -> Index:
+def rigid_marker(mbs: exu.MainSystem, name: str, item: Item, transform: np.ndarray, asked: str) -> Index:
     """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
     if item.node is None or item.kind in POINTS:
         # a ground object of our own at the origin holds the marker; a point turns as little
