@@ -400,7 +400,7 @@ def hold_axis(
     flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in items)
     turns = not all(item.kind in (rigid_nodes.GROUND, *rigid_nodes.POINTS) for item in items)
     kept = {"axial": isinstance(axial, Held) and not flat, "tilt": isinstance(tilt, Held) and turns and not flat}
-    return hold(mbs, name, *items, points, rotation, **kept) if any(kept.values()) else None
+    return hold(mbs, name, items[0], items[1], points, rotation, **kept) if any(kept.values()) else None
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:

@@ -127,22 +127,23 @@ class TiltingPadJoint:
         """Sums and extremes over the pads at all accepted steps that every film has."""
         rows = [pad.history for pad in self.pads]
         time = functools.reduce(np.intersect1d, [h.time for h in rows])
-        every = [np.searchsorted(h.time, time) for h in rows]
-        forces = np.array([h.force[k] for h, k in zip(rows, every, strict=True)])
-        motions = np.array([h.motion[k] for h, k in zip(rows, every, strict=True)])
-        position, tilts = self._places(motions[..., :2], forces[..., :2])
+
+        def of(name: str) -> np.ndarray:
+            """Values (k, n, ...) of all pads at these times."""
+            return np.array([getattr(h, name)[np.searchsorted(h.time, time)] for h in rows])
+
+        forces = of("force")
+        position, tilts = self._places(of("motion")[..., :2], forces[..., :2])
         forces[..., :2] = _turned(forces[..., :2], tilts)
-        both = np.minimum.reduce, np.maximum.reduce, np.add.reduce, np.add.reduce
-        names = "minimum_gap", "peak_pressure", "power_loss", "friction_torque"
         return TiltingPadHistory(
             time=time,
             position=position,
             force=forces.sum(axis=0),
             tilts=tilts.T,
-            **{
-                name: reduce([getattr(h, name)[k] for h, k in zip(rows, every, strict=True)])
-                for name, reduce in zip(names, both, strict=True)
-            },
+            minimum_gap=of("minimum_gap").min(axis=0),
+            peak_pressure=of("peak_pressure").max(axis=0),
+            power_loss=of("power_loss").sum(axis=0),
+            friction_torque=of("friction_torque").sum(axis=0),
         )
 
     def _places(self, motions: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -314,8 +315,7 @@ def CreateTiltingPadBearing(
         if not getattr(bearing, argument) > 0.0:
             raise InputError(f"{_WHERE}.bearing: pads are bodies and need TiltingPads.{argument} > 0, got 0.")
     name = name or f"tilting pads {mbs.systemData.NumberOfObjects()}"
-    require_new(_WHERE, mbs, name)
-    require_new(_WHERE, mbs, _pad_name(name, 0))
+    require_new(_WHERE, mbs, f"{name} pad 1")
     housing, journal = resolve_pair(mbs, itemNumbers)
     if housing.kind is None or housing.kind in rigid_nodes.POINTS:
         raise InputError(f"{_WHERE}.itemNumbers[0] must be a rigid body, a rigid node or marker, or ground.")
@@ -325,24 +325,16 @@ def CreateTiltingPadBearing(
     for k, angle in enumerate(bearing.pivots):
         radial = rotation @ [math.cos(angle), math.sin(angle), 0.0]
         centre = points[0] - bearing.preload * bearing.machined_clearance * radial
-        own = _pad_name(name, k)
-        body, *joints = _add_pad(
-            mbs, own, bearing, (housing, centre + bearing.arm * radial), (rotation, radial), weight
-        )
-        item = body_item(mbs, _WHERE, body)
-        places = centre, points[1]
+        own, pivot = f"{name} pad {k + 1}", centre + bearing.arm * radial
+        body, *joints = _add_pad(mbs, own, bearing, (housing, pivot), (rotation, radial), weight)
+        item, places = body_item(mbs, _WHERE, body), (centre, points[1])
         joint = attach(mbs, PadModel(bearing.pad(k)), item, journal, places, rotation, name=own, show=show)
         if stepControl is not None:
             joint.element.steps.control = GapWatch(stepControl, joint.bearing)
         pads.append(joint)
         objects.append((body, *joints))
     constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
-    numbers = list(zip(*objects, strict=True))
-    return TiltingPadJoint(mbs, name, bearing, pads, [*numbers, ()][:3], constraint)
-
-
-def _pad_name(name: str, number: int) -> str:
-    return f"{name} pad {number + 1}"
+    return TiltingPadJoint(mbs, name, bearing, pads, [*zip(*objects, strict=True), ()][:3], constraint)
 
 
 def _add_pad(
@@ -360,16 +352,15 @@ def _add_pad(
     (housing, pivot), (rotation, radial) = place, axes
     side = housing.side(pivot, rotation)
     side.update(mbs, housing.initial_coordinates, housing.initial_velocities, INITIAL)
-    frame = side.frame
     body = mbs.CreateRigidBody(
         name=f"{name} body",
         inertia=RigidBodyInertia(bearing.pad_mass, bearing.pad_inertia * np.eye(3)),
         referencePosition=pivot,
         referenceRotationMatrix=rotation,
-        initialDisplacement=frame[:, rigid_nodes.PLACE] - pivot,
-        initialRotationMatrix=rotation.T @ frame[:, :3],
-        initialVelocity=frame[:, rigid_nodes.VELOCITY],
-        initialAngularVelocity=frame[:, rigid_nodes.SPIN],
+        initialDisplacement=side.frame[:, rigid_nodes.PLACE] - pivot,
+        initialRotationMatrix=rotation.T @ side.frame[:, :3],
+        initialVelocity=side.frame[:, rigid_nodes.VELOCITY],
+        initialAngularVelocity=side.frame[:, rigid_nodes.SPIN],
         gravity=gravity,
         show=False,
     )
@@ -381,26 +372,17 @@ def _add_pad(
         transform[:3, 3] = item.node_rotation.T @ (pivot - item.node_position)
         markers.append(rigid_marker(mbs, f"{name} pivot on {label}", item, transform, "a pad"))
     flexible = bearing.pivot_stiffness is not None
-    pivots = [
-        mbs.AddObject(
-            eii.ObjectJointGeneric(
-                name=f"{name} pivot",
-                markerNumbers=markers,
-                constrainedAxes=[int(not flexible), 1, 1, 1, 1, 0],
-                visualization=eii.VObjectJointGeneric(show=False),
-            )
-        )
-    ]
-    if flexible:
-        pivots.append(
-            mbs.AddObject(
-                eii.ObjectConnectorLinearSpringDamper(
-                    name=f"{name} spring",
-                    markerNumbers=markers,
-                    stiffness=bearing.pivot_stiffness,
-                    axisMarker0=[1.0, 0.0, 0.0],
-                    visualization=eii.VObjectConnectorLinearSpringDamper(show=False),
-                )
-            )
-        )
-    return [body, *pivots]
+    pivot_joint = eii.ObjectJointGeneric(
+        name=f"{name} pivot",
+        markerNumbers=markers,
+        constrainedAxes=[int(not flexible), 1, 1, 1, 1, 0],
+        visualization=eii.VObjectJointGeneric(show=False),
+    )
+    spring = eii.ObjectConnectorLinearSpringDamper(
+        name=f"{name} spring",
+        markerNumbers=markers,
+        stiffness=bearing.pivot_stiffness or 0.0,
+        axisMarker0=[1.0, 0.0, 0.0],
+        visualization=eii.VObjectConnectorLinearSpringDamper(show=False),
+    )
+    return [body, *map(mbs.AddObject, (pivot_joint, spring)[: 1 + flexible])]

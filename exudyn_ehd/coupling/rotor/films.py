@@ -236,6 +236,8 @@ def plain_model(joint: Joint) -> BearingModel:
         what = "squeeze=False and so no damping"
     elif model.needs_spin:
         what = "supply areas that turn with the journal"
+    elif type(model) is not BearingModel:
+        what = "a tilting pad, which has an unstable position of its own besides the stable one"
     else:
         return model
     raise InputError(

@@ -334,8 +334,7 @@ def equilibrium(
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
     size = float(np.hypot(*force))
     if size == 0.0:
-        one = bearing.pad(0) if isinstance(bearing, TiltingPads) else bearing
-        size = NO_LOAD * one.reference_force(omega)
+        size = NO_LOAD * (bearing.pad(0) if isinstance(bearing, TiltingPads) else bearing).reference_force(omega)
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
     if isinstance(bearing, TiltingPads):

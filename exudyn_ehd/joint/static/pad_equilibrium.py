@@ -39,6 +39,8 @@ PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
 BETWEEN = np.linspace(0.08, -0.08, 9)
 # Starts on the load's line, over the assembled clearance; more of them find a nearer one.
 STARTS = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05)
+# Starts from which a search is made, the nearest ones.
+MOST_STARTS = 3
 # Clearance by which surfaces with a contact may overlap, over the machined one.
 OVERLAP = 0.1
 
@@ -97,18 +99,15 @@ def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, flo
     finest = SMALLEST_STEP * pad.model.bearing.radial_clearance / pad.arm
     for _ in range(TILT_ROUNDS):
         here = pad.at(journal, shift, tilt)
-        if here is not None and sense * here.forces[2] > 0.0:
-            lower = tilt
-        else:
-            upper = tilt
+        rises = here is not None and sense * here.forces[2] > 0.0
+        lower, upper = (tilt, upper) if rises else (lower, tilt)
         stiff = 0.0 if here is None else here.stiffness[2, 2]
         step = here.forces[2] / stiff if here is not None and stiff > 0.0 else math.inf
         if abs(step) <= finest:
             return here
         if abs(upper - lower) <= finest:
             return here if stiff > 0.0 else None
-        there = tilt + step
-        tilt = there if (there - lower) * (there - upper) < 0.0 else 0.5 * (lower + upper)
+        tilt = tilt + step if (tilt + step - lower) * (tilt + step - upper) < 0.0 else 0.5 * (lower + upper)
     return None
 
 
@@ -163,15 +162,13 @@ class PadSearch:
 
     def at(self, unknowns: np.ndarray) -> Balanced | None:
         """Balance of all pads at a place; None if a film is closed."""
-        n, journal, loads = unknowns.size, unknowns[:2], []
-        self.count += 1
+        n, loads, self.count = unknowns.size, [], self.count + 1
         unbalance, slope = np.append(self.load, np.zeros(n - 2)), np.zeros((n, n))
         for k, pad in enumerate(self.pads):
-            here = settled(pad, journal, float(unknowns[2 + k]) if self.moves else 0.0)
+            here = settled(pad, unknowns[:2], float(unknowns[2 + k]) if self.moves else 0.0)
             if here is None:
                 return None
-            K, own = here.stiffness, [0, 1, 3] if self.moves else [0, 1]
-            places = [0, 1, 2 + k] if self.moves else [0, 1]
+            K, own, places = here.stiffness, [0, 1, 3][: 2 + self.moves], [0, 1, 2 + k][: 2 + self.moves]
             unbalance[places] += here.forces[own]
             follows = np.outer(K[own, 2], K[2, own]) / K[2, 2] if here.loaded else 0.0
             slope[np.ix_(places, places)] += K[np.ix_(own, own)] - follows
@@ -181,14 +178,12 @@ class PadSearch:
     def find(self) -> Balanced:
         """Place in which the films carry the load; `FilmError` without one."""
         along = self.load / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
-        unmoved, starts = np.zeros(self.bearing.pads if self.moves else 0), []
-        for ratio in STARTS if np.any(self.load) else STARTS[:1]:
-            start = self.at(np.append(ratio * along, unmoved))
-            if start is not None:
-                starts.append(start)
+        unmoved = np.zeros(self.bearing.pads if self.moves else 0)
+        ratios = STARTS if np.any(self.load) else STARTS[:1]
+        starts = [start for r in ratios if (start := self.at(np.append(r * along, unmoved))) is not None]
         if not starts:
             raise FilmError(f"{WHERE}: no film of the tilting pads could be evaluated; check clearance and grid.")
-        for start in sorted(starts, key=lambda place: place.left):
+        for start in sorted(starts, key=lambda place: place.left)[:MOST_STARTS]:
             here = self._descend(start)
             if here.is_balanced(self.size):
                 return here
@@ -229,7 +224,7 @@ class TiltingPadResult:
         x, y of the journal axis, m.
     eccentricity_ratio, attitude_angle : float
         Distance of the journal axis from the bearing's centre over the assembled clearance; angle from the load to the
-        eccentricity in the sense of rotation, rad.
+        eccentricity in the sense of rotation, rad; nan without load.
     tilts : (n,) array
         Angles of the pads about their pivots, rad, positive about z; 0 where they are built.
     pivot_displacements : (n,) array
@@ -356,11 +351,10 @@ def pad_equilibrium(bearing: TiltingPads, speed: float, load: np.ndarray, size: 
         )
     shifts = found.unknowns[2:] if search.moves else np.zeros(n)
     turn = math.atan2(position[1], position[0]) - math.atan2(load[1], load[0])
-    moved = bool(np.any(position)) and bool(np.any(load))
     return TiltingPadResult(
         position=position,
         eccentricity_ratio=float(np.hypot(*position)) / bearing.radial_clearance,
-        attitude_angle=math.remainder(math.copysign(1.0, speed) * turn, 2.0 * math.pi) if moved else math.nan,
+        attitude_angle=math.remainder(math.copysign(1.0, speed) * turn, 2.0 * math.pi) if np.any(load) else math.nan,
         tilts=np.array([own.tilt for own in loads]),
         pivot_displacements=shifts,
         loaded=loaded,
