@@ -97,6 +97,8 @@ KINDS: dict[str, Kind] = {
     "spin": Kind("rad/s", 0.0, 0.0, 1e5, 1e9, (("rev/min", 0.10471975511965977),)),
     "wear rate": Kind("m2/N", 0.0, 0.0, 1e-10, 1e-8, (("mm3/(N m)", 1e-9), ("mm2/N", 1e-6))),
     "mass": Kind("kg", 1e-12, 1e-6, 1e6, 1e9, (("g", 1e-3), ("t", 1e3))),
+    "moment of inertia": Kind("kg m2", 1e-20, 1e-12, 1e6, 1e12, (("g m2", 1e-3), ("kg mm2", 1e-6))),
+    "stiffness": Kind("N/m", 1.0, 1e4, 1e12, 1e16, (("N/mm", 1e3), ("N/um", 1e6))),
     "force": Kind("N", 0.0, 0.0, 1e9, 1e15),
     "line force": Kind("N/m", 0.0, 0.0, 1e10, 1e14),
     "heat conductance": Kind("W/K", 0.0, 0.0, 1e6, 1e12),
@@ -108,6 +110,7 @@ KINDS: dict[str, Kind] = {
 _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
         "JournalBearing.journal_radius",
+        "TiltingPads.journal_radius",
         "SphericalBearing.ball_radius",
         "ThrustFaces.inner_radius",
         "ThrustFaces.outer_radius",
@@ -120,7 +123,10 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "OnCylinder.radius",
         "add_bore_modes.radius",
     ),
-    "length": ("JournalBearing.length", "AxialGroove.length", "HollowCylinder.length", "add_bore_modes.length"),
+    "length": (
+        *(f"{part}.length" for part in ("JournalBearing", "TiltingPads", "AxialGroove", "HollowCylinder")),
+        "add_bore_modes.length",
+    ),
     "grid": (
         "bearing_grid.radius",
         "bearing_grid.length",
@@ -134,6 +140,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "Pocket.length",
         *(f"{area}.depth" for area in ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")),
         "EdgeRelief.relief_length",
+        "TiltingPads.pad_thickness",
     ),
     "place along z": (
         "CircumferentialGroove.z",
@@ -146,13 +153,17 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "place": (
         "CreateLubricatedJoint.position",
+        "CreateTiltingPadBearing.position",
         "CreateLubricatedSphericalJoint.position",
         "CreateFlexibleBush.position",
         "add_bore_modes.position",
         "mesh_from_arrays.origin",
         "OnPlane.point",
     ),
-    "clearance": ("JournalBearing.radial_clearance", "SphericalBearing.radial_clearance", "ThrustFaces.clearance"),
+    "clearance": (
+        *(f"{bearing}.radial_clearance" for bearing in ("JournalBearing", "SphericalBearing", "TiltingPads")),
+        "ThrustFaces.clearance",
+    ),
     "gap": (
         "solve_film.gap",
         "solve_film.history",
@@ -175,6 +186,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "layer": ("ElasticLiner.thickness",),
     "angle": (
         *(f"Arc.{name}" for name in ("start", "extent")),
+        *(f"TiltingPads.{name}" for name in ("extent", "first_pivot")),
         "AxialGroove.angle",
         "Hole.angle",
         "Pocket.angle",
@@ -218,6 +230,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "ThrustFaces.inner_pressures",
         "ThrustFaces.outer_pressures",
         *(f"Arc.{edge}_pressure" for edge in ("leading", "trailing")),
+        *(f"TiltingPads.{where}_pressures" for where in ("edge", "end")),
         "AxialGroove.pressure",
         "CircumferentialGroove.pressure",
         "Hole.pressure",
@@ -265,7 +278,11 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "solve_film.gap_rate",
     ),
     "velocity": ("CreateFlexibleBush.initialVelocity",),
-    "acceleration": ("CreateLubricatedJoint.bushGravity", "Gravity.acceleration"),
+    "acceleration": (
+        "CreateLubricatedJoint.bushGravity",
+        "CreateTiltingPadBearing.gravity",
+        "Gravity.acceleration",
+    ),
     "spin": (
         "steady.speed",
         "steady_spherical.angular_velocity",
@@ -279,16 +296,21 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "recommend.speed",
         "recommend_steps.speed",
         "LubricatedJoint.place_in_equilibrium.speed",
+        "TiltingPadJoint.place_in_equilibrium.speed",
+        "reduced.frequency",
         "CreateFlexibleBush.initialAngularVelocity",
     ),
     "wear rate": ("ArchardWear.wear_rate",),
-    "mass": ("recommend_steps.mass",),
+    "mass": ("recommend_steps.mass", "TiltingPads.pad_mass"),
+    "moment of inertia": ("TiltingPads.pad_inertia",),
+    "stiffness": ("TiltingPads.pivot_stiffness",),
     "force": (
         "equilibrium.load",
         "equilibrium.axial_load",
         "stribeck.load",
         "recommend_steps.load",
         "LubricatedJoint.place_in_equilibrium.load",
+        "TiltingPadJoint.place_in_equilibrium.load",
         "LubricatedJoint.stop_at.force",
     ),
     "line force": ("LineLoad.force_per_length",),

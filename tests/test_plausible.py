@@ -39,7 +39,8 @@ PURE = {
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
     "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
     "UntilPeriodic.tolerance", "Hirs.coefficient", "Hirs.exponent", "Hirs.full", "Hirs.onset", "NgPan.full",
-    "NgPan.onset", "StepLand.share", "TaperLand.share",
+    "NgPan.onset", "StepLand.share", "TaperLand.share", "TiltingPads.preload", "TiltingPads.pivot_offset",
+    "CreateTiltingPadBearing.axis", "CreateTiltingPadBearing.rotationMatrixAxes",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
@@ -62,6 +63,7 @@ READING = {
     "mesh_from_fem.held", "mesh_from_file.held", "parameter_study.function", "parameter_study.hosts",
     "CreateLubricatedSphericalJoint.itemNumbers", "SolveEquilibrium.rotors", "SolveThreshold.rotors",
     "CreateLubricatedJoint.axisLength", "CreateLubricatedJoint.axisRadius", "CreateLubricatedJoint.bodyNumbers",
+    "CreateTiltingPadBearing.itemNumbers",
     "ReplaceJoint.options", "ReplaceJoints.bearing", "ReplaceJoints.options", "ReplaceJoints.types",
 }  # fmt: skip
 # What the package makes, and hands out to be read.
@@ -70,6 +72,7 @@ RESULTS = {
     "SphericalHistory", "SphericalResult",
     "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StepRecommendation",
     "StribeckResult", "StudyTable", "SystemState", "ThrustResult", "RotorResult",
+    "TiltingPadHistory", "TiltingPadJoint", "TiltingPadResult",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
 WITH_METHODS = {"LubricatedJoint"}

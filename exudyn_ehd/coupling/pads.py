@@ -14,15 +14,20 @@ from collections.abc import Sequence
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
-from exudyn.rigidBodyUtilities import RigidBodyInertia, RotationMatrix2EulerParameters, RotationMatrixZ
+from exudyn.rigidBodyUtilities import (
+    AngularVelocity2EulerParameters_t,
+    RigidBodyInertia,
+    RotationMatrix2EulerParameters,
+    RotationMatrixZ,
+)
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.api import Free, Held, attach, hold_axis
-from exudyn_ehd.coupling.contract import INITIAL, Index, require_system
+from exudyn_ehd.coupling.contract import INITIAL, Index, Side, require_system
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import Item, body_item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair, rigid_marker
-from exudyn_ehd.coupling.kinematics import rigid_nodes
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.run.solve import require_new
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
@@ -110,8 +115,11 @@ class TiltingPadJoint:
         pads: Sequence[LubricatedJoint],
         objects: Sequence[Sequence[Index]],
         constraint: Index | None,
+        housing: Side,
     ) -> None:
         self.mbs, self.name, self.bearing, self.pads = mbs, name, bearing, tuple(pads)
+        self._housing, angles = housing, bearing.pivots
+        self._directions = np.array([[np.cos(angles), np.sin(angles)], [-np.sin(angles), np.cos(angles)]])
         self.bodies, self.pivots, self.springs = (tuple(numbers) for numbers in objects)
         self.constraintNumber = constraint
 
@@ -133,7 +141,8 @@ class TiltingPadJoint:
             return np.array([getattr(h, name)[np.searchsorted(h.time, time)] for h in rows])
 
         forces = of("force")
-        position, tilts = self._places(of("motion")[..., :2], forces[..., :2])
+        outward = -np.einsum("dk,knd->kn", self._directions[0], forces[..., :2])
+        position, tilts = self._places(of("motion")[..., :2], outward / (self.bearing.pivot_stiffness or math.inf))
         forces[..., :2] = _turned(forces[..., :2], tilts)
         return TiltingPadHistory(
             time=time,
@@ -146,21 +155,17 @@ class TiltingPadJoint:
             friction_torque=of("friction_torque").sum(axis=0),
         )
 
-    def _places(self, motions: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _places(self, motions: np.ndarray, shifts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Journal's positions (n, 2) in the bearing and tilts (k, n) from its places (k, n, 2) in the pads' frames.
 
-        ``forces`` (k, n, 2): of the films on the journal, in the pads' frames.
+        ``shifts`` (k, n): outward displacements of the pads at their pivots.
         """
-        b, angles = self.bearing, self.bearing.pivots
-        radial, across = np.array([np.cos(angles), np.sin(angles)]), np.array([-np.sin(angles), np.cos(angles)])
+        b, (radial, across) = self.bearing, self._directions
         outward = np.einsum("dk,knd->kn", radial, motions) - b.arm
         along = np.einsum("dk,knd->kn", across, motions)
-        pivot = b.arm - b.preload * b.machined_clearance
-        if b.pivot_stiffness is not None:
-            pivot = pivot - np.einsum("dk,knd->kn", radial, forces) / b.pivot_stiffness
-        tilts = np.zeros_like(along)
+        pivots, tilts = b.arm - b.preload * b.machined_clearance + shifts, np.zeros_like(along)
         for _ in range(ROUNDS):
-            position = np.linalg.lstsq(radial.T, pivot + outward * np.cos(tilts) - along * np.sin(tilts))[0].T
+            position = np.linalg.lstsq(radial.T, pivots + outward * np.cos(tilts) - along * np.sin(tilts))[0].T
             tilts = np.arcsin(((position @ across).T - along * np.cos(tilts)) / outward)
         return position, tilts
 
@@ -196,42 +201,38 @@ class TiltingPadJoint:
         if not isinstance(journal, NodeSide) or not journal.nodes:
             raise InputError(f"{where}: the journal of '{self.name}' must be a rigid body or node that moves.")
         force = require_vector(f"{where}: load", load, 2, "N")
-        motions = np.array([pad.element.motion(mbs, INITIAL)[:10] for pad in self.pads])
-        spin = float(motions[0, 8]) if speed is None else require_number(f"{where}: speed", speed, "rad/s")
+        # brings the journal's frame to the initial state
+        self.pads[0].element.motion(mbs, INITIAL)
+        data, housing, motion = mbs.systemData, self._housing, np.empty(10)
+        q, q_t = np.array(data.GetODE2Coordinates(INITIAL)), np.array(data.GetODE2Coordinates_t(INITIAL))
+        own = [place for node in housing.nodes for place in data.GetNodeLTGODE2(int(node))]
+        housing.update(mbs, q[own], q_t[own], INITIAL)
+        relative.relative_motion(housing.frame, journal.frame, motion)
+        spin = float(motion[8]) if speed is None else require_number(f"{where}: speed", speed, "rad/s")
         if spin == 0.0:
             raise InputError(
                 f"{where}: '{self.name}' does not turn in the initial state, and films without speed carry no steady "
                 "load; give speed=..., or the bodies an initial angular velocity."
             )
         result = equilibrium(self.bearing, speed=spin, load=(force[0], force[1]))
-        position, tilts = self._places(motions[:, None, :2], np.zeros((self.bearing.pads, 1, 2)))
-        turned = self.pads[0].element.sides[0].frame[:, :3] @ RotationMatrixZ(-float(tilts[0, 0]))
-        across = turned[:, :2] @ _turned(motions[:1, None, 4:6], tilts[:1])[0, 0]
-        self._move(journal, turned[:, :2] @ (result.position - position[0]), -across, np.eye(3))
-        for k, (pad, angle) in enumerate(zip(self.pads, self.bearing.pivots, strict=True)):
-            side = pad.element.sides[0]
-            assert isinstance(side, NodeSide)
-            outward = turned @ [math.cos(angle), math.sin(angle), 0.0]
-            change = turned @ RotationMatrixZ(float(result.tilts[k] - tilts[k, 0])) @ turned.T
-            self._move(side, result.pivot_displacements[k] * outward, np.zeros(3), change)
-            pad.element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), None)
+        A, place, velocity, turning = np.split(housing.frame, (3, 4, 5), axis=1)
+        own = data.GetNodeLTGODE2(int(journal.nodes[0]))[: rigid_nodes.translations(journal.kind)]
+        q[own] += (A[:, :2] @ (result.position - motion[:2]))[: len(own)]
+        q_t[own] -= (A[:, :2] @ motion[4:6])[: len(own)]
+        pivots = self.bearing.arm - self.bearing.preload * self.bearing.machined_clearance + result.pivot_displacements
+        for k, pad in enumerate(self.pads):
+            node, lever = pad.element.sides[0], A[:, :2] @ (pivots[k] * self._directions[0, :, k])
+            assert isinstance(node, NodeSide)
+            turn = RotationMatrix2EulerParameters(A @ RotationMatrixZ(result.tilts[k]))
+            turn = np.ravel(turn) * math.copysign(1.0, np.ravel(turn) @ node.reference[3:])
+            rates = AngularVelocity2EulerParameters_t(turning[:, 0], turn)
+            own = data.GetNodeLTGODE2(int(node.nodes[0]))
+            q[own] = np.append(place[:, 0] + lever, turn) - node.reference
+            q_t[own] = np.append(velocity[:, 0] + np.cross(turning[:, 0], lever), rates)
+            pad.element.steps.resume(float(data.GetTime(INITIAL)), None)
+        data.SetODE2Coordinates(q.tolist(), INITIAL)
+        data.SetODE2Coordinates_t(q_t.tolist(), INITIAL)
         return result
-
-    def _move(self, side: NodeSide, shift: np.ndarray, velocity: np.ndarray, turn: np.ndarray) -> None:
-        """Add a displacement, a velocity and a rotation, all global, to the initial state of a rigid node."""
-        data = self.mbs.systemData
-        places = np.array(data.GetNodeLTGODE2(int(side.nodes[0])), dtype=int)
-        coordinates, rates = np.array(data.GetODE2Coordinates(INITIAL)), np.array(data.GetODE2Coordinates_t(INITIAL))
-        size = rigid_nodes.translations(side.kind)
-        coordinates[places[:size]] += shift[:size]
-        rates[places[:size]] += velocity[:size]
-        if side.kind == rigid_nodes.EULER_PARAMETERS and np.any(turn != np.eye(3)):
-            present = rigid_nodes.rotation_of(side.kind, side.reference + coordinates[places])
-            parameters = np.array(RotationMatrix2EulerParameters(turn @ present)).ravel()
-            near = side.reference[3:] + coordinates[places[3:]]
-            coordinates[places[3:]] = math.copysign(1.0, parameters @ near) * parameters - side.reference[3:]
-        data.SetODE2Coordinates(coordinates.tolist(), INITIAL)
-        data.SetODE2Coordinates_t(rates.tolist(), INITIAL)
 
 
 def _turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
@@ -334,7 +335,8 @@ def CreateTiltingPadBearing(
         pads.append(joint)
         objects.append((body, *joints))
     constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
-    return TiltingPadJoint(mbs, name, bearing, pads, [*zip(*objects, strict=True), ()][:3], constraint)
+    side, numbers = housing.side(points[0], rotation), [*zip(*objects, strict=True), ()][:3]
+    return TiltingPadJoint(mbs, name, bearing, pads, numbers, constraint, side)
 
 
 def _add_pad(

@@ -6,6 +6,9 @@ falls through zero: a smaller tilt with no moment is unstable. The film of one p
 which an edge touches. A pad without such a tilt is unloaded: it would tilt on until its leading edge rubs, which is
 called spragging. It is held at the tilt from which on its gap widens all along the pad, without pressure.
 
+Shear tips a pad over at a small load that is not zero. Where a pad would carry less than that, and its absence lets the
+journal come nearer, no position has it loaded. Then the pad that carries least counts as tipped over, and stays so.
+
 With the tilts eliminated, Newton's method has the exact Jacobian ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not lead
 downhill are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.newton`.
 
@@ -40,7 +43,9 @@ BETWEEN = np.linspace(0.08, -0.08, 9)
 # Starts on the load's line, over the assembled clearance; more of them find a nearer one.
 STARTS = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05)
 # Starts from which a search is made, the nearest ones.
-MOST_STARTS = 3
+MOST_STARTS = 2
+# Angle from the pivot, rad, up to which the gap of an unloaded pad is to widen.
+STEEPEST = 1.4
 # Clearance by which surfaces with a contact may overlap, over the machined one.
 OVERLAP = 0.1
 
@@ -59,24 +64,24 @@ def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, floa
         return None
     lever = sense * np.sin(psi)
     before, behind = lever < 0.0, lever > 0.0
-    lowest, highest = np.max((room / lever)[before]), np.min((room / lever)[behind])
+    lowest, highest = np.max(room[before] / lever[before]), np.min(room[behind] / lever[behind])
     # the gap's slope along the motion, a sin psi - b cos psi, is positive all over the pad
-    widening = max(float(np.min(sense * a * np.tan(psi))), 0.9 * lowest)
+    widening = max(float(np.min(sense * a * np.tan(psi[np.abs(psi) < STEEPEST]))), 0.9 * lowest)
     lower, upper, widening = ((sense * value - b) / (pad.arm - a) for value in (lowest, highest, widening))
     return lower, upper, widening
 
 
-def settled(pad: Pad, journal: np.ndarray, shift: float) -> PadLoads | None:
+def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoads | None:
     """Loads of a pad at the tilt at which it is in balance, for a place of the journal (2,) and a shift of the pad.
 
-    None where there is no film at any tilt.
+    ``tipped``: the pad is unloaded in any case. None where there is no film.
     """
     tilts, sense = open_tilts(pad, journal, shift), math.copysign(1.0, pad.speed)
     if tilts is None:
         return None
     lower, upper, widening = tilts
     places, best = PLACES, (-math.inf, PLACES[0])
-    for _ in range(2):
+    for _ in range(0 if tipped else 2):
         above = upper
         for place in places:
             tilt = lower + place * (upper - lower)
@@ -158,14 +163,14 @@ class PadSearch:
     def __init__(self, bearing: TiltingPads, speed: float, load: np.ndarray, size: float) -> None:
         self.bearing, self.load, self.size, self.count = bearing, load, size, 0
         self.pads = [Pad(bearing, k, speed) for k in range(bearing.pads)]
-        self.moves = bearing.pivot_stiffness is not None
+        self.moves, self.tipped = bearing.pivot_stiffness is not None, np.zeros(bearing.pads, dtype=bool)
 
     def at(self, unknowns: np.ndarray) -> Balanced | None:
         """Balance of all pads at a place; None if a film is closed."""
         n, loads, self.count = unknowns.size, [], self.count + 1
         unbalance, slope = np.append(self.load, np.zeros(n - 2)), np.zeros((n, n))
         for k, pad in enumerate(self.pads):
-            here = settled(pad, unknowns[:2], float(unknowns[2 + k]) if self.moves else 0.0)
+            here = settled(pad, unknowns[:2], float(unknowns[2 + k]) if self.moves else 0.0, bool(self.tipped[k]))
             if here is None:
                 return None
             K, own, places = here.stiffness, [0, 1, 3][: 2 + self.moves], [0, 1, 2 + k][: 2 + self.moves]
@@ -179,19 +184,24 @@ class PadSearch:
         """Place in which the films carry the load; `FilmError` without one."""
         along = self.load / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
         unmoved = np.zeros(self.bearing.pads if self.moves else 0)
-        ratios = STARTS if np.any(self.load) else STARTS[:1]
-        starts = [start for r in ratios if (start := self.at(np.append(r * along, unmoved))) is not None]
-        if not starts:
-            raise FilmError(f"{WHERE}: no film of the tilting pads could be evaluated; check clearance and grid.")
-        for start in sorted(starts, key=lambda place: place.left)[:MOST_STARTS]:
-            here = self._descend(start)
-            if here.is_balanced(self.size):
-                return here
+        ratios, found = STARTS if np.any(self.load) else STARTS[:1], []
+        for _ in range(self.bearing.pads - 1):
+            starts = [start for r in ratios if (start := self.at(np.append(r * along, unmoved))) is not None]
+            for start in sorted(starts, key=lambda place: place.left)[:MOST_STARTS]:
+                found.append(here := self._descend(start))
+                if here.is_balanced(self.size):
+                    return here
+            if not found:
+                raise FilmError(f"{WHERE}: no film of the tilting pads could be evaluated; check clearance and grid.")
+            here = min(found, key=lambda place: place.left)
+            carried = [math.inf if self.tipped[k] else abs(own.forces[3]) for k, own in enumerate(here.loads)]
+            self.tipped[np.argmin(carried)] = True
         raise FilmError(
             f"{WHERE}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
-            f"{here.left / self.size:.2g} of the load, with {sum(own.loaded for own in here.loads)} pads loaded. Pads "
-            "that hardly carry are tipped over by friction: give them more preload, contact=RegularisedWall(onset=...) "
-            "to rest on, or more load; where films are thin, less load or a finer film grid."
+            f"{here.left / self.size:.2g} of the load, with {sum(own.loaded for own in here.loads)} pads loaded. "
+            "Pads that hardly carry are tipped over by friction: give them more preload, "
+            "contact=RegularisedWall(onset=...) to rest on, or more load; where films are thin, less load or a finer "
+            "film grid."
         )
 
     def _descend(self, here: Balanced) -> Balanced:
