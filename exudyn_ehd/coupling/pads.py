@@ -105,6 +105,7 @@ class TiltingPadJoint:
     <TiltingPadJoint 'pads': 5 pads, journal 100 mm x 50 mm, assembled clearance 60 µm>
     >>> joint.pads[0].name
     'pads pad 1'
+    >>> rest = joint.place_in_equilibrium(load=(0.0, -4000.0))
     """
 
     def __init__(
@@ -301,7 +302,6 @@ def CreateTiltingPadBearing(
     >>> items = [mbs.CreateGround(), shaft]
     >>> joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], pads, tilt=ehd.Held())
     >>> mbs.Assemble()
-    >>> rest = joint.place_in_equilibrium(load=(0.0, -4000.0))
     """
     require_system(_WHERE, mbs, assembled=False)
     require_type(f"{_WHERE}.bearing", bearing, TiltingPads)
@@ -312,9 +312,11 @@ def CreateTiltingPadBearing(
         require_type(f"{_WHERE}.{argument}", motion, Free, Held)
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
     weight = require_vector(f"{_WHERE}.gravity", gravity, 3, "m/s^2")
-    for argument in ("pad_mass", "pad_inertia"):
-        if not getattr(bearing, argument) > 0.0:
-            raise InputError(f"{_WHERE}.bearing: pads are bodies and need TiltingPads.{argument} > 0, got 0.")
+    if not min(bearing.pad_mass, bearing.pad_inertia) > 0.0:
+        raise InputError(
+            f"{_WHERE}.bearing: pads are bodies and need TiltingPads.pad_mass and pad_inertia above 0, got "
+            f"{bearing.pad_mass!r} kg and {bearing.pad_inertia!r} kg m2."
+        )
     name = name or f"tilting pads {mbs.systemData.NumberOfObjects()}"
     require_new(_WHERE, mbs, f"{name} pad 1")
     housing, journal = resolve_pair(mbs, itemNumbers)

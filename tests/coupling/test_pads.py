@@ -210,7 +210,7 @@ def test_bad_input_by_name():
     where = "CreateTiltingPadBearing"
     for change, message in (
         ({"bearing": dataclasses.replace(PADS, pad_mass=0.0)}, f"{where}.bearing: pads are bodies and need"),
-        ({"bearing": dataclasses.replace(PADS, pad_inertia=0.0)}, "TiltingPads.pad_inertia > 0"),
+        ({"bearing": dataclasses.replace(PADS, pad_inertia=0.0)}, "pad_inertia above 0, got 0.3 kg and 0.0 kg m2"),
         ({"bearing": PADS.pad(0)}, rf"{where}.bearing must be TiltingPads\(...\)"),
         ({"axial": 1}, f"{where}.axial must be Free"),
         ({"gravity": 9.81}, f"{where}.gravity must be 3 finite numbers"),

@@ -191,15 +191,14 @@ class PadSearch:
                 found.append(here := self._descend(start))
                 if here.is_balanced(self.size):
                     return here
-            if not found:
-                raise FilmError(f"{WHERE}: no film of the tilting pads could be evaluated; check clearance and grid.")
-            here = min(found, key=lambda place: place.left)
-            carried = [math.inf if self.tipped[k] else abs(own.forces[3]) for k, own in enumerate(here.loads)]
-            self.tipped[np.argmin(carried)] = True
+            if found:
+                here = min(found, key=lambda place: place.left)
+                carried = [math.inf if self.tipped[k] else abs(own.forces[3]) for k, own in enumerate(here.loads)]
+                self.tipped[np.argmin(carried)] = True
+        off = min((here.left for here in found), default=math.inf) / self.size
         raise FilmError(
             f"{WHERE}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
-            f"{here.left / self.size:.2g} of the load, with {sum(own.loaded for own in here.loads)} pads loaded. "
-            "Pads that hardly carry are tipped over by friction: give them more preload, "
+            f"{off:.2g} of the load. Pads that hardly carry are tipped over by friction: give them more preload, "
             "contact=RegularisedWall(onset=...) to rest on, or more load; where films are thin, less load or a finer "
             "film grid."
         )
@@ -269,6 +268,10 @@ class TiltingPadResult:
 
     >>> rest = ehd.equilibrium(pads, speed=300.0, load=(0.0, -4000.0))
     >>> rest.loaded.tolist(), round(rest.eccentricity_ratio, 2)
+    ([True, True, True, True, True], 0.44)
+    >>> K, C = rest.reduced()
+    >>> (1e-6 * np.diag(K)).round()  # N/um, x and y
+    array([123., 190.])
     """
 
     position: np.ndarray
