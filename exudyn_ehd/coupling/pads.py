@@ -144,7 +144,8 @@ class TiltingPadJoint:
         forces = of("force")
         outward = -np.einsum("dk,knd->kn", self._directions[0], forces[..., :2])
         position, tilts = self._places(of("motion")[..., :2], outward / (self.bearing.pivot_stiffness or math.inf))
-        forces[..., :2] = _turned(forces[..., :2], tilts)
+        turned = (forces[..., 0] + 1j * forces[..., 1]) * np.exp(1j * tilts)
+        forces[..., 0], forces[..., 1] = turned.real, turned.imag
         return TiltingPadHistory(
             time=time,
             position=position,
@@ -234,12 +235,6 @@ class TiltingPadJoint:
         data.SetODE2Coordinates(q.tolist(), INITIAL)
         data.SetODE2Coordinates_t(q_t.tolist(), INITIAL)
         return result
-
-
-def _turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Vectors (k, n, 2) turned by angles (k, n)."""
-    c, s, (x, y) = np.cos(angles), np.sin(angles), np.moveaxis(vectors, -1, 0)
-    return np.stack((c * x - s * y, s * x + c * y), axis=-1)
 
 
 def CreateTiltingPadBearing(

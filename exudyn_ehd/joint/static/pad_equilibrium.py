@@ -32,6 +32,8 @@ from exudyn_ehd.status import FilmError, InputError, require_number, warn_user
 WHERE = "equilibrium"
 # Share of the force that may be left; rounds of the search, and of one for the tilt of a pad.
 TOLERANCE, ROUNDS, TILT_ROUNDS = 1e-9, 60, 60
+# Places after which a search gives up, and force on a pad, over the load, from which on it carries.
+MOST_PLACES, CARRIES = 300, 0.01
 # Round-off of the films' forces, as a share of them.
 ROUNDING = 1e-11
 # Change of a pad's edge over the clearance that ends the search for its tilt.
@@ -40,8 +42,10 @@ SMALLEST_STEP = 1e-11
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
 # Shifts of such places for a second look around the largest moment.
 BETWEEN = np.linspace(0.08, -0.08, 9)
-# Starts on the load's line, over the assembled clearance; more of them find a nearer one.
-STARTS = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05)
+# Starts on the load's line, over the assembled clearance; more of them find a nearer one. Where these fail, others
+# lie to its sides, as a journal in few pads may be pushed between two of them.
+STARTS = np.array([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, 1.6, 1.9])
+TURNS = np.exp(1j * np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9]))
 # Starts from which a search is made, the nearest ones.
 MOST_STARTS = 2
 # Angle from the pivot, rad, up to which the gap of an unloaded pad is to widen.
@@ -57,9 +61,10 @@ def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, floa
     (a, b) in the pad's frame; b grows by the pivot's distance times the tilt. None where the pivot touches.
     """
     a, b = np.array((pad.radial, pad.across)) @ pad.place(journal, shift, 0.0)
-    bearing = pad.model.bearing
     sense, psi = math.copysign(1.0, pad.speed), pad.columns
-    room = bearing.radial_clearance * (1.0 + (OVERLAP if pad.model.effects.contacts else 0.0)) - a * np.cos(psi)
+    room = pad.model.bearing.radial_clearance * (1.0 + (OVERLAP if pad.model.effects.contacts else 0.0)) - a * np.cos(
+        psi
+    )
     if room.min() <= 0.0:
         return None
     lever = sense * np.sin(psi)
@@ -74,14 +79,15 @@ def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, floa
 def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoads | None:
     """Loads of a pad at the tilt at which it is in balance, for a place of the journal (2,) and a shift of the pad.
 
-    ``tipped``: the pad is unloaded in any case. None where there is no film.
+    ``tipped``: the pad has tipped over, and only contact at its leading edge loads it. None where there is no film.
     """
     tilts, sense = open_tilts(pad, journal, shift), math.copysign(1.0, pad.speed)
     if tilts is None:
         return None
     lower, upper, widening = tilts
+    upper = widening if tipped else upper
     places, best = PLACES, (-math.inf, PLACES[0])
-    for _ in range(0 if tipped else 2):
+    for _ in range(2):
         above = upper
         for place in places:
             tilt = lower + place * (upper - lower)
@@ -140,10 +146,14 @@ class Balanced(NamedTuple):
         """Size of the forces that are left, N."""
         return float(np.linalg.norm(self.unbalance))
 
+    @property
+    def carried(self) -> np.ndarray:
+        """Sizes of the forces on the journal (n,), N."""
+        return np.array([np.hypot(*here.forces[:2]) for here in self.loads])
+
     def is_balanced(self, size: float, tolerance: float = TOLERANCE) -> bool:
         """Return whether a share of a force, N, is left, or the round-off of the pads' forces."""
-        pressed = sum(float(np.hypot(*here.forces[:2])) for here in self.loads)
-        return self.left <= tolerance * size + ROUNDING * pressed
+        return self.left <= tolerance * size + ROUNDING * float(self.carried.sum())
 
 
 class PadSearch:
@@ -182,19 +192,23 @@ class PadSearch:
 
     def find(self) -> Balanced:
         """Place in which the films carry the load; `FilmError` without one."""
-        along = self.load / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
-        unmoved = np.zeros(self.bearing.pads if self.moves else 0)
-        ratios, found = STARTS if np.any(self.load) else STARTS[:1], []
-        for _ in range(self.bearing.pads - 1):
-            starts = [start for r in ratios if (start := self.at(np.append(r * along, unmoved))) is not None]
-            for start in sorted(starts, key=lambda place: place.left)[:MOST_STARTS]:
+        along = complex(*self.load) / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
+        unmoved, found = np.zeros(self.bearing.pads if self.moves else 0), []
+        for k in range(self.bearing.pads + 1 if np.any(along) else 1):
+            if self.count > MOST_PLACES:
+                break
+            places = np.outer(TURNS if k == 1 else TURNS[:1], STARTS if np.any(along) else STARTS[:1]).ravel() * along
+            tried = [self.at(np.array([place.real, place.imag, *unmoved])) for place in places]
+            # beside the load's line, places at which two pads or more carry
+            starts = [p for p in tried if p and (k != 1 or np.sum(p.carried > CARRIES * self.size) > 1)]
+            starts.sort(key=lambda place: place.left)
+            for start in starts[:MOST_STARTS]:
                 found.append(here := self._descend(start))
                 if here.is_balanced(self.size):
                     return here
-            if found:
+            if k and found:
                 here = min(found, key=lambda place: place.left)
-                carried = [math.inf if self.tipped[k] else abs(own.forces[3]) for k, own in enumerate(here.loads)]
-                self.tipped[np.argmin(carried)] = True
+                self.tipped[np.argmin(np.where(self.tipped, math.inf, here.carried))] = True
         off = min((here.left for here in found), default=math.inf) / self.size
         raise FilmError(
             f"{WHERE}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
@@ -208,7 +222,7 @@ class PadSearch:
         first = 10.0 * self.size / self.bearing.radial_clearance
         resistance, longest = 0.0, 0.5 * self.bearing.machined_clearance
         for _ in range(ROUNDS):
-            if here.is_balanced(self.size, 1e-2 * TOLERANCE) or resistance > 1e12 * first:
+            if here.is_balanced(self.size, 1e-2 * TOLERANCE) or resistance > 1e6 * first or self.count > MOST_PLACES:
                 break
             rows = np.vstack((here.slope, resistance * np.eye(here.unknowns.size)))
             step, *_ = np.linalg.lstsq(rows, np.append(here.unbalance, np.zeros_like(here.unbalance)), rcond=None)
@@ -217,7 +231,7 @@ class PadSearch:
             if there is None or there.left >= here.left:
                 if here.is_balanced(self.size):
                     break
-                resistance = max(4.0 * resistance, 1e-3 * first)
+                resistance = max(8.0 * resistance, 1e-3 * first)
                 continue
             here, resistance = there, resistance / 5.0 if resistance > 1e-6 * first else 0.0
         return here
@@ -231,9 +245,8 @@ class TiltingPadResult:
     ----------
     position : (2,) array
         x, y of the journal axis, m.
-    eccentricity_ratio, attitude_angle : float
-        Distance of the journal axis from the bearing's centre over the assembled clearance; angle from the load to the
-        eccentricity in the sense of rotation, rad; nan without load.
+    eccentricity_ratio : float
+        Distance of the journal axis from the bearing's centre over the assembled clearance.
     tilts : (n,) array
         Angles of the pads about their pivots, rad, positive about z; 0 where they are built.
     pivot_displacements : (n,) array
@@ -276,7 +289,6 @@ class TiltingPadResult:
 
     position: np.ndarray
     eccentricity_ratio: float
-    attitude_angle: float
     tilts: np.ndarray
     pivot_displacements: np.ndarray
     loaded: np.ndarray
@@ -363,11 +375,9 @@ def pad_equilibrium(bearing: TiltingPads, speed: float, load: np.ndarray, size: 
             UserWarning,
         )
     shifts = found.unknowns[2:] if search.moves else np.zeros(n)
-    turn = math.atan2(position[1], position[0]) - math.atan2(load[1], load[0])
     return TiltingPadResult(
         position=position,
         eccentricity_ratio=float(np.hypot(*position)) / bearing.radial_clearance,
-        attitude_angle=math.remainder(math.copysign(1.0, speed) * turn, 2.0 * math.pi) if np.any(load) else math.nan,
         tilts=np.array([own.tilt for own in loads]),
         pivot_displacements=shifts,
         loaded=loaded,

@@ -319,8 +319,7 @@ class Pad:
         stiffness, (fx, fy) = -changes @ by_place, turn @ F
         # the forces turn with the pad
         turned = np.array([-fy, fx])
-        stiffness[:2, 2] -= turned
-        stiffness[3, 2] += self.radial @ turned
+        stiffness[:, 2] -= [*turned, 0.0, -self.radial @ turned]
         stiffness[3, 3] += self.stiffness
         forces = to_forces @ found.wrench
         forces[3] -= self.stiffness * shift

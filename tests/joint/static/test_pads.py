@@ -83,7 +83,6 @@ def test_load_on_and_between_pads(between, stiffness):
     assert on_pad.sum() == (0 if between else 1)
     # the journal moves along the load, as pads hardly couple: shear turns it by less than a hundredth
     assert abs(rest.position[0]) < 0.01 * abs(rest.position[1])
-    assert abs(rest.attitude_angle) < 0.01
     # every pad's film pushes its pivot
     directions = np.array([np.cos(pads.pivots), np.sin(pads.pivots)])
     assert directions @ rest.pad_forces == pytest.approx([0.0, -LOAD], abs=0.005 * LOAD)
