@@ -13,6 +13,9 @@ from exudyn_ehd.coupling.bush.object import FlexibleBush as FlexibleBush
 from exudyn_ehd.coupling.bush.object import FreeOuter as FreeOuter
 from exudyn_ehd.coupling.bush.object import Support as Support
 from exudyn_ehd.coupling.handle import LubricatedJoint as LubricatedJoint
+from exudyn_ehd.coupling.pads import CreateTiltingPadBearing as CreateTiltingPadBearing
+from exudyn_ehd.coupling.pads import TiltingPadHistory as TiltingPadHistory
+from exudyn_ehd.coupling.pads import TiltingPadJoint as TiltingPadJoint
 from exudyn_ehd.coupling.record.history import JointHistory as JointHistory
 from exudyn_ehd.coupling.record.history import Quantity as Quantity
 from exudyn_ehd.coupling.record.on_disk import File as File
@@ -108,6 +111,8 @@ from exudyn_ehd.joint.spherical.steady import SphericalResult as SphericalResult
 from exudyn_ehd.joint.spherical.steady import steady_spherical as steady_spherical
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult as EquilibriumResult
 from exudyn_ehd.joint.static.equilibrium import equilibrium as equilibrium
+from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult as TiltingPadResult
+from exudyn_ehd.joint.static.pads import TiltingPads as TiltingPads
 from exudyn_ehd.joint.static.solve_film import FilmResult as FilmResult
 from exudyn_ehd.joint.static.solve_film import solve_film as solve_film
 from exudyn_ehd.joint.static.steady import SteadyResult as SteadyResult

@@ -99,7 +99,7 @@ KINDS: dict[str, Kind] = {
     "spin": Kind("rad/s", 0.0, 0.0, 1e5, 1e9, (("rev/min", 0.10471975511965977),)),
     "wear rate": Kind("m2/N", 0.0, 0.0, 1e-10, 1e-8, (("mm3/(N m)", 1e-9), ("mm2/N", 1e-6))),
     "mass": Kind("kg", 1e-12, 1e-6, 1e6, 1e9, (("g", 1e-3), ("t", 1e3))),
-    "inertia": Kind("kg m2", 1e-18, 1e-12, 1e5, 1e10, (("kg mm2", 1e-6),)),
+    "moment of inertia": Kind("kg m2", 1e-20, 1e-12, 1e6, 1e12, (("g m2", 1e-3), ("kg mm2", 1e-6))),
     "stiffness": Kind("N/m", 1e-3, 1e4, 1e13, 1e18, (("N/um", 1e6), ("N/mm", 1e3))),
     "damping": Kind("N s/m", 0.0, 0.0, 1e11, 1e18),
     "force": Kind("N", 0.0, 0.0, 1e9, 1e15),
@@ -114,6 +114,7 @@ _AREAS = ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")
 _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
         "JournalBearing.journal_radius",
+        "TiltingPads.journal_radius",
         "SphericalBearing.ball_radius",
         *(f"ThrustFaces.{name}_radius" for name in ("inner", "outer")),
         *(f"TiltingThrustPads.{name}_radius" for name in ("inner", "outer", "pivot")),
@@ -126,7 +127,10 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "OnCylinder.radius",
         "add_bore_modes.radius",
     ),
-    "length": ("JournalBearing.length", "AxialGroove.length", "HollowCylinder.length", "add_bore_modes.length"),
+    "length": (
+        *(f"{part}.length" for part in ("JournalBearing", "TiltingPads", "AxialGroove", "HollowCylinder")),
+        "add_bore_modes.length",
+    ),
     "grid": (
         "bearing_grid.radius",
         "bearing_grid.length",
@@ -141,7 +145,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         *("Orifice.diameter", "Capillary.diameter", "Capillary.length"),
         *(f"{area}.depth" for area in _AREAS),
         "EdgeRelief.relief_length",
-        "pressure_dam.track_length",
+        *("pressure_dam.track_length", "TiltingPads.pad_thickness"),
     ),
     "place along z": (
         *(f"{area}.z" for area in _AREAS[1:]),
@@ -152,17 +156,14 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "place": (
         *(f"Create{item}.position" for item in ("LubricatedJoint", "LubricatedSphericalJoint", "FlexibleBush")),
-        "CreateTiltingPadThrustBearing.position",
+        *("CreateTiltingPadBearing.position", "CreateTiltingPadThrustBearing.position"),
         "add_bore_modes.position",
         "mesh_from_arrays.origin",
         "OnPlane.point",
     ),
     "clearance": (
-        "JournalBearing.radial_clearance",
-        "SphericalBearing.radial_clearance",
-        "ThrustFaces.clearance",
-        "TiltingThrustPads.clearance",
-        "WornArc.clearance",
+        *(f"{bearing}.radial_clearance" for bearing in ("JournalBearing", "SphericalBearing", "TiltingPads")),
+        *(f"{part}.clearance" for part in ("ThrustFaces", "TiltingThrustPads", "WornArc")),
     ),
     "gap": (
         "solve_film.gap",
@@ -187,7 +188,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "layer": ("ElasticLiner.thickness",),
     "angle": (
         *("Arc.start", "Arc.extent", "Dam.extent", "pressure_dam.step_angle"),
-        *("TiltingThrustPads.extent", "TiltingThrustPads.pivot_angle"),
+        *("TiltingThrustPads.extent", "TiltingThrustPads.pivot_angle", "TiltingPads.extent", "TiltingPads.first_pivot"),
         *(f"{bore}.angle" for bore in ("two_lobe", "three_lobe", "offset_halves", "pressure_dam")),
         *(f"{area}.angle" for area in _AREAS if area != "CircumferentialGroove"),
         "OutOfRound.phase",
@@ -229,6 +230,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         *(f"{bore}.pressure" for bore in ("two_lobe", "three_lobe", "offset_halves", "pressure_dam")),
         *(f"{area}.pressure" for area in _AREAS),
         *(f"{restrictor}.supply_pressure" for restrictor in ("Orifice", "Capillary")),
+        *(f"TiltingPads.{where}_pressures" for where in ("edge", "end")),
         "solve_film.boundary",
     ),
     "cavity pressure": tuple(f"{closure}.cavity_pressure" for closure in ("Gumbel", "SwiftStieber", "ElrodAdams")),
@@ -269,7 +271,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "velocity": ("CreateFlexibleBush.initialVelocity",),
     "acceleration": (
-        *("CreateLubricatedJoint.bushGravity", "CreateTiltingPadThrustBearing.gravity", "Gravity.acceleration"),
+        *(f"Create{item}.gravity" for item in ("TiltingPadBearing", "TiltingPadThrustBearing")),
+        *("CreateLubricatedJoint.bushGravity", "Gravity.acceleration"),
     ),
     "spin": (
         "steady.speed",
@@ -281,12 +284,14 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "recommend.speed",
         "recommend_steps.speed",
         "LubricatedJoint.place_in_equilibrium.speed",
+        "TiltingPadJoint.place_in_equilibrium.speed",
+        "reduced.frequency",
         "CreateFlexibleBush.initialAngularVelocity",
     ),
     "wear rate": ("ArchardWear.wear_rate",),
-    "mass": ("recommend_steps.mass", "TiltingThrustPads.pad_mass"),
-    "inertia": ("TiltingThrustPads.pad_inertia",),
-    "stiffness": ("TiltingThrustPads.pivot_stiffness",),
+    "mass": ("recommend_steps.mass", "TiltingThrustPads.pad_mass", "TiltingPads.pad_mass"),
+    "moment of inertia": ("TiltingThrustPads.pad_inertia", "TiltingPads.pad_inertia"),
+    "stiffness": ("TiltingThrustPads.pivot_stiffness", "TiltingPads.pivot_stiffness"),
     "damping": ("TiltingThrustPads.pivot_damping",),
     "force": (
         "equilibrium.load",
@@ -294,6 +299,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "stribeck.load",
         "recommend_steps.load",
         "LubricatedJoint.place_in_equilibrium.load",
+        "TiltingPadJoint.place_in_equilibrium.load",
         "LubricatedJoint.stop_at.force",
     ),
     "line force": ("LineLoad.force_per_length",),

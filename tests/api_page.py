@@ -42,7 +42,7 @@ GROUPS = (
         "Describe a bearing",
         "`JournalBearing` takes all options below. What is not named is not computed. Which option a bearing needs: "
         "[table in the project's README](../README.md#which-options-do-i-need).",
-        "JournalBearing SphericalBearing Lubricant oil",
+        "JournalBearing SphericalBearing TiltingPads Lubricant oil",
     ),
     Group(
         "Oil: how viscosity and density change",
@@ -86,8 +86,8 @@ GROUPS = (
         "Put it into a model",
         "Which bodies a joint can hold, and how: [joints in an Exudyn model](coupling/README.md). The first arguments "
         "are those of Exudyn's own joints.",
-        "CreateLubricatedJoint CreateLubricatedSphericalJoint ReplaceJoint ReplaceJoints ReplaceReducedBody Free Held "
-        "LubricatedJoint LubricatedSphericalJoint File Every Period",
+        "CreateLubricatedJoint CreateLubricatedSphericalJoint CreateTiltingPadBearing ReplaceJoint ReplaceJoints "
+        "ReplaceReducedBody Free Held LubricatedJoint LubricatedSphericalJoint TiltingPadJoint File Every Period",
     ),
     Group(
         "Run",
@@ -100,15 +100,15 @@ GROUPS = (
         "Tables, files and pictures: [results and plots](../README.md#results-and-plots); which effects mattered: "
         "[the audit](joint/README.md#the-audit). Columns of a history: [below](#columns-of-a-joints-history). "
         "`FilmFields` and `SteadyResult` have the `plot_...` methods of a film too, `JointHistory` those of a history.",
-        "JointHistory SphericalHistory Revolutions Quantity load_history FilmFields Audit Finding",
-        "LubricatedJoint LubricatedSphericalJoint JointHistory Audit",
+        "JointHistory SphericalHistory TiltingPadHistory Revolutions Quantity load_history FilmFields Audit Finding",
+        "LubricatedJoint LubricatedSphericalJoint TiltingPadJoint JointHistory Audit",
     ),
     Group(
         "Static questions: one film, no multibody model",
         "[One bearing](joint/README.md).",
-        "steady SteadyResult ThrustResult equilibrium EquilibriumResult stribeck StribeckResult steady_spherical "
-        "SphericalResult solve_film FilmResult bearing_grid slider_grid Status",
-        "SteadyResult EquilibriumResult StribeckResult SphericalResult",
+        "steady SteadyResult ThrustResult equilibrium EquilibriumResult TiltingPadResult stribeck StribeckResult "
+        "steady_spherical SphericalResult solve_film FilmResult bearing_grid slider_grid Status",
+        "SteadyResult EquilibriumResult TiltingPadResult StribeckResult SphericalResult",
     ),
     Group(
         "Rotors",

@@ -164,6 +164,25 @@ mbs, body = rotor()
         "model",
         shared=False,
     ),
+    "pads": Setup(
+        "tilting pads",
+        """
+rocking = {**plain, "preload": 0.4, "pad_thickness": 0.01, "pad_mass": 0.1, "pad_inertia": 2e-5}
+pads = ehd.TiltingPads(**rocking)
+rest = ehd.equilibrium(pads, speed=300.0, load=(0.0, -1000.0))
+
+
+def padded(**options):
+    spin = {"initialAngularVelocity": [0, 0, 200.0]} | options
+    mbs = exu.SystemContainer().AddSystem()
+    items = [mbs.CreateGround(), mbs.CreateRigidBody(inertia=cube, **spin)]
+    joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], pads)
+    mbs.Assemble()
+    return mbs, joint
+""",
+        "model",
+        shared=False,
+    ),
     "bush": Setup(
         "a bush",
         """
@@ -1348,6 +1367,45 @@ ehd.recommend_steps(coarse, 0.9, speed=300.0, period=0.02, load=force, mass=1.0)
 
 from exudyn_ehd.studies.film_errors import converged
 converged([1.0, 2.0], ratio=2.0, formal_order=2.0, scale=1.0)
+""",
+    ),
+    Group(
+        "Tilting pads",
+        "Raised by `TiltingPads`, `CreateTiltingPadBearing`, and `equilibrium` with pads.",
+        "pads",
+        """
+ehd.TiltingPads(**rocking, extent=1.3)
+
+ehd.TiltingPads(**plain, pad_thickness=0.01, preload=1.0)
+
+ehd.TiltingPads(**plain, pad_thickness=0.01, pivot_offset=1.5)
+
+ehd.TiltingPads(**rocking, pads=2)
+
+ehd.equilibrium(pads, speed=300.0, load=(0.0, -1000.0), tilt=(1e-4, 0.0))
+
+mass = ehd.TiltingPads(**rocking, cavitation=ehd.ElrodAdams())
+ehd.equilibrium(mass, speed=300.0, load=(0.0, -1000.0))
+
+ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, -0.1))
+
+ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, 0.0))
+
+rest.reduced(0.0)
+
+light = ehd.TiltingPads(**plain, pad_thickness=0.01)
+ehd.CreateTiltingPadBearing(mbs, "pads", sides, centre, z, light)
+
+point = mbs.CreateMassPoint(mass=1.0)
+ehd.CreateTiltingPadBearing(mbs, "pads", [point, shaft], centre, z, pads)
+
+items = [shaft, ground]
+joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, centre, z, pads); mbs.Assemble()
+joint.place_in_equilibrium(load=(0.0, -1000.0))
+
+padded(initialAngularVelocity=[0, 0, 0])[1].place_in_equilibrium(load=(0.0, -1000.0))
+
+ehd.SolveEquilibrium(padded()[0], 300.0)
 """,
     ),
     Group(

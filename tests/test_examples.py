@@ -463,6 +463,20 @@ def test_turbulent_bearing(example, tmp_path):
 
 
 @pytest.mark.slow
+def test_tilting_pads(example, tmp_path):
+    module = example("tilting_pads")
+    rows = module.main(quick=True, output=tmp_path)
+    assert (tmp_path / "tilting_pads.png").stat().st_size > 10_000
+    assert rows["threshold of the plain bearing [rpm]"] == pytest.approx(10370, rel=0.03)
+    # half of the oil's mean speed fills the clearance, while the pads' rotor follows its unbalance of 2 um / 60 um
+    assert rows["plain bearing: largest amplitude / clearance"] > 0.5
+    assert rows["plain bearing: frequency / spin at the end"] == pytest.approx(0.5, abs=0.02)
+    assert rows["tilting pads: largest amplitude / clearance"] < 0.04
+    assert rows["tilting pads: frequency / spin at the end"] == pytest.approx(1.0, abs=0.02)
+    assert rows["tilting pads: largest real part of all eigenvalues [1/s]"] < -200.0
+
+
+@pytest.mark.slow
 def test_cold_start(example, tmp_path):
     rows = example("cold_start").main(quick=True, output=tmp_path)
     assert (tmp_path / "cold_start.png").stat().st_size > 10_000

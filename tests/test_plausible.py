@@ -43,6 +43,8 @@ PURE = {
     "UntilPeriodic.tolerance", "Hirs.coefficient", "Hirs.exponent", "Hirs.full", "Hirs.onset", "NgPan.full",
     "NgPan.onset", "StepLand.share", "TaperLand.share", "Arc.preload", "Arc.offset", "two_lobe.preload",
     "two_lobe.offset", "three_lobe.preload", "three_lobe.offset", "offset_halves.preload",
+    "TiltingPads.preload", "TiltingPads.pivot_offset",
+    "CreateTiltingPadBearing.axis", "CreateTiltingPadBearing.rotationMatrixAxes",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
@@ -67,6 +69,7 @@ READING = {
     "CreateTiltingPadThrustBearing.itemNumbers",
     "CreateLubricatedSphericalJoint.itemNumbers", "SolveEquilibrium.rotors", "SolveThreshold.rotors",
     "CreateLubricatedJoint.axisLength", "CreateLubricatedJoint.axisRadius", "CreateLubricatedJoint.bodyNumbers",
+    "CreateTiltingPadBearing.itemNumbers",
     "ReplaceJoint.options", "ReplaceJoints.bearing", "ReplaceJoints.options", "ReplaceJoints.types",
 }  # fmt: skip
 # What the package makes, and hands out to be read.
@@ -76,6 +79,7 @@ RESULTS = {
     "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StepRecommendation",
     "StribeckResult", "StudyTable", "SystemState", "ThrustResult", "RotorResult",
     "ThrustPadsResult", "TiltingPadThrustBearing",
+    "TiltingPadHistory", "TiltingPadJoint", "TiltingPadResult",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
 WITH_METHODS = {"LubricatedJoint"}

@@ -352,10 +352,6 @@ def attach(
     if not any(isinstance(side, MarkerSide) for side in sides):
         yields = functools.partial(_yields, model, sides)
         check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]), yields)
-    # planar bodies can't move axially or tilt, nor points turn: the constraint would be empty, and singular
-    flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in (housing, journal))
-    turns = not all(item.kind in (rigid_nodes.GROUND, *rigid_nodes.POINTS) for item in (housing, journal))
-    kept = {"axial": isinstance(axial, Held) and not flat, "tilt": isinstance(tilt, Held) and turns and not flat}
     element = FilmElement(model, *sides, name)
     more: dict[str, object] = {}
     if hasattr(model, "bore"):
@@ -384,10 +380,27 @@ def attach(
         from exudyn_ehd.coupling.element.attach import add_faces
 
         add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
-    constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None
+    constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
     register_joint(mbs, make)
     return make(mbs)
+
+
+def hold_axis(
+    mbs: exu.MainSystem,
+    name: str,
+    items: tuple[Item, Item],
+    points: tuple[np.ndarray, np.ndarray],
+    rotation: np.ndarray,
+    axial: Free | Held,
+    tilt: Free | Held,
+) -> Index | None:
+    """Add the constraint of `Held` between housing and journal; None where nothing is to be held."""
+    # planar bodies can't move axially or tilt, nor points turn: the constraint would be empty, and singular
+    flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in items)
+    turns = not all(item.kind in (rigid_nodes.GROUND, *rigid_nodes.POINTS) for item in items)
+    kept = {"axial": isinstance(axial, Held) and not flat, "tilt": isinstance(tilt, Held) and turns and not flat}
+    return hold(mbs, name, items[0], items[1], points, rotation, **kept) if any(kept.values()) else None
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:

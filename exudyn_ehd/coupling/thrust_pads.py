@@ -16,17 +16,16 @@ import exudyn.graphics
 import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import (
-    AngularVelocity2EulerParameters_t,
     RigidBodyInertia,
-    RotationMatrix2EulerParameters,
 )
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.api import attach
-from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, require_system
+from exudyn_ehd.coupling.contract import Data, Index, JointModel, require_system
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import (
+    add_body_on,
     in_the_name_of,
     joint_points,
     joint_rotation,
@@ -34,7 +33,7 @@ from exudyn_ehd.coupling.items.joint_frame import (
     rigid_marker,
 )
 from exudyn_ehd.coupling.items.markers import resolve
-from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE, POINTS, SPIN, VELOCITY
+from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
 from exudyn_ehd.coupling.run.solve import require_new
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.joint.solved_film import History
@@ -250,24 +249,9 @@ def _add_body(
     show: bool,
 ) -> Index:
     """Add the body of a pad, which moves with the housing at the start."""
-    side = housing.side(pivot, frame)
-    side.update(mbs, housing.initial_coordinates, housing.initial_velocities, INITIAL)
-    # Exudyn takes angular velocities as those of the reference rotation
-    turning = AngularVelocity2EulerParameters_t(side.frame[:, SPIN], RotationMatrix2EulerParameters(side.frame[:, :3]))
-    body = mbs.CreateRigidBody(
-        name=f"{title} body",
-        referencePosition=pivot.tolist(),
-        referenceRotationMatrix=frame,
-        initialDisplacement=(side.frame[:, PLACE] - pivot).tolist(),
-        initialRotationMatrix=frame.T @ side.frame[:, :3],
-        inertia=RigidBodyInertia(bearing.pad_mass, np.diag([*bearing.pad_inertia, sum(bearing.pad_inertia)])),
-        gravity=weight,
-        graphicsDataList=[_shape(bearing)],
-        show=show,
-        returnDict=True,
-    )
-    mbs.SetNodeParameter(body["nodeNumber"], "initialVelocities", [*side.frame[:, VELOCITY], *turning])
-    return cast(Index, body["bodyNumber"])
+    inertia = RigidBodyInertia(bearing.pad_mass, np.diag([*bearing.pad_inertia, sum(bearing.pad_inertia)]))
+    shape = {"graphicsDataList": [_shape(bearing)], "show": show}
+    return add_body_on(mbs, f"{title} body", housing, pivot, frame, inertia, weight, **shape)
 
 
 def _hold(

@@ -9,10 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any, cast
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from exudyn.rigidBodyUtilities import (
+    AngularVelocity2EulerParameters_t,
+    RigidBodyInertia,
+    RotationMatrix2EulerParameters,
+)
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
@@ -21,7 +27,7 @@ from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
+from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE, POINTS, SPIN, VELOCITY
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.status import InputError, require_vector
 
@@ -218,6 +224,36 @@ def rigid_marker(
         if body is None:
             raise InputError(f"{_WHERE}: {asked} needs the rigid body of node {int(item.node)}, add it before.")
     return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))
+
+
+def add_body_on(
+    mbs: exu.MainSystem,
+    name: str,
+    item: Item,
+    point: np.ndarray,
+    rotation: np.ndarray,
+    inertia: RigidBodyInertia,
+    gravity: ArrayLike,
+    **shown: Any,
+) -> Index:
+    """Add a rigid body at a point (3,) with a frame (3, 3), global, that moves with an item at the start."""
+    side = item.side(point, rotation)
+    side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
+    # Exudyn takes angular velocities as those of the reference rotation
+    turning = AngularVelocity2EulerParameters_t(side.frame[:, SPIN], RotationMatrix2EulerParameters(side.frame[:, :3]))
+    body = mbs.CreateRigidBody(
+        name=name,
+        inertia=inertia,
+        referencePosition=point,
+        referenceRotationMatrix=rotation,
+        initialDisplacement=side.frame[:, PLACE] - point,
+        initialRotationMatrix=rotation.T @ side.frame[:, :3],
+        gravity=gravity,
+        returnDict=True,
+        **shown,
+    )
+    mbs.SetNodeParameter(body["nodeNumber"], "initialVelocities", [*side.frame[:, VELOCITY], *turning])
+    return cast(Index, body["bodyNumber"])
 
 
 @contextmanager

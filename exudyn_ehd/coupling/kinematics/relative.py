@@ -264,11 +264,13 @@ class BoreGap:
     def __init__(self, bearing: JournalBearing) -> None:
         self.clearance, self.half = bearing.radial_clearance, 0.5 * bearing.length
         self.widest, self.depth = self.clearance, np.empty(0)
-        profiles = getattr(bearing, "profiles", ())
-        if profiles:
-            theta = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
+        profiles, arc = getattr(bearing, "profiles", ()), getattr(bearing, "arc", None)
+        if profiles or arc is not None:
+            around, first = (2.0 * math.pi, 0.0) if arc is None else (arc.extent, arc.start)
+            theta = np.linspace(first, first + around, AROUND, endpoint=arc is not None)
             z = np.linspace(-self.half, self.half, ALONG)
-            self.depth = sum((profile.depth(theta, z, bearing.length) for profile in profiles), np.zeros(1))
+            depths = [profile.depth(theta, z, bearing.length) for profile in profiles]
+            self.depth = np.sum([np.zeros((AROUND, ALONG)), *depths], axis=0)
             self.widest += float(self.depth.max())
             ones = np.ones(ALONG)
             c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]

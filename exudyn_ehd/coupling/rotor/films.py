@@ -273,6 +273,11 @@ def film_model(joint: Joint) -> BearingModel:
             f"{where} has a ball, a flexible bush or journal, or a film of your own, whose coordinates or response it "
             "does not know; take a rigid bearing or an ElasticLiner, or single bearings by ehd.equilibrium(...)."
         )
+    if type(model) is not BearingModel:
+        raise InputError(
+            f"{where} has a tilting pad, which has an unstable position of its own besides the stable one; take the "
+            "matrices of ehd.equilibrium(...), or run it in time."
+        )
     if not model.bearing.squeeze:
         raise InputError(f"{where} has squeeze=False and so no damping; take squeeze=True.")
     require_rest(model.bearing, where)

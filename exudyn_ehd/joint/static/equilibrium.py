@@ -29,6 +29,8 @@ from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, response_of, slow_motions, threshold
+from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult, pad_equilibrium
+from exudyn_ehd.joint.static.pads import TiltingPads
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, model_at, require_rest, result_at, result_of
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector, warn_user
@@ -238,6 +240,8 @@ class EquilibriumResult:
 @overload
 def equilibrium(bearing: TiltingThrustPads, *, speed: float, load: float) -> ThrustPadsResult: ...
 @overload
+def equilibrium(bearing: TiltingPads, *, speed: float, load: tuple[float, float]) -> TiltingPadResult: ...
+@overload
 def equilibrium(
     bearing: JournalBearing,
     *,
@@ -248,18 +252,19 @@ def equilibrium(
     axial_load: float | None = None,
 ) -> EquilibriumResult: ...
 def equilibrium(
-    bearing: JournalBearing | TiltingThrustPads,
+    bearing: JournalBearing | TiltingPads | TiltingThrustPads,
     *,
     speed: float,
     load: tuple[float, float] | float,
     tilt: tuple[float, float] = (0.0, 0.0),
     axial_position: float = 0.0,
     axial_load: float | None = None,
-) -> EquilibriumResult | ThrustPadsResult:
+) -> EquilibriumResult | TiltingPadResult | ThrustPadsResult:
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     One bearing, alone, with a fixed tilt: a rotor in several bearings, or a journal that moments tilt, is for
-    `SolveEquilibrium`; friction over the speed for `stribeck`.
+    `SolveEquilibrium`; friction over the speed for `stribeck`. With `TiltingPads` every pad is in balance, too; the
+    journal is parallel to them, and the result is a `TiltingPadResult`.
 
     For which motions stiffness K and damping C hold:
 
@@ -291,7 +296,7 @@ def equilibrium(
 
     Parameters
     ----------
-    bearing : JournalBearing or TiltingThrustPads
+    bearing : JournalBearing, TiltingPads or TiltingThrustPads
         A journal bearing with ``inlet=MaximumGap()`` is a rigid one that is the same in all directions, with an aligned
         journal, ambient ends and a film that does not conserve mass, without ``thrust``.
     speed : float
@@ -312,7 +317,7 @@ def equilibrium(
 
     Returns
     -------
-    EquilibriumResult or ThrustPadsResult
+    EquilibriumResult, TiltingPadResult or ThrustPadsResult
 
     Raises
     ------
@@ -333,7 +338,7 @@ def equilibrium(
     array([[ 175.,   99.],
            [-295.,  181.]])
     """
-    require_type("equilibrium: bearing", bearing, JournalBearing, TiltingThrustPads)
+    require_type("equilibrium: bearing", bearing, JournalBearing, TiltingPads, TiltingThrustPads)
     omega = require_number("equilibrium: speed", speed, "rad/s")
     if omega * bearing.journal_radius == 0.0:
         raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
@@ -347,11 +352,19 @@ def equilibrium(
     place = require_number("equilibrium: axial_position", axial_position, "m")
     size = float(np.hypot(*force))
     if size == 0.0:
-        fed = max((getattr(area.supply, "supply_pressure", 0.0) for area in bearing.supply), default=0.0)
+        pad = bearing.pad(0) if isinstance(bearing, TiltingPads) else bearing
+        fed = max((getattr(area.supply, "supply_pressure", 0.0) for area in pad.supply), default=0.0)
         area = 2.0 * bearing.journal_radius * bearing.length
-        size = NO_LOAD * bearing.reference_force(omega) + NO_LOAD_FED * area * fed
+        size = NO_LOAD * pad.reference_force(omega) + NO_LOAD_FED * area * fed
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
+    if isinstance(bearing, TiltingPads):
+        if np.any(b) or place != 0.0 or axial_load is not None:
+            raise InputError(
+                "equilibrium: tilt, axial_position and axial_load are not for TiltingPads(...), whose pads follow a "
+                "parallel journal only and hold nothing along the axis; leave them out."
+            )
+        return pad_equilibrium(bearing, omega, force, size)
     line, kind = isinstance(bearing.inlet, MaximumGap), LoadSearch
     if line:
         require_turning(bearing, force, b)

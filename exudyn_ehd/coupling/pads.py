@@ -1,0 +1,372 @@
+"""`CreateTiltingPadBearing`: pads as bodies that tilt about their pivots, with a lubricated joint for each of them.
+
+The film of a pad is a joint whose housing is the pad: its frame has the pad's centre of curvature as origin and turns
+with the pad. Geometry and forces: `exudyn_ehd.joint.static.pads`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+from collections.abc import Sequence
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+from exudyn.rigidBodyUtilities import (
+    AngularVelocity2EulerParameters_t,
+    RigidBodyInertia,
+    RotationMatrix2EulerParameters,
+    RotationMatrixZ,
+)
+from numpy.typing import ArrayLike
+
+from exudyn_ehd.coupling.api import Free, Held, attach, hold_axis
+from exudyn_ehd.coupling.contract import INITIAL, Index, Side, require_system
+from exudyn_ehd.coupling.handle import LubricatedJoint
+from exudyn_ehd.coupling.items.bodies import Item, body_item
+from exudyn_ehd.coupling.items.joint_frame import add_body_on, joint_points, joint_rotation, resolve_pair, rigid_marker
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.run.solve import require_new
+from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.joint.static.equilibrium import equilibrium
+from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult
+from exudyn_ehd.joint.static.pads import PadModel, TiltingPads
+from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
+
+_WHERE = "CreateTiltingPadBearing"
+# Rounds of the tilts from the motions in the pads' frames, each of which gains a factor of the clearance over R.
+ROUNDS = 4
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class TiltingPadHistory:
+    """Accepted steps of a tilting-pad bearing: sums and extremes over its pads, SI units, in the bearing's frame.
+
+    Attributes
+    ----------
+    time : (n,) array
+        s.
+    position : (n, 2) array
+        x, y of the journal axis in the bearing's mid-plane, m.
+    force : (n, 3) array
+        Force of all films on the journal, N.
+    tilts : (n, k) array
+        Angles of the pads about their pivots, rad. With flexible pivots they follow from positions in which the shifts
+        are the films' forces over the stiffness; the inertia of the pads is omitted.
+    minimum_gap, peak_pressure : (n,) arrays
+        Of all pads, m and Pa.
+    power_loss, friction_torque : (n,) arrays
+        Of all films, W, and N m on the journal.
+
+    Examples
+    --------
+    After the example of `CreateTiltingPadBearing`:
+
+    >>> joint.history.tilts.shape
+    (1, 5)
+    """
+
+    time: np.ndarray
+    position: np.ndarray
+    force: np.ndarray
+    tilts: np.ndarray
+    minimum_gap: np.ndarray
+    peak_pressure: np.ndarray
+    power_loss: np.ndarray
+    friction_torque: np.ndarray
+
+
+class TiltingPadJoint:
+    """A tilting-pad bearing in a model, from `CreateTiltingPadBearing`: its pads, sums over them, start in balance.
+
+    Attributes
+    ----------
+    name : str
+    mbs : exudyn.MainSystem
+        The system it belongs to.
+    bearing : TiltingPads
+    pads : tuple of LubricatedJoint
+        Film of every pad with its history, sensors and pictures; the frame is that of the pad.
+    bodies : tuple of exudyn.ObjectIndex
+        Rigid bodies of the pads.
+    pivots, springs : tuples of exudyn.ObjectIndex
+        Constraints between housing and pads, and springs of flexible pivots; no springs with rigid pivots.
+    constraintNumber : exudyn.ObjectIndex or None
+        Constraint of a bearing with `Held`; None without.
+
+    Examples
+    --------
+    After the example of `CreateTiltingPadBearing`:
+
+    >>> joint
+    <TiltingPadJoint 'pads': 5 pads, journal 100 mm x 50 mm, assembled clearance 60 µm>
+    >>> joint.pads[0].name
+    'pads pad 1'
+    >>> rest = joint.place_in_equilibrium(load=(0.0, -4000.0))
+    """
+
+    def __init__(
+        self,
+        mbs: exu.MainSystem,
+        name: str,
+        bearing: TiltingPads,
+        pads: Sequence[LubricatedJoint],
+        objects: Sequence[Sequence[Index]],
+        constraint: Index | None,
+        housing: Side,
+    ) -> None:
+        self.mbs, self.name, self.bearing, self.pads = mbs, name, bearing, tuple(pads)
+        self._housing, angles = housing, bearing.pivots
+        self._directions = np.array([[np.cos(angles), np.sin(angles)], [-np.sin(angles), np.cos(angles)]])
+        self.bodies, self.pivots, self.springs = (tuple(numbers) for numbers in objects)
+        self.constraintNumber = constraint
+
+    def __repr__(self) -> str:
+        b = self.bearing
+        return (
+            f"<TiltingPadJoint '{self.name}': {b.pads} pads, journal {1e3 * 2.0 * b.journal_radius:g} mm x "
+            f"{1e3 * b.length:g} mm, assembled clearance {1e6 * b.radial_clearance:g} µm>"
+        )
+
+    @property
+    def history(self) -> TiltingPadHistory:
+        """Sums and extremes over the pads at all accepted steps that every film has."""
+        rows = [pad.history for pad in self.pads]
+        time = functools.reduce(np.intersect1d, [h.time for h in rows])
+
+        def of(name: str) -> np.ndarray:
+            """Values (k, n, ...) of all pads at these times."""
+            return np.array([getattr(h, name)[np.searchsorted(h.time, time)] for h in rows])
+
+        forces = of("force")
+        outward = -np.einsum("dk,knd->kn", self._directions[0], forces[..., :2])
+        position, tilts = self._places(of("motion")[..., :2], outward / (self.bearing.pivot_stiffness or math.inf))
+        turned = (forces[..., 0] + 1j * forces[..., 1]) * np.exp(1j * tilts)
+        forces[..., 0], forces[..., 1] = turned.real, turned.imag
+        return TiltingPadHistory(
+            time=time,
+            position=position,
+            force=forces.sum(axis=0),
+            tilts=tilts.T,
+            minimum_gap=of("minimum_gap").min(axis=0),
+            peak_pressure=of("peak_pressure").max(axis=0),
+            power_loss=of("power_loss").sum(axis=0),
+            friction_torque=of("friction_torque").sum(axis=0),
+        )
+
+    def _places(self, motions: np.ndarray, shifts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Journal's positions (n, 2) in the bearing and tilts (k, n) from its places (k, n, 2) in the pads' frames.
+
+        ``shifts`` (k, n): outward displacements of the pads at their pivots.
+        """
+        b, (radial, across) = self.bearing, self._directions
+        outward = np.einsum("dk,knd->kn", radial, motions) - b.arm
+        along = np.einsum("dk,knd->kn", across, motions)
+        pivots, tilts = b.arm - b.preload * b.machined_clearance + shifts, np.zeros_like(along)
+        for _ in range(ROUNDS):
+            position = np.linalg.lstsq(radial.T, pivots + outward * np.cos(tilts) - along * np.sin(tilts))[0].T
+            tilts = np.arcsin(((position @ across).T - along * np.cos(tilts)) / outward)
+        return position, tilts
+
+    def place_in_equilibrium(
+        self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
+    ) -> TiltingPadResult:
+        """Let the next run start where the films carry a steady load: journal and pads are moved there.
+
+        Call it after Assemble. The journal's node is moved across the axis, and its velocity there set to that of the
+        housing; its spin and its tilt stay. The weight of the pads is left out.
+
+        Parameters
+        ----------
+        load : (2,) [N]
+            Force on the journal along x and y of the bearing's frame: all forces on its body.
+        speed : float or None, default None
+            Spin for which the equilibrium is computed, rad/s; None: that of the initial state.
+
+        Returns
+        -------
+        TiltingPadResult
+
+        Raises
+        ------
+        InputError
+            For a bearing without spin, a journal that is no rigid body, or a system that is not assembled.
+        FilmError
+            If no equilibrium was found.
+        """
+        where, mbs = "TiltingPadJoint.place_in_equilibrium", self.mbs
+        require_system(where, mbs, assembled=True, of=f" of bearing '{self.name}'")
+        journal = self.pads[0].element.sides[1]
+        if not isinstance(journal, NodeSide) or not journal.nodes:
+            raise InputError(f"{where}: the journal of '{self.name}' must be a rigid body or node that moves.")
+        force = require_vector(f"{where}: load", load, 2, "N")
+        # brings the journal's frame to the initial state
+        self.pads[0].element.motion(mbs, INITIAL)
+        data, housing = mbs.systemData, self._housing
+        q, q_t = np.array(data.GetODE2Coordinates(INITIAL)), np.array(data.GetODE2Coordinates_t(INITIAL))
+        own = [place for node in housing.nodes for place in data.GetNodeLTGODE2(int(node))]
+        housing.update(mbs, q[own], q_t[own], INITIAL)
+        motion = relative.motion_of(housing.frame, journal.frame)
+        spin = float(motion[8]) if speed is None else require_number(f"{where}: speed", speed, "rad/s")
+        if spin == 0.0:
+            raise InputError(
+                f"{where}: '{self.name}' does not turn in the initial state, and films without speed carry no steady "
+                "load; give speed=..., or the bodies an initial angular velocity."
+            )
+        result = equilibrium(self.bearing, speed=spin, load=(force[0], force[1]))
+        A, place, velocity, turning = np.split(housing.frame, (3, 4, 5), axis=1)
+        own = data.GetNodeLTGODE2(int(journal.nodes[0]))[: rigid_nodes.translations(journal.kind)]
+        q[own] += (A[:, :2] @ (result.position - motion[:2]))[: len(own)]
+        q_t[own] -= (A[:, :2] @ motion[4:6])[: len(own)]
+        pivots = self.bearing.arm - self.bearing.preload * self.bearing.machined_clearance + result.pivot_displacements
+        for k, pad in enumerate(self.pads):
+            node, lever = pad.element.sides[0], A[:, :2] @ (pivots[k] * self._directions[0, :, k])
+            assert isinstance(node, NodeSide)
+            turn = RotationMatrix2EulerParameters(A @ RotationMatrixZ(result.tilts[k]))
+            turn = np.ravel(turn) * math.copysign(1.0, np.ravel(turn) @ node.reference[3:])
+            rates = AngularVelocity2EulerParameters_t(turning[:, 0], turn)
+            own = data.GetNodeLTGODE2(int(node.nodes[0]))
+            q[own] = np.append(place[:, 0] + lever, turn) - node.reference
+            q_t[own] = np.append(velocity[:, 0] + np.cross(turning[:, 0], lever), rates)
+            pad.element.steps.resume(float(data.GetTime(INITIAL)), None)
+        data.SetODE2Coordinates(q.tolist(), INITIAL)
+        data.SetODE2Coordinates_t(q_t.tolist(), INITIAL)
+        return result
+
+
+def CreateTiltingPadBearing(
+    mbs: exu.MainSystem,
+    name: str = "",
+    itemNumbers: Sequence[Index | None] = (None, None),
+    position: Sequence[float] | np.ndarray = (),
+    axis: Sequence[float] | np.ndarray = (),
+    bearing: TiltingPads | None = None,
+    rotationMatrixAxes: ArrayLike | None = None,
+    axial: Free | Held = Free(),
+    tilt: Free | Held = Free(),
+    gravity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
+    stepControl: StepControl | None = None,
+    useGlobalFrame: bool = True,
+    show: bool = True,
+) -> TiltingPadJoint:
+    """Create a bearing of tilting pads between a housing and a journal: pads as rigid bodies, a film for each of them.
+
+    A constraint to the housing leaves each pad its rotation about the line through its pivot parallel to the axis; with
+    ``pivot_stiffness`` also the radial displacement against a spring. Implicit and static solvers run it.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system, before Assemble.
+    name : str, default ""
+        Name of the bearing; by default "tilting pads" and a number. Its pads are called "... pad 1" and so on.
+    itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame, show
+        As for `CreateLubricatedJoint`; the housing is a rigid body, its node, a marker on it, or ground.
+    bearing : TiltingPads, default None
+        Required: pads, pivots and oil, with mass and inertia.
+    axial : Free or Held, default Free()
+        Free: the journal slides along the axis, on which the pads hold nothing. Held: a constraint between housing and
+        journal stops it.
+    tilt : Free or Held, default Free()
+        Free: the films alone carry tilting moments; the pads follow the journal about their pivots' lines only. Held: a
+        constraint keeps journal and housing parallel.
+    gravity : (3,) [m/s^2], default (0.0, 0.0, 0.0)
+        Acceleration that gives the pads their weight, global.
+    stepControl : StepControl or None, default None
+        As for `CreateLubricatedJoint`, in the films of all pads.
+
+    Returns
+    -------
+    TiltingPadJoint
+
+    Raises
+    ------
+    InputError
+        For pads without mass or inertia, a housing that can't hold them, and what `CreateLubricatedJoint` rejects.
+
+    Examples
+    --------
+    After the example of `TiltingPads`:
+
+    >>> from exudyn.utilities import InertiaCylinder
+    >>> mbs = exu.SystemContainer().AddSystem()
+    >>> shaft = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.5, 0.05, 2), initialAngularVelocity=[0, 0, 300])
+    >>> items = [mbs.CreateGround(), shaft]
+    >>> joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], pads, tilt=ehd.Held())
+    >>> mbs.Assemble()
+    """
+    require_system(_WHERE, mbs, assembled=False)
+    require_type(f"{_WHERE}.bearing", bearing, TiltingPads)
+    assert bearing is not None
+    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):
+        require_bool(f"{_WHERE}.{argument}", value)
+    for argument, motion in (("axial", axial), ("tilt", tilt)):
+        require_type(f"{_WHERE}.{argument}", motion, Free, Held)
+    require_of_joint(f"{_WHERE}.stepControl", stepControl)
+    weight = require_vector(f"{_WHERE}.gravity", gravity, 3, "m/s^2")
+    if not min(bearing.pad_mass, bearing.pad_inertia) > 0.0:
+        raise InputError(
+            f"{_WHERE}.bearing: pads are bodies and need TiltingPads.pad_mass and pad_inertia above 0, got "
+            f"{bearing.pad_mass!r} kg and {bearing.pad_inertia!r} kg m2."
+        )
+    name = name or f"tilting pads {mbs.systemData.NumberOfObjects()}"
+    require_new(_WHERE, mbs, f"{name} pad 1")
+    housing, journal = resolve_pair(mbs, itemNumbers)
+    if housing.kind is None or housing.kind in rigid_nodes.POINTS:
+        raise InputError(f"{_WHERE}.itemNumbers[0] must be a rigid body, a rigid node or marker, or ground.")
+    rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
+    points = joint_points(housing, journal, position, useGlobalFrame)
+    pads, objects = [], []
+    for k, angle in enumerate(bearing.pivots):
+        radial = rotation @ [math.cos(angle), math.sin(angle), 0.0]
+        centre = points[0] - bearing.preload * bearing.machined_clearance * radial
+        own, pivot = f"{name} pad {k + 1}", centre + bearing.arm * radial
+        body, *joints = _add_pad(mbs, own, bearing, (housing, pivot), (rotation, radial), weight)
+        item, places = body_item(mbs, _WHERE, body), (centre, points[1])
+        joint = attach(mbs, PadModel(bearing.pad(k)), item, journal, places, rotation, name=own, show=show)
+        if stepControl is not None:
+            joint.element.steps.control = GapWatch(stepControl, joint.bearing)
+        pads.append(joint)
+        objects.append((body, *joints))
+    constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
+    side, numbers = housing.side(points[0], rotation), [*zip(*objects, strict=True), ()][:3]
+    return TiltingPadJoint(mbs, name, bearing, pads, numbers, constraint, side)
+
+
+def _add_pad(
+    mbs: exu.MainSystem,
+    name: str,
+    bearing: TiltingPads,
+    place: tuple[Item, np.ndarray],
+    axes: tuple[np.ndarray, np.ndarray],
+    gravity: np.ndarray,
+) -> list[Index]:
+    """Add a pad with its centre of mass in the pivot, its constraint to the housing, and the spring of its pivot.
+
+    ``place``: the housing and the pivot; ``axes``: the bearing's frame and the direction from its axis to the pivot.
+    """
+    (housing, pivot), (rotation, radial) = place, axes
+    inertia = RigidBodyInertia(bearing.pad_mass, bearing.pad_inertia * np.eye(3))
+    body = add_body_on(mbs, f"{name} body", housing, pivot, rotation, inertia, gravity, show=False)
+    held = np.column_stack((radial, np.cross(rotation[:, 2], radial), rotation[:, 2]))
+    markers = []
+    for label, item in (("housing", housing), ("pad", body_item(mbs, _WHERE, body))):
+        markers.append(rigid_marker(mbs, f"{name} pivot on {label}", item, pivot, held, "a pad"))
+    flexible = bearing.pivot_stiffness is not None
+    pivot_joint = eii.ObjectJointGeneric(
+        name=f"{name} pivot",
+        markerNumbers=markers,
+        constrainedAxes=[int(not flexible), 1, 1, 1, 1, 0],
+        visualization=eii.VObjectJointGeneric(show=False),
+    )
+    spring = eii.ObjectConnectorLinearSpringDamper(
+        name=f"{name} spring",
+        markerNumbers=markers,
+        stiffness=bearing.pivot_stiffness or 0.0,
+        axisMarker0=[1.0, 0.0, 0.0],
+        visualization=eii.VObjectConnectorLinearSpringDamper(show=False),
+    )
+    return [body, *map(mbs.AddObject, (pivot_joint, spring)[: 1 + flexible])]

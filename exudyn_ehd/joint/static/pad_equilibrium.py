@@ -1,0 +1,398 @@
+"""Balance of a journal in tilting pads under a steady load, with stiffness and damping of journal and pads.
+
+Unknowns are the place x of the journal and, on flexible pivots, the shifts eta of the pads. For each of their values
+every pad is in balance by itself at the largest tilt, in the sense of rotation, at which the moment about its pivot
+falls through zero: a smaller tilt with no moment is unstable. The film of one pad is solved for tilts between those at
+which an edge touches. A pad without such a tilt is unloaded: it would tilt on until its leading edge rubs, which is
+called spragging. It is held at the tilt from which on its gap widens all along the pad, without pressure.
+
+Shear tips a pad over at a small load that is not zero. Where a pad would carry less than that, and its absence lets the
+journal come nearer, no position has it loaded. Then the pad that carries least counts as tipped over, and stays so.
+
+With the tilts eliminated, Newton's method has the exact Jacobian ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not lead
+downhill are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.newton`.
+
+Small motions ``q exp(i nu t)`` of all coordinates q = (x, y, tilts, shifts) obey ``Z q = f``, Z = K + i nu C - nu^2 M.
+Without forces on the pads the journal's are ``Z_jj - Z_jp Z_pp^-1 Z_pj``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads
+from exudyn_ehd.joint.static.steady import SteadyResult, result_at
+from exudyn_ehd.pictures.records import shown
+from exudyn_ehd.status import FilmError, InputError, require_number, warn_user
+
+WHERE = "equilibrium"
+# Share of the force that may be left; rounds of the search, and of one for the tilt of a pad.
+TOLERANCE, ROUNDS, TILT_ROUNDS = 1e-9, 60, 60
+# Places after which a search gives up, and force on a pad, over the load, from which on it carries.
+MOST_PLACES, CARRIES = 300, 0.01
+# Round-off of the films' forces, as a share of them.
+ROUNDING = 1e-11
+# Change of a pad's edge over the clearance that ends the search for its tilt.
+SMALLEST_STEP = 1e-11
+# Places between the tilts at which an edge touches, where the moment is looked at first.
+PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
+# Shifts of such places for a second look around the largest moment.
+BETWEEN = np.linspace(0.08, -0.08, 9)
+# Starts on the load's line, over the assembled clearance; more of them find a nearer one. Where these fail, others
+# lie to its sides, as a journal in few pads may be pushed between two of them.
+STARTS = np.array([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, 1.6, 1.9])
+TURNS = np.exp(1j * np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9]))
+# Starts from which a search is made, the nearest ones.
+MOST_STARTS = 2
+# Angle from the pivot, rad, up to which the gap of an unloaded pad is to widen.
+STEEPEST = 1.4
+# Clearance by which surfaces with a contact may overlap, over the machined one.
+OVERLAP = 0.1
+
+
+def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, float, float] | None:
+    """Tilts between which the film of a pad is open, and that from which on it widens, in the sense of rotation.
+
+    The gap is ``c - a cos psi - b sin psi`` at the angles psi of the columns from the pivot, with the journal's place
+    (a, b) in the pad's frame; b grows by the pivot's distance times the tilt. None where the pivot touches.
+    """
+    a, b = np.array((pad.radial, pad.across)) @ pad.place(journal, shift, 0.0)
+    sense, psi = math.copysign(1.0, pad.speed), pad.columns
+    room = pad.model.bearing.radial_clearance * (1.0 + (OVERLAP if pad.model.effects.contacts else 0.0)) - a * np.cos(
+        psi
+    )
+    if room.min() <= 0.0:
+        return None
+    lever = sense * np.sin(psi)
+    before, behind = lever < 0.0, lever > 0.0
+    lowest, highest = np.max(room[before] / lever[before]), np.min(room[behind] / lever[behind])
+    # the gap's slope along the motion, a sin psi - b cos psi, is positive all over the pad
+    widening = max(float(np.min(sense * a * np.tan(psi[np.abs(psi) < STEEPEST]))), 0.9 * lowest)
+    lower, upper, widening = ((sense * value - b) / (pad.arm - a) for value in (lowest, highest, widening))
+    return lower, upper, widening
+
+
+def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoads | None:
+    """Loads of a pad at the tilt at which it is in balance, for a place of the journal (2,) and a shift of the pad.
+
+    ``tipped``: the pad has tipped over, and only contact at its leading edge loads it. None where there is no film.
+    """
+    tilts, sense = open_tilts(pad, journal, shift), math.copysign(1.0, pad.speed)
+    if tilts is None:
+        return None
+    lower, upper, widening = tilts
+    upper = widening if tipped else upper
+    places, best = PLACES, (-math.inf, PLACES[0])
+    for _ in range(2):
+        above = upper
+        for place in places:
+            tilt = lower + place * (upper - lower)
+            here = pad.at(journal, shift, tilt)
+            if here is not None and sense * here.forces[2] > 0.0:
+                return _between(pad, journal, shift, (tilt, above))
+            if here is not None:
+                best = max(best, (sense * float(here.forces[2]), place))
+            above = tilt
+        # a moment that is positive between two places only
+        places = tuple(best[1] + BETWEEN)
+    resting = pad.at(journal, shift, widening)
+    return None if resting is None else resting._replace(loaded=False)
+
+
+def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, float]) -> PadLoads | None:
+    """Loads where the moment falls through zero between two tilts, by Newton's method and bisection; None without."""
+    (lower, upper), sense = ends, math.copysign(1.0, pad.speed)
+    tilt = 0.5 * (lower + upper)
+    finest = SMALLEST_STEP * pad.model.bearing.radial_clearance / pad.arm
+    for _ in range(TILT_ROUNDS):
+        here = pad.at(journal, shift, tilt)
+        rises = here is not None and sense * here.forces[2] > 0.0
+        lower, upper = (tilt, upper) if rises else (lower, tilt)
+        stiff = 0.0 if here is None else here.stiffness[2, 2]
+        step = here.forces[2] / stiff if here is not None and stiff > 0.0 else math.inf
+        if abs(step) <= finest:
+            return here
+        if abs(upper - lower) <= finest:
+            return here if stiff > 0.0 else None
+        tilt = tilt + step if (tilt + step - lower) * (tilt + step - upper) < 0.0 else 0.5 * (lower + upper)
+    return None
+
+
+class Balanced(NamedTuple):
+    """A place of the journal with all pads in balance by themselves.
+
+    Parameters
+    ----------
+    unknowns : (2 + k,) array
+        Place of the journal and shifts of the pads, m.
+    loads : list of PadLoads
+    unbalance : (2 + k,) array
+        Forces that are left, N.
+    slope : (2 + k, 2 + k) array
+        Minus their derivative, N/m.
+    """
+
+    unknowns: np.ndarray
+    loads: list[PadLoads]
+    unbalance: np.ndarray
+    slope: np.ndarray
+
+    @property
+    def left(self) -> float:
+        """Size of the forces that are left, N."""
+        return float(np.linalg.norm(self.unbalance))
+
+    @property
+    def carried(self) -> np.ndarray:
+        """Sizes of the forces on the journal (n,), N."""
+        return np.array([np.hypot(*here.forces[:2]) for here in self.loads])
+
+    def is_balanced(self, size: float, tolerance: float = TOLERANCE) -> bool:
+        """Return whether a share of a force, N, is left, or the round-off of the pads' forces."""
+        return self.left <= tolerance * size + ROUNDING * float(self.carried.sum())
+
+
+class PadSearch:
+    """Search for the place of a journal in tilting pads under a load (2,), N.
+
+    Parameters
+    ----------
+    bearing : TiltingPads
+    speed : float
+        rad/s.
+    load : (2,) array
+        Force on the journal, N.
+    size : float
+        Force that the unbalance is divided by, N.
+    """
+
+    def __init__(self, bearing: TiltingPads, speed: float, load: np.ndarray, size: float) -> None:
+        self.bearing, self.load, self.size, self.count = bearing, load, size, 0
+        self.pads = [Pad(bearing, k, speed) for k in range(bearing.pads)]
+        self.moves, self.tipped = bearing.pivot_stiffness is not None, np.zeros(bearing.pads, dtype=bool)
+
+    def at(self, unknowns: np.ndarray) -> Balanced | None:
+        """Balance of all pads at a place; None if a film is closed."""
+        n, loads, self.count = unknowns.size, [], self.count + 1
+        unbalance, slope = np.append(self.load, np.zeros(n - 2)), np.zeros((n, n))
+        for k, pad in enumerate(self.pads):
+            here = settled(pad, unknowns[:2], float(unknowns[2 + k]) if self.moves else 0.0, bool(self.tipped[k]))
+            if here is None:
+                return None
+            K, own, places = here.stiffness, [0, 1, 3][: 2 + self.moves], [0, 1, 2 + k][: 2 + self.moves]
+            unbalance[places] += here.forces[own]
+            follows = np.outer(K[own, 2], K[2, own]) / K[2, 2] if here.loaded else 0.0
+            slope[np.ix_(places, places)] += K[np.ix_(own, own)] - follows
+            loads.append(here)
+        return Balanced(unknowns, loads, unbalance, slope)
+
+    def find(self) -> Balanced:
+        """Place in which the films carry the load; `FilmError` without one."""
+        along = complex(*self.load) / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
+        unmoved, found = np.zeros(self.bearing.pads if self.moves else 0), []
+        for k in range(self.bearing.pads + 1 if np.any(along) else 1):
+            if self.count > MOST_PLACES:
+                break
+            places = np.outer(TURNS if k == 1 else TURNS[:1], STARTS if np.any(along) else STARTS[:1]).ravel() * along
+            tried = [self.at(np.array([place.real, place.imag, *unmoved])) for place in places]
+            # beside the load's line, places at which two pads or more carry
+            starts = [p for p in tried if p and (k != 1 or np.sum(p.carried > CARRIES * self.size) > 1)]
+            starts.sort(key=lambda place: place.left)
+            for start in starts[:MOST_STARTS]:
+                found.append(here := self._descend(start))
+                if here.is_balanced(self.size):
+                    return here
+            if k and found:
+                here = min(found, key=lambda place: place.left)
+                self.tipped[np.argmin(np.where(self.tipped, math.inf, here.carried))] = True
+        off = min((here.left for here in found), default=math.inf) / self.size
+        raise FilmError(
+            f"{WHERE}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
+            f"{off:.2g} of the load. Pads that hardly carry are tipped over by friction: give them more preload, "
+            "contact=RegularisedWall(onset=...) to rest on, or more load; where films are thin, less load or a finer "
+            "film grid."
+        )
+
+    def _descend(self, here: Balanced) -> Balanced:
+        """Steps downhill from a place until the load is carried or no step leads further."""
+        first = 10.0 * self.size / self.bearing.radial_clearance
+        resistance, longest = 0.0, 0.5 * self.bearing.machined_clearance
+        for _ in range(ROUNDS):
+            if here.is_balanced(self.size, 1e-2 * TOLERANCE) or resistance > 1e6 * first or self.count > MOST_PLACES:
+                break
+            rows = np.vstack((here.slope, resistance * np.eye(here.unknowns.size)))
+            step, *_ = np.linalg.lstsq(rows, np.append(here.unbalance, np.zeros_like(here.unbalance)), rcond=None)
+            step *= min(1.0, longest / max(float(np.abs(step).max()), 1e-300))
+            there = self.at(here.unknowns + step)
+            if there is None or there.left >= here.left:
+                if here.is_balanced(self.size):
+                    break
+                resistance = max(8.0 * resistance, 1e-3 * first)
+                continue
+            here, resistance = there, resistance / 5.0 if resistance > 1e-6 * first else 0.0
+        return here
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TiltingPadResult:
+    """Result of `equilibrium` for tilting pads: place of the journal, tilts of the pads, stiffness and damping.
+
+    Attributes
+    ----------
+    position : (2,) array
+        x, y of the journal axis, m.
+    eccentricity_ratio : float
+        Distance of the journal axis from the bearing's centre over the assembled clearance.
+    tilts : (n,) array
+        Angles of the pads about their pivots, rad, positive about z; 0 where they are built.
+    pivot_displacements : (n,) array
+        Outward displacements of the pads at their pivots, m; 0 with rigid pivots.
+    loaded : (n,) bool array
+        False for an unloaded pad: no tilt balances the moment about its pivot. Without friction it would float, with it
+        it tilts until its leading edge rubs (spragging). Its tilt here is the one from which on its gap widens along
+        the pad, at which it does not press; it is held there in ``reduced``.
+    pad_forces : (n,) array
+        Radial forces of the films on the pads, N.
+    minimum_gaps, peak_pressures : (n,) arrays
+        Minimum film thickness of every pad, m, and largest film pressure, Pa.
+    minimum_gap, peak_pressure, power_loss : float
+        m, Pa, W of the whole bearing.
+    coordinates : tuple of str
+        Names of the coordinates of the matrices: ``x``, ``y``, ``tilt 1`` ..., ``shift 1`` ...
+    stiffness, damping, mass : (k, k) arrays
+        K, C and M of small motions of all coordinates, SI units: minus the derivatives of the forces on the journal and
+        the generalized forces on the pads to coordinates and rates. Mass of the pads; the journal has none here.
+    residual : float
+        Force that is left over the size of the load.
+    iterations : int
+        Places of the journal that were tried.
+    films : tuple of SteadyResult
+        Film of every pad in the pad's frame, with its pictures.
+    speed : float
+        Spin, rad/s.
+
+    Examples
+    --------
+    After the example of `TiltingPads`:
+
+    >>> rest = ehd.equilibrium(pads, speed=300.0, load=(0.0, -4000.0))
+    >>> rest.loaded.tolist(), round(rest.eccentricity_ratio, 2)
+    ([True, True, True, True, True], 0.44)
+    >>> K, C = rest.reduced()
+    >>> (1e-6 * np.diag(K)).round()  # N/um, x and y
+    array([123., 190.])
+    """
+
+    position: np.ndarray
+    eccentricity_ratio: float
+    tilts: np.ndarray
+    pivot_displacements: np.ndarray
+    loaded: np.ndarray
+    pad_forces: np.ndarray
+    minimum_gaps: np.ndarray
+    peak_pressures: np.ndarray
+    minimum_gap: float
+    peak_pressure: float
+    power_loss: float
+    coordinates: tuple[str, ...]
+    stiffness: np.ndarray = field(repr=False)
+    damping: np.ndarray = field(repr=False)
+    mass: np.ndarray = field(repr=False)
+    residual: float
+    iterations: int
+    films: tuple[SteadyResult, ...] = field(repr=False)
+    speed: float
+
+    def __repr__(self) -> str:
+        idle = ", ".join(str(k + 1) for k in np.flatnonzero(~self.loaded))
+        unloaded = f", unloaded pads {idle}" if idle else ""
+        gap, peak = shown("length", self.minimum_gap), shown("pressure", self.peak_pressure)
+        return (
+            f"<TiltingPadResult: eccentricity ratio {self.eccentricity_ratio:.4f}, minimum film thickness {gap}, peak "
+            f"pressure {peak}, power loss {shown('power', self.power_loss)}{unloaded}>"
+        )
+
+    def reduced(self, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness and damping (2, 2) of the journal, the pads following its motion at a frequency.
+
+        Parameters
+        ----------
+        frequency : float or None, default None
+            Frequency of the motion, rad/s, not 0; None: that of the spin.
+
+        Returns
+        -------
+        stiffness, damping : (2, 2) arrays
+            N/m and N s/m.
+
+        Raises
+        ------
+        InputError
+            For a frequency that is not finite, or 0.
+        """
+        nu = abs(self.speed) if frequency is None else require_number("reduced: frequency", frequency, "rad/s")
+        if nu == 0.0:
+            raise InputError("reduced: frequency must not be 0, got 0; take a small one for slow motions.")
+        count = self.loaded.size
+        follows = 2 + np.flatnonzero(np.append(self.loaded, np.ones(self.stiffness.shape[0] - 2 - count, dtype=bool)))
+        Z = self.stiffness + 1j * nu * self.damping - nu**2 * self.mass
+        answer = np.linalg.solve(Z[np.ix_(follows, follows)], Z[follows, :2])
+        own = Z[:2, :2] - Z[:2, follows] @ answer
+        return own.real, own.imag / nu
+
+
+def pad_equilibrium(bearing: TiltingPads, speed: float, load: np.ndarray, size: float) -> TiltingPadResult:
+    """Equilibrium of a journal in tilting pads under a load (2,), N, checked by `equilibrium`.
+
+    ``size``: force that the residual is divided by, N.
+    """
+    if bearing.cavitation.conserves_mass:
+        raise InputError(
+            f"{WHERE}: TiltingPads.cavitation={type(bearing.cavitation).__name__}(...) makes stiffness and damping "
+            "depend on the frequency, which tilting pads leave out here; take SwiftStieber(), or run them in time."
+        )
+    search = PadSearch(bearing, speed, load, size)
+    found = search.find()
+    n, loads = bearing.pads, found.loads
+    names = ("x", "y", *(f"tilt {k + 1}" for k in range(n)), *(f"shift {k + 1}" for k in range(n * search.moves)))
+    K, C, M = np.zeros((3, len(names), len(names)))
+    for k, own in enumerate(loads):
+        places = [0, 1, 2 + k, 2 + n + k][: 3 + search.moves]
+        part = np.ix_(places, places)
+        K[part] += own.stiffness[: len(places), : len(places)]
+        C[part] += own.damping[: len(places), : len(places)]
+        M[places[2:], places[2:]] = (bearing.pad_inertia, bearing.pad_mass)[: len(places) - 2]
+    films = tuple(result_at(pad.model, own.motion, WHERE) for pad, own in zip(search.pads, loads, strict=True))
+    loaded, position = np.array([own.loaded for own in loads]), found.unknowns[:2]
+    if not loaded.any():
+        warn_user(
+            f"{WHERE}: no pad is loaded: without load and preload the pads lie at no definite tilt, and stiffness and "
+            "damping are about zero; give the pads a preload, or the journal a load.",
+            UserWarning,
+        )
+    shifts = found.unknowns[2:] if search.moves else np.zeros(n)
+    return TiltingPadResult(
+        position=position,
+        eccentricity_ratio=float(np.hypot(*position)) / bearing.radial_clearance,
+        tilts=np.array([own.tilt for own in loads]),
+        pivot_displacements=shifts,
+        loaded=loaded,
+        pad_forces=np.array([own.forces[3] for own in loads]) + shifts * (bearing.pivot_stiffness or 0.0),
+        minimum_gaps=np.array([film.minimum_gap for film in films]),
+        peak_pressures=np.array([film.peak_pressure for film in films]),
+        minimum_gap=min(film.minimum_gap for film in films),
+        peak_pressure=max(film.peak_pressure for film in films),
+        power_loss=sum(film.power_loss for film in films),
+        coordinates=names,
+        stiffness=K,
+        damping=C,
+        mass=M,
+        residual=float(np.abs(found.unbalance).max()) / size,
+        iterations=search.count,
+        films=films,
+        speed=speed,
+    )

@@ -1,0 +1,326 @@
+"""Tilting-pad journal bearings: description, and the film of one pad as a function of journal and pad.
+
+Frame of the bearing: origin O in its centre, z along its axis. The pivot of a pad lies at the angle phi, with the unit
+vectors e_r towards it and e_t = e_z x e_r. With the assembled clearance c_b, the machined one c_p = c_b / (1 - m) and
+the preload m, the pad's centre of curvature lies at ``O - m c_p e_r``, so that the gap at the pivot is c_b under a
+concentric journal. The pivot P lies ``rho = R + c_p + t`` from the centre of curvature, with the pad's thickness t.
+
+A pad tilts by delta about P and moves outward by eta on a flexible pivot. Its film lives in a frame fixed in the pad,
+with the origin in the centre of curvature. With the rotation Q by delta, the journal at x is there at
+
+    p = Q^T (x - P - eta e_r) + rho e_r.
+
+The film presses with F on the journal, with the moment M about the pad's centre of curvature, in the pad's frame, and
+with their opposites on the pad. Virtual work gives the generalized forces
+
+    Q_x = Q F,    Q_delta = -M + rho e_t . F,    Q_eta = -e_r . Q F - k eta.
+
+The film of a ring omits the resultant of its shear, which is c / R of the load. The moment of this force about a pivot
+decides where an almost unloaded pad lies. The shear stress on a pad, taken as even over its arc, has the torque -M and
+the resultant ``-M / R`` times the mean of e_theta over the arc: `PadModel` adds it, on the journal its opposite.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from exudyn_ehd.bearing import Cavitation, JournalBearing
+from exudyn_ehd.film.arcs import SMALLEST_ARC, Arc
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
+from exudyn_ehd.film.surfaces.contact import RegularisedWall
+from exudyn_ehd.joint.model.build import compile_kernels
+from exudyn_ehd.joint.model.effects import collect_effects
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
+from exudyn_ehd.status import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Checked,
+    InputError,
+    Status,
+    require_bool,
+    require_integer,
+    require_number,
+    require_vector,
+)
+
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class TiltingPads(Checked):
+    """Description of a journal bearing of equal pads that tilt, for `CreateTiltingPadBearing` and `equilibrium`.
+
+    Pads tilt about lines through their pivots, parallel to the bearing's axis. Their centres of mass lie in the pivots.
+    Every pad has a film of its own, fed at its edges: a `JournalBearing` with an `Arc`, `pad`.
+
+    Parameters
+    ----------
+    journal_radius, length : float
+        R and L of journal and pads, m.
+    radial_clearance : float
+        Assembled clearance c_b: gap at the pivots under a concentric journal, m. Pads are machined to
+        c_p = c_b / (1 - preload).
+    lubricant : Lubricant
+        Oil.
+    pads : int, default 5
+        Number of pads, from 3 on.
+    extent : float, default 1.0471975511965976
+        Angle of a pad from its leading to its trailing edge, rad; by default 60 degrees.
+    preload : float, default 0.0
+        m = 1 - c_b / c_p, from 0 to below 1.
+    pivot_offset : float, default 0.5
+        Angle from the leading edge to the pivot over ``extent``, between 0 and 1; the leading edge is that of a
+        positive spin.
+    pad_thickness : float
+        Distance t from the pad's surface to its pivot, m.
+    pad_mass, pad_inertia : float, default 0.0
+        Mass, kg, and moment of inertia about the axis of tilting through the pivot, kg m2. 0 for `equilibrium` only.
+    pivot_stiffness : float or None, default None
+        Radial stiffness of a pivot, N/m; None: rigid.
+    load_between_pads : bool, default True
+        Place of the pads for a load along -y: between two pivots, or False: on a pivot.
+    first_pivot : float or None, default None
+        Angle of the first pivot from the joint's x about z, rad, in place of ``load_between_pads``. The others follow
+        about z at equal distances.
+    film : FiniteLength, default FiniteLength()
+        Film model and grid; a pad gets its share of the columns of the whole circle.
+    cavitation, contact, turbulence, end_pressures
+        As for `JournalBearing`.
+    edge_pressures : (float, float), default (0.0, 0.0)
+        Gauge pressures at the leading and the trailing edges, Pa.
+
+    Raises
+    ------
+    InputError
+        For values that can't be meant, and pads that overlap.
+
+    Examples
+    --------
+    >>> pads = ehd.TiltingPads(
+    ...     journal_radius=0.05, length=0.05, radial_clearance=60e-6, lubricant=ehd.Lubricant(viscosity=0.02),
+    ...     preload=0.4, pad_thickness=0.015, pad_mass=0.3, pad_inertia=1e-4,
+    ... )
+    >>> np.degrees(pads.pivots).round()
+    array([-54.,  18.,  90., 162., 234.])
+    >>> round(1e6 * pads.pad(0).radial_clearance)  # um, machined
+    100
+    """
+
+    journal_radius: float
+    length: float
+    radial_clearance: float
+    lubricant: Lubricant
+    pads: int = 5
+    extent: float = math.pi / 3.0
+    preload: float = 0.0
+    pivot_offset: float = 0.5
+    pad_thickness: float
+    pad_mass: float = 0.0
+    pad_inertia: float = 0.0
+    pivot_stiffness: float | None = None
+    load_between_pads: bool = True
+    first_pivot: float | None = None
+    film: FiniteLength = FiniteLength()
+    cavitation: Cavitation = SwiftStieber()
+    contact: RegularisedWall | None = None
+    turbulence: NgPan | Hirs | None = None
+    end_pressures: tuple[float, float] = (0.0, 0.0)
+    edge_pressures: tuple[float, float] = (0.0, 0.0)
+
+    checks: ClassVar = {
+        "journal_radius": partial(POSITIVE, hint="it is half the diameter."),
+        "length": POSITIVE,
+        "radial_clearance": partial(POSITIVE, hint="it is the gap at the pivots under a concentric journal."),
+        "pads": partial(require_integer, at_least=3, hint="a journal needs pads on all sides."),
+        "extent": partial(require_number, at_least=SMALLEST_ARC, below=TURN, hint="it is the angle of one pad."),
+        "preload": partial(require_number, at_least=0.0, below=1.0, hint="it is 1 - c_b / c_p."),
+        "pivot_offset": partial(require_number, above=0.0, below=1.0, hint="0.5 is the middle of the pad."),
+        "pad_thickness": partial(NOT_NEGATIVE, hint="it is the distance from the pad's surface to its pivot."),
+        "pad_mass": NOT_NEGATIVE,
+        "pad_inertia": NOT_NEGATIVE,
+        "pivot_stiffness": partial(POSITIVE, hint="None is a rigid pivot."),
+        "load_between_pads": require_bool,
+        "first_pivot": require_number,
+    }
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.pads * self.extent >= TURN:
+            raise InputError(
+                f"TiltingPads.extent: {self.pads} pads of {self.extent:g} rad overlap; they must be below "
+                f"{TURN / self.pads:g} rad each."
+            )
+        edges = require_vector("TiltingPads.edge_pressures", self.edge_pressures, 2, "Pa")
+        object.__setattr__(self, "edge_pressures", tuple(edges.tolist()))
+        self.pad(0)
+
+    @property
+    def pivots(self) -> np.ndarray:
+        """Angles (n,) of the pivots, rad."""
+        between = math.pi / self.pads if self.load_between_pads else 0.0
+        first = between - 0.5 * math.pi if self.first_pivot is None else self.first_pivot
+        return first + TURN / self.pads * np.arange(self.pads)
+
+    @property
+    def machined_clearance(self) -> float:
+        """Radius of the pad's surface less that of the journal, c_p, m."""
+        return self.radial_clearance / (1.0 - self.preload)
+
+    @property
+    def arm(self) -> float:
+        """Distance rho from a pad's centre of curvature to its pivot, m."""
+        return self.journal_radius + self.machined_clearance + self.pad_thickness
+
+    def pad(self, number: int) -> JournalBearing:
+        """Film of a pad, counted from 0, in a frame whose origin is the pad's centre of curvature."""
+        return JournalBearing(
+            journal_radius=self.journal_radius,
+            length=self.length,
+            radial_clearance=self.machined_clearance,
+            lubricant=self.lubricant,
+            film=self.film,
+            cavitation=self.cavitation,
+            contact=self.contact,
+            turbulence=self.turbulence,
+            end_pressures=self.end_pressures,
+            arc=Arc(
+                start=float(self.pivots[number]) - self.pivot_offset * self.extent,
+                extent=self.extent,
+                leading_pressure=self.edge_pressures[0],
+                trailing_pressure=self.edge_pressures[1],
+            ),
+        )
+
+
+class PadEvaluation(Evaluation):
+    """One evaluation of a `PadModel`."""
+
+    model: PadModel
+
+    def tangent(self, slow_motion: bool = False) -> np.ndarray:
+        """d wrench / d motion (6, 10), with that of the resultant of the shear."""
+        return self.model.with_shear @ super().tangent(slow_motion)
+
+
+class PadModel(BearingModel):
+    """Film between a journal and a pad, with the resultant of its shear; see the module.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+        With an ``arc``.
+
+    Attributes
+    ----------
+    with_shear : (6, 6) array
+        Map from the wrench of the film without the resultant of its shear.
+    """
+
+    def __init__(self, bearing: JournalBearing) -> None:
+        super().__init__(bearing, effects=collect_effects(bearing))
+        assert bearing.arc is not None
+        first, last = bearing.arc.start, bearing.arc.start + bearing.arc.extent
+        mean = np.array([math.cos(last) - math.cos(first), math.sin(last) - math.sin(first)]) / bearing.arc.extent
+        self.with_shear = np.eye(6)
+        self.with_shear[:2, 5] = mean / bearing.journal_radius
+        compile_kernels(self)
+
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> PadEvaluation:
+        """Evaluate the film as `BearingModel.evaluate` does."""
+        found = super().evaluate(motion, history, step, spin)
+        wrench = self.with_shear @ found.wrench
+        return PadEvaluation(found.status, found.motion, wrench, found.iterations, found.minimum_gap, found.film, self)
+
+
+class PadLoads(NamedTuple):
+    """Loads of a pad on the coordinates (x, y, delta, eta).
+
+    Parameters
+    ----------
+    tilt : float
+        delta, rad.
+    motion : (10,) array
+        Motion of the journal in the pad's frame.
+    forces : (4,) array
+        Generalized forces, N and Nm.
+    stiffness, damping : (4, 4) arrays
+        Minus their derivatives to the coordinates and to the rates.
+    loaded : bool
+        Whether the film holds the pad at this tilt.
+    """
+
+    tilt: float
+    motion: np.ndarray
+    forces: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    loaded: bool = True
+
+
+class Pad:
+    """One pad with its film under a spinning journal.
+
+    Parameters
+    ----------
+    bearing : TiltingPads
+    number : int
+        Number of the pad, from 0.
+    speed : float
+        Spin of the journal, rad/s.
+
+    Attributes
+    ----------
+    columns : (n,) array
+        Angles of the film's columns from the pivot, rad.
+    """
+
+    def __init__(self, bearing: TiltingPads, number: int, speed: float) -> None:
+        self.model, self.speed = PadModel(bearing.pad(number)), speed
+        angle, self.arm = float(bearing.pivots[number]), bearing.arm
+        self.radial = np.array([math.cos(angle), math.sin(angle)])
+        self.across = np.array([-self.radial[1], self.radial[0]])
+        self.pivot = (self.arm - bearing.preload * bearing.machined_clearance) * self.radial
+        self.stiffness = bearing.pivot_stiffness or 0.0
+        self.columns = self.model.grid.x - angle
+
+    def place(self, journal: np.ndarray, shift: float, tilt: float) -> np.ndarray:
+        """Place p (2,) of the journal in the pad's frame, m."""
+        c, s = math.cos(tilt), math.sin(tilt)
+        x, y = journal - self.pivot - shift * self.radial
+        return np.array([c * x + s * y, c * y - s * x]) + self.arm * self.radial
+
+    def at(self, journal: np.ndarray, shift: float, tilt: float) -> PadLoads | None:
+        """Loads of the steady film at a place of the journal (2,), a shift and a tilt of the pad; None without one."""
+        p, motion = self.place(journal, shift, tilt), np.zeros(MOTION_SIZE)
+        motion[:2], motion[8] = p, self.speed
+        found = self.model.evaluate(motion)
+        if found.status is not Status.CONVERGED:
+            return None
+        c, s = math.cos(tilt), math.sin(tilt)
+        turn, F, lever = np.array([[c, -s], [s, c]]), found.wrench[:2], p - self.arm * self.radial
+        to_forces = np.zeros((4, 6))
+        to_forces[:2, :2], to_forces[3, :2] = turn, -self.radial @ turn
+        to_forces[2, 5], to_forces[2, :2] = -1.0, self.arm * self.across
+        by_place, by_rate = np.zeros((2, MOTION_SIZE, 4))
+        by_place[:2] = np.column_stack((turn.T, [lever[1], -lever[0]], -turn.T @ self.radial))
+        by_rate[4:6], by_rate[8, 2] = by_place[:2], -1.0
+        changes = to_forces @ found.tangent()
+        stiffness, (fx, fy) = -changes @ by_place, turn @ F
+        # the forces turn with the pad
+        turned = np.array([-fy, fx])
+        stiffness[:, 2] -= [*turned, 0.0, -self.radial @ turned]
+        stiffness[3, 3] += self.stiffness
+        forces = to_forces @ found.wrench
+        forces[3] -= self.stiffness * shift
+        return PadLoads(tilt, motion, forces, stiffness, -changes @ by_rate)

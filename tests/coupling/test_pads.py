@@ -1,0 +1,237 @@
+"""`CreateTiltingPadBearing`: pads as bodies against the linear theory of `equilibrium`, in any place and attitude."""
+
+import dataclasses
+import gc
+import weakref
+
+import exudyn as exu
+import numpy as np
+import pytest
+import scenes
+from exudyn.utilities import RigidBodyInertia
+from scipy.linalg import eig, expm
+
+import exudyn_ehd as ehd
+
+PADS = ehd.TiltingPads(
+    journal_radius=0.05,
+    length=0.05,
+    radial_clearance=60e-6,
+    lubricant=ehd.Lubricant(viscosity=0.02),
+    preload=0.4,
+    pad_thickness=0.015,
+    pad_mass=0.3,
+    pad_inertia=1e-4,
+    film=ehd.FiniteLength(n_theta=64, n_z=6),
+)
+SPEED, LOAD, MASS = 300.0, np.array([1000.0, -4000.0]), 400.0
+INITIAL = exu.ConfigurationType.Initial
+
+
+def scene(pads=PADS, *, attitude=None, place=(0.0, 0.0, 0.0), velocity=None, spin=SPEED, load=LOAD, **options):
+    """A shaft that hardly loses its speed, under a constant load, in pads on ground or on a heavy moving housing."""
+    mbs, A = scenes.new_system(), np.eye(3) if attitude is None else attitude
+    drift = np.zeros(3) if velocity is None else np.asarray(velocity)
+    inertia = RigidBodyInertia(MASS, np.diag([1e6, 1e6, 1e6]))
+    axes = {"referencePosition": list(place), "referenceRotationMatrix": A, "initialVelocity": list(drift)}
+    shaft = mbs.CreateRigidBody(inertia=inertia, initialAngularVelocity=list(A @ [0.0, 0.0, spin]), **axes)
+    if velocity is None:
+        housing = mbs.CreateGround(referencePosition=list(place), referenceRotationMatrix=A)
+    else:
+        housing = mbs.CreateRigidBody(inertia=RigidBodyInertia(1e12, 1e12 * np.eye(3)), **axes)
+    mbs.CreateForce(itemNumber=shaft, loadVector=list(A @ [*load, 0.0]))
+    held = {"axial": ehd.Held(), "tilt": ehd.Held()}
+    joint = ehd.CreateTiltingPadBearing(
+        mbs,
+        name="pads",
+        itemNumbers=[housing, shaft],
+        position=list(place),
+        axis=list(A[:, 2]),
+        bearing=pads,
+        **(held | options),
+    )
+    mbs.Assemble()
+    return mbs, joint
+
+
+def move_journal(mbs, joint, shift):
+    """Displace the journal in the initial state by (3,), global."""
+    node = joint.pads[0].element.sides[1].nodes[0]
+    q = np.array(mbs.systemData.GetODE2Coordinates(INITIAL))
+    q[mbs.systemData.GetNodeLTGODE2(int(node))[:3]] += shift
+    mbs.systemData.SetODE2Coordinates(q.tolist(), INITIAL)
+
+
+def run(mbs, end_time, steps, **options):
+    settings = ehd.ConfigureSolver(exu.SimulationSettings(), **options)
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = steps, end_time
+    ehd.SolveDynamic(mbs, settings)
+
+
+def system(rest):
+    """State matrix of the coordinates of a result, and their rates, with the shaft's mass."""
+    M = rest.mass.copy()
+    M[0, 0] = M[1, 1] = MASS
+    k = len(M)
+    lower = -np.linalg.solve(M, np.hstack((rest.stiffness, rest.damping)))
+    return np.vstack((np.hstack((np.zeros((k, k)), np.eye(k))), lower))
+
+
+@pytest.mark.parametrize("change", [{}, {"pivot_stiffness": 3e8, "pivot_offset": 0.55, "first_pivot": 0.3}])
+def test_free_vibration_is_that_of_the_whole_matrices(change):
+    """The free vibration of shaft and pads follows K, C and M to a hundredth, and so do frequency and damping."""
+    mbs, joint = scene(dataclasses.replace(PADS, **change))
+    rest = joint.place_in_equilibrium(load=LOAD)
+    assert rest.loaded.all()
+    shift = np.array([2e-7, 1e-7])
+    move_journal(mbs, joint, [*shift, 0.0])
+    end_time, steps = 0.015, 450
+    run(mbs, end_time, steps)
+    history, A = joint.history, system(rest)
+    k = len(A) // 2
+    states = [np.concatenate((shift, np.zeros(2 * k - 2)))]
+    step = expm(A * end_time / steps)
+    for _ in range(steps):
+        states.append(step @ states[-1])
+    linear = np.array(states)
+    # shifts of flexible pivots follow from forces, which jump at the start
+    late = slice(20, None)
+    moved, tilted = history.position - rest.position, history.tilts - rest.tilts
+    assert np.abs(moved - linear[:, :2])[late].max() < 0.01 * np.abs(linear[late, :2]).max()
+    assert np.abs(tilted - linear[:, 2:7])[late].max() < 0.01 * np.abs(linear[late, 2:7]).max()
+    if change:
+        return
+    # the part of every slow mode in the run, by left eigenvectors, decays and turns as its eigenvalue says
+    values, left = eig(A, left=True, right=False)
+    q = np.hstack((moved, tilted))
+    states = np.hstack((q, np.gradient(q, history.time, axis=0)))
+    modes = np.flatnonzero((np.abs(values.imag) > 100.0) & (np.abs(values) < 1000.0))
+    assert modes.size == 4
+    for k in modes:
+        part = np.log((states @ left[:, k].conj())[40:241:200])
+        turns = part[1] - part[0] + 2j * np.pi * np.arange(-2, 3)
+        found = turns / (history.time[240] - history.time[40])
+        assert np.abs(found - values[k]).min() < 0.01 * abs(values[k])
+
+
+@pytest.mark.parametrize("stiffness", [None, 1e9])
+def test_a_damped_run_ends_in_the_equilibrium(stiffness):
+    pads = dataclasses.replace(PADS, pivot_stiffness=stiffness)
+    mbs, joint = scene(pads)
+    # a larger jump tips the upper pad over
+    joint.place_in_equilibrium(load=0.85 * LOAD)
+    run(mbs, 0.1, 250)
+    history = joint.history
+    rest = ehd.equilibrium(pads, speed=float(joint.pads[0].history.motion[-1, 8]), load=tuple(LOAD))
+    assert np.hypot(*(history.position[0] - rest.position)) > 2e-6
+    assert history.position[-1] == pytest.approx(rest.position, abs=2e-9)
+    assert history.tilts[-1] == pytest.approx(rest.tilts, abs=1e-7)
+    assert history.minimum_gap[-1] == pytest.approx(rest.minimum_gap, rel=1e-3)
+    assert history.peak_pressure[-1] == pytest.approx(rest.peak_pressure, rel=1e-3)
+    assert history.power_loss[-1] == pytest.approx(rest.power_loss, rel=1e-3)
+    assert history.force[-1, :2] == pytest.approx(-LOAD, rel=1e-4)
+
+
+def test_place_in_equilibrium_starts_at_rest():
+    mbs, joint = scene(dataclasses.replace(PADS, pivot_stiffness=1e9))
+    # twice, as the second call begins where the first one has moved all
+    joint.place_in_equilibrium(load=0.5 * LOAD)
+    rest = joint.place_in_equilibrium(load=LOAD)
+    assert rest.loaded.all()
+    run(mbs, 1e-3, 10)
+    history = joint.history
+    assert history.position == pytest.approx(np.tile(rest.position, (11, 1)), abs=1e-11)
+    assert history.force[0, :2] == pytest.approx(-LOAD, rel=1e-6)
+    assert history.tilts == pytest.approx(np.tile(rest.tilts, (11, 1)), rel=1e-4)
+    # tilts of the record are the rotations that Exudyn's joints measure
+    turned = [mbs.GetObjectOutput(pivot, exu.OutputVariableType.Rotation)[2] for pivot in joint.pivots]
+    assert history.tilts[-1] == pytest.approx(turned, abs=1e-9)
+    assert len(joint.bodies) == len(joint.pivots) == len(joint.springs) == len(joint.pads) == 5
+    assert joint.pads[2].name == "pads pad 3"
+
+
+def test_neither_place_nor_attitude_nor_motion_of_the_model_matter():
+    """A turned model on a housing that moves through space has the histories of the one on ground."""
+    found = []
+    attitude = scenes.rotation(np.array([0.7, -1.1, 0.4]))
+    for options in ({}, {"attitude": attitude, "place": (0.3, -2.0, 1.0), "velocity": attitude @ [3.0, 1.0, 2.0]}):
+        pads = dataclasses.replace(PADS, first_pivot=0.2)
+        # pads count from the housing's own x
+        mbs, joint = scene(pads, **options)
+        rest = joint.place_in_equilibrium(load=LOAD)
+        move_journal(mbs, joint, options.get("attitude", np.eye(3)) @ [2e-6, -1e-6, 0.0])
+        run(mbs, 2e-3, 80, relativeTolerance=1e-8)
+        found.append((joint.history, rest))
+    (one, first), (other, second) = found
+    assert second.position == pytest.approx(first.position, rel=1e-9)
+    assert np.ptp(one.position, axis=0).max() > 5e-7
+    assert other.position == pytest.approx(one.position, abs=1e-12)
+    assert other.tilts == pytest.approx(one.tilts, abs=1e-9)
+    assert other.force == pytest.approx(one.force, abs=1e-3 * np.abs(one.force).max())
+
+
+def test_an_unloaded_pad_rests_on_its_leading_edge_in_contact():
+    """Without preload the upper pads sprag in a run, too, and the contact holds them where `equilibrium` has them."""
+    pads = dataclasses.replace(PADS, preload=0.0, contact=ehd.RegularisedWall(onset=4e-6), first_pivot=-0.5 * np.pi)
+    mbs, joint = scene(pads, load=(0.0, -6000.0))
+    rest = joint.place_in_equilibrium(load=(0.0, -5000.0))
+    assert rest.minimum_gaps[2] < 4e-6
+    run(mbs, 0.02, 100)
+    last = ehd.equilibrium(pads, speed=SPEED, load=(0.0, -6000.0))
+    assert joint.history.position[-1] == pytest.approx(last.position, abs=1e-8)
+    assert joint.pads[2].history.minimum_gap[-1] == pytest.approx(last.minimum_gaps[2], rel=0.02)
+
+
+def test_weight_of_the_pads_goes_through_the_pivots():
+    """Pads have their centres of mass in their pivots: their weight loads the housing alone."""
+    histories = []
+    for gravity in ((0.0, 0.0, 0.0), (0.0, -50.0, 0.0)):
+        mbs, joint = scene(gravity=gravity)
+        joint.place_in_equilibrium(load=LOAD)
+        run(mbs, 1e-3, 5)
+        histories.append(joint.history)
+    assert histories[1].tilts == pytest.approx(histories[0].tilts, rel=1e-6)
+
+
+def test_a_system_goes_when_nobody_holds_it():
+    mbs, joint = scene()
+    joint.place_in_equilibrium(load=LOAD)
+    run(mbs, 1e-4, 1)
+    known, container = weakref.ref(joint.pads[0].element), mbs.variables.pop("container")
+    del mbs, joint, container
+    gc.collect()
+    assert known() is None
+
+
+def test_bad_input_by_name():
+    mbs = scenes.new_system()
+    ground, shaft = mbs.CreateGround(), scenes.add_body(mbs, "EP")
+    good = {"itemNumbers": [ground, shaft], "position": [0, 0, 0], "axis": [0, 0, 1], "bearing": PADS}
+    where = "CreateTiltingPadBearing"
+    for change, message in (
+        ({"bearing": dataclasses.replace(PADS, pad_mass=0.0)}, f"{where}.bearing: pads are bodies and need"),
+        ({"bearing": dataclasses.replace(PADS, pad_inertia=0.0)}, "pad_inertia above 0, got 0.3 kg and 0.0 kg m2"),
+        ({"bearing": PADS.pad(0)}, rf"{where}.bearing must be TiltingPads\(...\)"),
+        ({"axial": 1}, f"{where}.axial must be Free"),
+        ({"gravity": 9.81}, f"{where}.gravity must be 3 finite numbers"),
+        ({"axis": []}, "axis is missing"),
+        ({"itemNumbers": [ground, ground]}, "both items are ground"),
+        (
+            {"itemNumbers": [mbs.CreateMassPoint(mass=1.0), shaft]},
+            f"{where}.itemNumbers.0. must be a rigid body",
+        ),
+        ({"stepControl": 1}, "stepControl"),
+        ({"useGlobalFrame": "yes"}, f"{where}.useGlobalFrame must be True or False"),
+    ):
+        with pytest.raises(ehd.InputError, match=message):
+            ehd.CreateTiltingPadBearing(mbs, "a", **(good | change))
+    joint = ehd.CreateTiltingPadBearing(mbs, "a", **good)
+    with pytest.raises(ehd.InputError, match="'a pad 1' is taken"):
+        ehd.CreateTiltingPadBearing(mbs, "a", **good)
+    with pytest.raises(ehd.InputError, match="bearing 'a' is not assembled"):
+        joint.place_in_equilibrium(load=(0.0, -1.0))
+    mbs.Assemble()
+    with pytest.raises(ehd.InputError, match="'a' does not turn in the initial state"):
+        joint.place_in_equilibrium(load=(0.0, -1.0))
+    with pytest.raises(ehd.InputError, match="has a tilting pad"):
+        ehd.SolveEquilibrium(mbs, SPEED)
