@@ -322,11 +322,16 @@ class BoreGap:
     def __init__(self, bearing: JournalBearing) -> None:
         self.clearance, self.half = bearing.radial_clearance, 0.5 * bearing.length
         self.widest, self.depth = self.clearance, np.empty(0)
-        profiles = getattr(bearing, "profiles", ())
-        if profiles:
+        profiles, lobed = getattr(bearing, "profiles", ()), getattr(bearing, "is_lobed", False)
+        if profiles or lobed:
             theta = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
             z = np.linspace(-self.half, self.half, ALONG)
-            self.depth = sum((profile.depth(theta, z, bearing.length) for profile in profiles), np.zeros(1))
+            lobes: np.ndarray = np.zeros((1, 1))
+            if lobed:
+                parts = [(arc, arc.start + arc.extent * np.linspace(0.0, 1.0, AROUND)) for arc in bearing.bore_arcs]
+                theta = np.concatenate([at for _, at in parts])
+                lobes = self.clearance * np.concatenate([arc.lobe(at) for arc, at in parts])[:, None]
+            self.depth = sum((profile.depth(theta, z, bearing.length) for profile in profiles), lobes)
             self.widest += float(self.depth.max())
             ones = np.ones(ALONG)
             c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]

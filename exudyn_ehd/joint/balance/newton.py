@@ -308,19 +308,11 @@ def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> n
 
     A wall or a flexible bush limits nothing.
     """
-    lobes, g = model.effects.lobes, model.grid
-    lobed = lobes is not None or len(g.edges) > 1
-    if model.effects.contacts or model.flexible or lobed:
+    if model.effects.contacts or model.flexible or model.bearing.is_lobed:
         longest = FREE_STEP * model.bearing.radial_clearance
         step = step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
-    if lobed and not (model.effects.contacts or model.flexible):
-        # a journal may go farther than the clearance between lobes
-        normals, axis = np.array(g.directions[:2]), motion[:2, None] + motion[2:4, None] * g.z * g.reference_length
-        gap = model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - normals.T @ axis
-        closes = float(((step @ normals)[:, None] / gap).max())
-        return step * min(1.0, ROOM / max(closes, 1e-300))
-    if model.effects.contacts or model.flexible:
-        return step
+        free = model.effects.contacts or model.flexible
+        return step if free else step * room_between_lobes(model, motion, np.append(step, (0.0, 0.0)))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
     scale = 1.0
     for s in (-half, half):
@@ -330,6 +322,16 @@ def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> n
         if a > 0.0:
             scale = min(scale, (-b + math.sqrt(b * b - a * d)) / a)
     return scale * step
+
+
+def room_between_lobes(model: BearingModel, motion: np.ndarray, change: np.ndarray) -> float:
+    """Largest part of a change (4,) of the pose that uses up at most 60 % of any gap; between lobes a journal may be
+    farther off than the clearance."""
+    g, lobes = model.grid, model.effects.lobes
+    normals, z = np.array(g.directions[:2]).T, g.z * g.reference_length
+    away, closes = (normals @ (pose[:2, None] + pose[2:4, None] * z) for pose in (motion, change))
+    gap = model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - away
+    return min(1.0, ROOM / max(float((closes / gap).max()), 1e-300))
 
 
 def limited_shift(faces: ThrustEvaluation, step: float) -> float:

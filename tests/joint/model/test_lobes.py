@@ -374,7 +374,8 @@ ARC = ehd.Arc(start=0.0, extent=2.0)
         (lambda: bearing_of(ARC), "arcs must be a tuple"),
         (lambda: bearing_of((replace(ARC, dam=ehd.Dam(depth=1e-5, length=R)),)), r"arcs\[0\].dam.length"),
         (lambda: ehd.two_lobe(preload=0.5, width_angle=3.2), "two_lobe: width_angle"),
-        (lambda: ehd.pressure_dam(depth=1e-5, length=0.01, step_angle=145.0), "Dam.extent"),
+        (lambda: ehd.pressure_dam(depth=1e-5, length=0.01, step_angle=3.0), "Dam.extent"),
+        (lambda: ehd.pressure_dam(depth=1e-5, length=0.01, step_angle=145.0), "in degrees, give 2.53"),
     ],
 )  # fmt: skip
 def test_bores_that_cannot_be_are_refused(make, message):
