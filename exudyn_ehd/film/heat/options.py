@@ -179,12 +179,12 @@ class FilmEnergy(Checked):
     Finite volumes, first order in theta (upwind), second order in z.
 
     Where oil enters. Through the ends it has the supply temperature. A supply area is a well-mixed volume, and so is
-    the groove between two arcs: all that flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with the flow
-    Q that enters it from the film, Q's mean temperature T, and the net feed N, which alone is fresh (H. Heshmat and O.
-    Pinkus, J. Tribology 108 (1986) 231). To flush or cool a groove, lower ``carry_over``. In films without axial flow, oil that pressure drives into an area
-    leaves the bearing, and oil from an area is fresh. Cavitation models that do not conserve mass lose oil at the
-    rupture line and find it again where the film begins: there it returns fully mixed, with the leakage replaced by
-    supply oil.
+    the groove between two arcs: all that flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with the flow Q
+    that enters it from the film, Q's mean temperature T, and the net feed N, which alone is fresh (H. Heshmat and O.
+    Pinkus, J. Tribology 108 (1986) 231). To flush or cool a groove, lower ``carry_over``. In films without axial flow,
+    oil that pressure drives into an area leaves the bearing, and oil from an area is fresh. Cavitation models that do
+    not conserve mass lose oil at the rupture line and find it again where the film begins: there it returns fully
+    mixed, with the leakage replaced by supply oil.
 
     In time: backward Euler over the accepted steps, first order. The viscosity of a step is that of the temperatures at
     its start. So is its heat, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium`
@@ -227,8 +227,7 @@ class FilmEnergy(Checked):
     bush, journal : Conduction or None, default None
         Wall that takes the film's heat, in place of coefficient and temperature on that side; needs the oil's
         ``conductivity``. A bush of arcs has none. Its temperatures are solved together with the film's; the gap
-        of a step has the wall's growth
-        at the start of the step.
+        of a step has the wall's growth at the start of the step.
     carry_over : float, default 1.0
         Above 0 up to 1: share of its rise over the supply temperature that hot oil keeps when it passes a supply area
         without net feed. 1: hot oil mixes with the net feed alone. Below 1 the area is flushed with
