@@ -344,6 +344,12 @@ class JournalBearing(Checked):
         return self.arcs if self.arc is None else (self.arc,)
 
     @property
+    def is_lobed(self) -> bool:
+        """Return whether the bore is more than one part of one circle: the journal may leave the clearance circle."""
+        arcs = self.bore_arcs
+        return len(arcs) > 1 or any(arc.preload > 0.0 for arc in arcs)
+
+    @property
     def edge_pressures(self) -> tuple[float, ...]:
         """Gauge pressures at the leading and the trailing edge of every arc in turn, Pa."""
         return tuple(p for arc in self.bore_arcs for p in arc.pressures)

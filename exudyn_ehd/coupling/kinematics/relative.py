@@ -264,13 +264,19 @@ class BoreGap:
     def __init__(self, bearing: JournalBearing) -> None:
         self.clearance, self.half = bearing.radial_clearance, 0.5 * bearing.length
         self.widest, self.depth = self.clearance, np.empty(0)
-        profiles, arc = getattr(bearing, "profiles", ()), getattr(bearing, "arc", None)
-        if profiles or arc is not None:
-            around, first = (2.0 * math.pi, 0.0) if arc is None else (arc.extent, arc.start)
-            theta = np.linspace(first, first + around, AROUND, endpoint=arc is not None)
-            z = np.linspace(-self.half, self.half, ALONG)
+        profiles, arcs = getattr(bearing, "profiles", ()), getattr(bearing, "bore_arcs", ())
+        if profiles or arcs:
+            theta, z = (
+                np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False),
+                np.linspace(-self.half, self.half, ALONG),
+            )
+            lobes = np.zeros((AROUND, 1))
+            if arcs:
+                parts = [(arc, arc.start + arc.extent * np.linspace(0.0, 1.0, AROUND)) for arc in arcs]
+                theta = np.concatenate([at for _, at in parts])
+                lobes = self.clearance * np.concatenate([arc.lobe(at) for arc, at in parts])[:, None]
             depths = [profile.depth(theta, z, bearing.length) for profile in profiles]
-            self.depth = np.sum([np.zeros((AROUND, ALONG)), *depths], axis=0)
+            self.depth = np.sum([lobes + np.zeros(ALONG), *depths], axis=0)
             self.widest += float(self.depth.max())
             ones = np.ones(ALONG)
             c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]

@@ -18,7 +18,13 @@ from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton_limits import SHARE
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
-from exudyn_ehd.joint.balance.newton import FREE_STEP, ROOM, part_that_closes, settled_history
+from exudyn_ehd.joint.balance.newton import (
+    FREE_STEP,
+    ROOM,
+    part_that_closes,
+    room_between_lobes,
+    settled_history,
+)
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
@@ -212,6 +218,8 @@ class RotorFilm:
         c, part = self.bearing.radial_clearance, self.room_of_faces(x)
         if self.model.effects.contacts:
             return min(part, FREE_STEP * c / max(float(np.hypot(*change[:2])), 1e-300))
+        if self.bearing.is_lobed:
+            return min(part, room_between_lobes(self.model, self.motion, change[:4]))
         return min(part, part_that_closes(SHARE, self.motion, self.motion + change, c, self.bearing.length))
 
     def room_of_faces(self, x: np.ndarray) -> float:

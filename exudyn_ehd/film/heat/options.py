@@ -95,9 +95,10 @@ class LumpedThermal(Checked):
 
     ``C dT/dt = P - rho c_p Q (T_out - T_supply) - G (T - T_housing)``, with the mechanical and pumping power P that the
     film dissipates, the flow Q that leaves the film and is replaced by supply oil, its temperature T_out, and
-    ``C = rho c_p 2 pi R L c + capacity``, rho at ambient pressure. The film is mixed, T_out = T, or warms up along its
-    way: ``T - T_supply = effective_rise (T_out - T_supply)``. Of a supply area Q counts the net flow: an area is a
-    well-mixed volume, see `FilmEnergy`. Heat of compression is omitted: some 1.3 K per 10 MPa, reversible.
+    ``C = rho c_p 2 pi R L c + capacity``, rho at ambient pressure and 2 pi the angle of all arcs where there are any.
+    The film is mixed, T_out = T, or warms up along its way: ``T - T_supply = effective_rise (T_out - T_supply)``. Of a
+    supply area Q counts the net flow: an area is a well-mixed volume, see `FilmEnergy`. Heat of compression is omitted:
+    some 1.3 K per 10 MPa, reversible.
 
     In time: backward Euler over the accepted steps, first order. The force of a step uses the temperature at its start;
     so does P, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium` use the steady
@@ -230,13 +231,13 @@ class FilmEnergy(Checked):
     ``density_law`` m and q are masses over rho. Heat of compression is omitted: some 1.3 K per 10 MPa, reversible.
     Finite volumes, first order in theta (upwind), second order in z.
 
-    Where oil enters. Through the ends it has the supply temperature. A supply area is a well-mixed volume: all that
-    flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with the flow Q that enters it from the film, Q's mean
-    temperature T, and the net feed N, which alone is fresh (H. Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). To
-    flush or cool a groove, lower ``carry_over``. In films without axial flow, oil that pressure drives into an area
-    leaves the bearing, and oil from an area is fresh. Cavitation models that do not conserve mass lose oil at the
-    rupture line and find it again where the film begins: there it returns fully mixed, with the leakage replaced by
-    supply oil.
+    Where oil enters. Through the ends it has the supply temperature. A supply area is a well-mixed volume, and so is
+    the groove between two arcs: all that flows out of it has ``T_mix = (Q T + N T_supply) / (Q + N)``, with the flow Q
+    that enters it from the film, Q's mean temperature T, and the net feed N, which alone is fresh (H. Heshmat and O.
+    Pinkus, J. Tribology 108 (1986) 231). To flush or cool a groove, lower ``carry_over``. In films without axial flow,
+    oil that pressure drives into an area leaves the bearing, and oil from an area is fresh. Cavitation models that do
+    not conserve mass lose oil at the rupture line and find it again where the film begins: there it returns fully
+    mixed, with the leakage replaced by supply oil.
 
     In time: backward Euler over the accepted steps, first order. The viscosity of a step is that of the temperatures at
     its start. So is its heat, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium`
@@ -278,8 +279,8 @@ class FilmEnergy(Checked):
         surfaces (3 to 6 k/h, in series with U_b and U_j). None: U_b and U_j alone.
     bush, journal : Conduction or None, default None
         Wall that takes the film's heat, in place of coefficient and temperature on that side; needs the oil's
-        ``conductivity``. Its temperatures are solved together with the film's; the gap of a step has the wall's growth
-        at the start of the step.
+        ``conductivity``. A bush of arcs has none. Its temperatures are solved together with the film's; the gap
+        of a step has the wall's growth at the start of the step.
     carry_over : float, default 1.0
         Above 0 up to 1: share of its rise over the supply temperature that hot oil keeps when it passes a supply area
         without net feed. 1: hot oil mixes with the net feed alone. Below 1 the area is flushed with

@@ -301,18 +301,13 @@ def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> n
 
     Where surfaces may touch or deflect, gaps of rigid surfaces limit nothing.
     """
-    c, lobes, g = model.bearing.radial_clearance, model.effects.lobes, model.grid
-    touches, lobed = model.effects.contacts or model.flexible, lobes is not None or len(g.edges) > 1
+    c, touches, lobed = model.bearing.radial_clearance, model.effects.contacts or model.flexible, model.bearing.is_lobed
     if touches or lobed:
         step = step * min(1.0, FREE_STEP * c / float(np.hypot(*step) + 1e-300))
     if touches:
         return step
     if lobed:
-        # a journal may go farther than the clearance between lobes
-        normals, axis = np.array(g.directions[:2]), motion[:2, None] + motion[2:4, None] * g.z * g.reference_length
-        gap = c * (1.0 + (0.0 if lobes is None else lobes.values)) - normals.T @ axis
-        closes = float(((step @ normals)[:, None] / gap).max())
-        return step * min(1.0, ROOM / max(closes, 1e-300))
+        return step * room_between_lobes(model, motion, np.append(step, (0.0, 0.0)))
     after = np.concatenate((motion[:2] + step, motion[2:4]))
     return step * part_that_closes(ROOM, motion, after, c, model.bearing.length)
 
@@ -333,6 +328,16 @@ def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, cleara
         if 2.0 * along + square > rest >= 0.0:
             part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
     return part
+
+
+def room_between_lobes(model: BearingModel, motion: np.ndarray, change: np.ndarray) -> float:
+    """Largest part of a change (4,) of the pose that uses up at most 60 % of any gap; between lobes a journal may be
+    farther off than the clearance."""
+    g, lobes = model.grid, model.effects.lobes
+    normals, z = np.array(g.directions[:2]).T, g.z * g.reference_length
+    away, closes = (normals @ (pose[:2, None] + pose[2:4, None] * z) for pose in (motion, change))
+    gap = model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - away
+    return min(1.0, ROOM / max(float((closes / gap).max()), 1e-300))
 
 
 def limited_shift(faces: ThrustEvaluation, step: float) -> float:

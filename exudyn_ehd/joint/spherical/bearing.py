@@ -206,8 +206,8 @@ class SphericalBearing(Checked):
     contact: RegularisedWall | None = None
 
     # what a joint's watches and audits ask of every bearing
-    bush = yielding = journal = thermal = asperity = roughness = wear = film = turbulence = inlet = arc = None
-    profiles = supply = ()
+    bush = yielding = journal = thermal = asperity = roughness = wear = film = turbulence = inlet = None
+    profiles = supply = bore_arcs = ()
     end_pressures, squeeze = (0.0, 0.0), True
     levers = (1.0, 1.0, 1.0, 0.0)
 

@@ -287,34 +287,58 @@ def test_wear_stays_on_the_arcs():
     assert upper.max() == 0.0 < lower.max()
 
 
-@pytest.mark.parametrize("arcs", [ehd.two_lobe(preload=0.5), DAM], ids=["lobes", "dam"])
-def test_a_rotor_in_exudyn_comes_to_rest(arcs):
-    """Its position is that of `equilibrium`, within 0.5 % of the clearance; the renderer leaves the grooves out."""
-    bearing = bearing_of(arcs)
+def rotor_in(bearing, gravity):
+    """System with a rotor in one bearing, not assembled; its container, joint and the load, N."""
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     ground = mbs.CreateGround()
     inertia = InertiaCylinder(7800.0, 0.3, 0.05, 2)
-    rotor = mbs.CreateRigidBody(inertia=inertia, initialAngularVelocity=[0.0, 0.0, 314.0], gravity=[0.0, -60.0, 0.0])
+    spin = [0.0, 0.0, 314.0]
+    rotor = mbs.CreateRigidBody(inertia=inertia, initialAngularVelocity=spin, gravity=[0.0, -gravity, 0.0])
     joint = ehd.CreateLubricatedJoint(
         mbs, name="lobes", itemNumbers=[ground, rotor], position=[0.0, 0.0, 0.0], axis=[0.0, 0.0, 1.0], bearing=bearing,
-        tilt=ehd.Held(),
+        tilt=ehd.Held(), axial=ehd.Held(),
     )  # fmt: skip
     mbs.Assemble()
+    return container, mbs, joint, (0.0, -gravity * inertia.mass)
+
+
+def run(mbs, end, steps):
     settings = exu.SimulationSettings()
-    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.15, 500
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = end, steps
     settings.timeIntegration.verboseMode = 0
     ehd.ConfigureSolver(settings)
     ehd.SolveDynamic(mbs, settings)
-    rest = ehd.equilibrium(bearing, speed=314.0, load=(0.0, -60.0 * inertia.mass))
+
+
+@pytest.mark.parametrize("arcs", [ehd.two_lobe(preload=0.5), DAM], ids=["lobes", "dam"])
+def test_a_rotor_in_exudyn_comes_to_rest(arcs):
+    """Its position is that of `equilibrium`, within 0.5 % of the clearance; the renderer leaves the grooves out."""
+    bearing = bearing_of(arcs)
+    container, mbs, joint, load = rotor_in(bearing, 60.0)
+    run(mbs, 0.15, 500)
+    rest = ehd.equilibrium(bearing, speed=314.0, load=load)
     assert np.abs(joint.history.eccentricity[-1] - rest.position[:2]).max() < 5e-3 * C
-    scene, n, m = container.renderer.GetGraphicsData(), *joint.film().pressure.shape
+    scene, (n, m) = container.renderer.GetGraphicsData(), joint.film().pressure.shape
     own = scene["triangles"]["items"][:, 2] == int(joint.objectNumber)
     own &= scene["triangles"]["items"][:, 1] == int(exu.ItemType.Object)
     # bore, two ends of the film, three sides of the housing's ring; two columns have none behind them
     assert own.sum() == 2 * (n - 2) * (m - 1 + 2 + 3)
     points = np.asarray(scene["triangles"]["points"])[own].reshape(-1, 3)
     assert np.abs(np.abs(np.arctan2(points[:, 1], points[:, 0])) % math.pi).min() > math.radians(9.0)
+
+
+def test_a_journal_beyond_the_clearance():
+    """It starts where `equilibrium` has it, towards a groove, stays there, and `SolveEquilibrium` finds it there."""
+    bearing = bearing_of(ehd.two_lobe(preload=0.7))
+    _, mbs, joint, load = rotor_in(bearing, 160.0)
+    rest = ehd.equilibrium(bearing, speed=314.0, load=load)
+    assert rest.eccentricity_ratio > 1.1
+    found = ehd.SolveEquilibrium(mbs, 314.0)
+    assert float(np.ravel(found.eccentricity_ratio)[0]) == pytest.approx(rest.eccentricity_ratio, rel=1e-6)
+    joint.place_in_equilibrium(load=load)
+    run(mbs, 0.01, 50)
+    assert np.abs(joint.history.eccentricity - rest.position[:2]).max() < 1e-3 * C
 
 
 def test_pictures_leave_the_grooves_out():
@@ -374,7 +398,8 @@ ARC = ehd.Arc(start=0.0, extent=2.0)
         (lambda: bearing_of(ARC), "arcs must be a tuple"),
         (lambda: bearing_of((replace(ARC, dam=ehd.Dam(depth=1e-5, length=R)),)), r"arcs\[0\].dam.length"),
         (lambda: ehd.two_lobe(preload=0.5, width_angle=3.2), "two_lobe: width_angle"),
-        (lambda: ehd.pressure_dam(depth=1e-5, length=0.01, step_angle=145.0), "Dam.extent"),
+        (lambda: ehd.pressure_dam(depth=1e-5, length=0.01, step_angle=3.0), "Dam.extent"),
+        (lambda: ehd.pressure_dam(depth=1e-5, length=0.01, step_angle=145.0), "in degrees, give 2.53"),
     ],
 )  # fmt: skip
 def test_bores_that_cannot_be_are_refused(make, message):
