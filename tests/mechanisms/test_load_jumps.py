@@ -123,6 +123,7 @@ def told_and_true(scene, reference):
     return float(np.nanmax(history.step_error)), true_error(history, reference)
 
 
+@pytest.mark.slow
 def test_a_jump_is_told_and_kept():
     """An error of 5 %, of which 1 % is told without its jump; chosen steps keep 2 %, 1.5 times at most."""
     scene = Scene(8)
@@ -132,6 +133,7 @@ def test_a_jump_is_told_and_kept():
     assert true_error(scene.run(stepControl=ehd.StepControl(error=0.02)), reference) < 0.03
 
 
+@pytest.mark.slow
 def test_a_pulse_of_a_single_state_is_two_jumps():
     """An error of 4 %, told at 0.4 of its size if the load is taken to go back along the line of its jump.
 
@@ -144,6 +146,7 @@ def test_a_pulse_of_a_single_state_is_two_jumps():
     assert true_error(scene.run(stepControl=ehd.StepControl(error=0.02)), scene.reference()) < 0.03
 
 
+@pytest.mark.slow
 def test_a_film_that_lifts_in_the_step_of_the_jump():
     """An error of 7 % of a film that lifts by a third in the step of the jump and the next one.
 
