@@ -123,7 +123,6 @@ def told_and_true(scene, reference):
     return float(np.nanmax(history.step_error)), true_error(history, reference)
 
 
-@pytest.mark.slow
 def test_a_jump_is_told_and_kept():
     """An error of 5 %, of which 1 % is told without its jump; chosen steps keep 2 %, 1.5 times at most."""
     scene = Scene(8)
