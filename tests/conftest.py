@@ -60,9 +60,11 @@ def pytest_itemcollected(item):
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_cache(tmp_path_factory):
-    """Tests neither read nor fill the user's cache."""
+    """Tests neither read nor fill the user's cache; workers of a parallel run share one: modes of bushes."""
+    parallel = "PYTEST_XDIST_WORKER" in os.environ
+    folder = tmp_path_factory.getbasetemp().parent / "cache" if parallel else tmp_path_factory.mktemp("cache")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("EXUDYN_EHD_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("EXUDYN_EHD_CACHE", str(folder))
         yield
 
 

@@ -107,7 +107,10 @@ BARE_CLAUSE = re.compile(
 def _docstring_lines(tree):
     lines = set()
     for node in ast.walk(tree):
-        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node) is not None:
+        if (
+            isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))
+            and ast.get_docstring(node, clean=False) is not None
+        ):
             lines.update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
     return lines
 

@@ -15,7 +15,7 @@ import exudyn_ehd as ehd
 # An audit tries every effect, a flexible bush takes the kernels of the solid: long to compile. Recommendations solve
 # many films, rows of bores and modes too.
 SLOW = {"Audit", "Finding", "CreateFlexibleBush", "FlexibleBush", "add_bore_modes", "BoreModesReport"}
-SLOW |= {"StepRecommendation", "recommend_steps", "ElasticJournal", "ReplaceReducedBody"}
+SLOW |= {"Recommendation", "recommend", "StepRecommendation", "recommend_steps", "ElasticJournal", "ReplaceReducedBody"}
 LINES = 6
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 

@@ -18,6 +18,7 @@ def example():
     return module
 
 
+@pytest.mark.slow
 def test_quick_run_returns_numbers_and_pictures(example, tmp_path):
     result = example.main(quick=True, results=tmp_path)
     top = [case["top_displacement"] for case in result["cases"]]

@@ -18,6 +18,7 @@ pytestmark = [
 ]
 
 
+@pytest.mark.slow
 def test_slider_crank(example, tmp_path):
     rows = example("slider_crank").main(quick=True, output=tmp_path)
     assert (tmp_path / "mechanism.png").stat().st_size > 10_000

@@ -11,6 +11,28 @@ from tests import message_page
 MOST_WITHOUT_EXAMPLE = 6
 
 
+# Words of examples that take long (meshes, runs, audits, searches for positions) or go on from the state of others.
+LONG = ("Bush(", "Elastic", "SolveDynamic", "audit", "axial_load", "equilibrium(", "fem", "force = np", "housing")
+LONG += ("mesh", "state()")
+
+
+def test_quick_code_of_the_page_raises_its_messages(tmp_path, monkeypatch):
+    """More than half of the examples, each with its message in one line of the page."""
+    monkeypatch.chdir(tmp_path)
+    lines, count = message_page.PAGE.read_text(encoding="utf-8").splitlines(), 0
+    for group in message_page.GROUPS:
+        for code in message_page.examples(group):
+            if any(word in code for word in LONG):
+                continue
+            told, cell = message_page.raised(code, group.setup), message_page.shown_code(code)
+            assert told is not None and told.sites, code
+            expected = f"| **{told.kind}** {message_page.escaped(told.text)} | {cell} |"
+            assert any(message_page.is_same(line, expected) for line in lines if line.endswith(f"{cell} |")), expected
+            count += 1
+    assert count > 252
+
+
+@pytest.mark.slow
 def test_code_of_the_page_raises_its_messages():
     """All in one test: examples take seconds, and parallel workers share no results."""
     # which reads the mesh files of some examples

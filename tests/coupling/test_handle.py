@@ -77,6 +77,7 @@ def test_film_behind_an_impedance_map(make_bearing, monkeypatch, tmp_path):
     np.testing.assert_allclose(film.force[:2], joint.history.force[-1, :2], rtol=0.02)
 
 
+@pytest.mark.slow
 def test_pictures_of_a_joint(finished, tmp_path):
     for draw in ("plot_pressure", "plot_gap", "plot_bearing", "plot_orbit", "plot_load", "plot_traces"):
         getattr(finished, draw)(path=tmp_path / f"{draw}.png")

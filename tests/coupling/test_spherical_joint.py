@@ -354,6 +354,7 @@ def test_errors_of_the_steps(viscosity):
     assert joint.element.evaluations < 2.2 * swung(viscosity, 140).element.evaluations
 
 
+@pytest.mark.slow
 def test_the_audit_of_a_run():
     """The audit of the record names a sufficient number of steps and the worst films."""
     joint = swung(0.006, 80)

@@ -88,6 +88,7 @@ def test_a_journal_where_the_gap_is_closed_is_refused(shape, place):
         system(place, **shape)
 
 
+@pytest.mark.slow
 def test_a_soft_bush_makes_room_for_its_journal():
     mbs, joint = system((1.3, 0.0), bush=SOFT)
     run(mbs, 10)

@@ -125,7 +125,7 @@ STATE = {
 }
 
 
-@settings(max_examples=150, **COMMON)
+@settings(max_examples=80, **COMMON)
 @given(**STATE)
 def test_any_bearing(bearing, eps, speed, tilt, direction):
     check_film(bearing, eps, speed, tilt, direction)

@@ -55,7 +55,7 @@ def eps_999():
     return settles_at(0.999, *grids, 0.05, allowed=math.inf)
 
 
-@hard_case("sinking at zero speed", rejected=0)
+@hard_case("sinking at zero speed", rejected=0, slow=True)
 def drop_from_rest():
     """A journal is let go in a bearing that does not turn: squeeze alone,
     algebraic decay towards the wall, never an equilibrium."""
@@ -78,7 +78,7 @@ def drop_from_rest():
     return run
 
 
-@hard_case("pressed on the wall", rejected=14)
+@hard_case("pressed on the wall", rejected=14, slow=True)
 def pressed_on_the_wall():
     """No rotation, no film to carry: the load ends on the wall alone, at a gap that the wall's law gives."""
     made = bearing(contact=dataclasses.replace(WALL, pressure=2e8), viscosity=1e-3)
@@ -175,7 +175,7 @@ def lying(made, load):
     return -CLEARANCE * brentq(excess, 0.9, 1.0, xtol=1e-12)
 
 
-@hard_case("start-up from contact", rejected=6)
+@hard_case("start-up from contact", rejected=6, slow=True)
 def start_up():
     """Journal at rest on its asperities; the oil film has to lift it while the speed rises."""
     load = 4000.0
@@ -197,7 +197,7 @@ def start_up():
     return run
 
 
-@hard_case("coast-down into contact", rejected=6)
+@hard_case("coast-down into contact", rejected=6, slow=True)
 def coast_down():
     """The film vanishes with the speed, and the asperities take over: mixed friction rises through Stribeck's curve."""
     load = 4000.0

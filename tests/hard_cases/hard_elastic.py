@@ -36,7 +36,7 @@ def settle(made, *, load=LOAD, end=0.05, step=2e-4, **options):
     return run, eq
 
 
-@hard_case("very stiff bush, E = 2e12 Pa", newton=5.0)
+@hard_case("very stiff bush, E = 2e12 Pa", newton=5.0, slow=True)
 def very_stiff():
     """Modes with 1e14 N/m and a journal of 2 kg: the equations' stiffness spans ten decades."""
     run, eq = settle(bearing(bush=ring(2e12)))

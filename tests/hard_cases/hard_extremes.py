@@ -62,7 +62,7 @@ def friction_and_load(viscosity, *, load, speed, step, mass, end):
     return run
 
 
-@hard_case("viscosity 1e-5 Pa s, a gas")
+@hard_case("viscosity 1e-5 Pa s, a gas", slow=True)
 def thin_oil():
     """A two-thousandth of an oil's viscosity: pressures of a few kPa and hardly any damping."""
     return friction_and_load(1e-5, load=1.0, speed=SPEED, step=1e-3, mass=0.02, end=0.5)
@@ -83,7 +83,7 @@ def narrow():
     return settles(made, mass=2.0, load=2e5, speed=100.0, end=0.4, step=5e-4)[0]
 
 
-@hard_case("clearance 1 mm")
+@hard_case("clearance 1 mm", slow=True)
 def wide():
     """A clearance of 4 % of the radius, as in studies of worn joints: the journal flies rather than floats."""
     with warnings.catch_warnings():

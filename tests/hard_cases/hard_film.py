@@ -13,7 +13,7 @@ import exudyn_ehd as ehd
 VENTED = ehd.ElrodAdams(cavity_pressure=-1e5)
 
 
-@hard_case("starved groove")
+@hard_case("starved groove", slow=True)
 def starved():
     """A narrow groove at ambient pressure feeds less than leaks: most of the
     bore is cavity, and the film carries what is left."""
@@ -85,7 +85,7 @@ def step_load_mass_conserving():
     return run
 
 
-@hard_case("mass-conserving orbit, vented cavity")
+@hard_case("mass-conserving orbit, vented cavity", slow=True)
 def step_load_vented():
     """Step load with the cavity at ambient pressure, fed by a groove alone: the ends give no oil back."""
     groove = ehd.AxialGroove(angle=0.5 * math.pi, width_angle=0.3, pressure=1e5)
@@ -138,7 +138,7 @@ def tilted_gumbel():
     return tilted_orbit(ehd.Gumbel())
 
 
-@hard_case("tilted mass-conserving bearing, t_c = 0.3")
+@hard_case("tilted mass-conserving bearing, t_c = 0.3", slow=True)
 def tilted_mass_conserving():
     """The cavity of a tilted bearing is a wedge whose tip wanders along the axis."""
     return tilted_orbit(VENTED)

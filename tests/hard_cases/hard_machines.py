@@ -13,7 +13,7 @@ from hard_scene import CLEARANCE, SPEED, Rotor, bearing, settings, solve
 import exudyn_ehd as ehd
 
 
-@hard_case("housing spins with the journal")
+@hard_case("housing spins with the journal", slow=True)
 def spinning_pair():
     """Housing and journal turn together at 3000 rpm: no wedge in the film, whatever the speeds of the surfaces."""
     made = bearing()
@@ -150,7 +150,7 @@ def three_bearings():
     return run
 
 
-@hard_case("redundant next to an ideal joint")
+@hard_case("redundant next to an ideal joint", slow=True)
 def redundant():
     """A film in the same place as an ideal joint: kinematically redundant, and
     nothing is left for the film to carry."""

@@ -14,7 +14,7 @@ import exudyn_ehd as ehd
 from tests.reference import short_bearing
 
 
-@hard_case("sudden load reversal")
+@hard_case("sudden load reversal", slow=True)
 def load_reversal():
     """2000 N turn around within no time: the journal crosses the bearing, and
     the film ruptures on one side and forms on the other."""
@@ -32,7 +32,7 @@ def load_reversal():
     return run
 
 
-@hard_case("reversed rotation")
+@hard_case("reversed rotation", slow=True)
 def reversed_rotation():
     """An orbit and its mirror image with reversed spin: upstream and downstream, rupture and reformation change
     places."""
@@ -86,7 +86,7 @@ def nothing_moves():
     return run
 
 
-@hard_case("let go at rest, then turned")
+@hard_case("let go at rest, then turned", slow=True)
 def released():
     """The speed jumps from rest within one step: from a film without any pressure to a full one."""
     made = bearing()

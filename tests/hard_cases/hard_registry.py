@@ -29,7 +29,7 @@ class HardCase:
     newton : float
         Largest number of Newton iterations per accepted step.
     slow : bool
-        Longer than a second.
+        Longer than a third of a second, or another case has most of it.
     """
 
     name: str

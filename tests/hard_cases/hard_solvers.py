@@ -76,7 +76,7 @@ def explicit_fails():
     return run
 
 
-@hard_case("full and modified Newton", newton=6.0)
+@hard_case("full and modified Newton", newton=6.0, slow=True)
 def newtons():
     """A kept Jacobian of a film that stiffens a hundredfold on the way: more iterations, the same motion."""
     made = bearing()

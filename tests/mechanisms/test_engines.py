@@ -64,6 +64,7 @@ def test_steps_under_a_pressure_law(planar_rotor, law):
     assert coarse.peak_pressure.max() == pytest.approx(fine.peak_pressure.max(), rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closure", [ehd.SwiftStieber, ehd.ElrodAdams])
 def test_loads_beyond_a_pressure_law(planar_rotor, closure):
     """Ten times the load: rigid surfaces carry no more than some 1 / coefficient, whatever the steps."""

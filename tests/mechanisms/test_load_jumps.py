@@ -132,6 +132,7 @@ def test_a_jump_is_told_and_kept():
     assert true_error(scene.run(stepControl=ehd.StepControl(error=0.02)), reference) < 0.03
 
 
+@pytest.mark.slow
 def test_a_pulse_of_a_single_state_is_two_jumps():
     """An error of 4 %, told at 0.4 of its size if the load is taken to go back along the line of its jump.
 
@@ -144,6 +145,7 @@ def test_a_pulse_of_a_single_state_is_two_jumps():
     assert true_error(scene.run(stepControl=ehd.StepControl(error=0.02)), scene.reference()) < 0.03
 
 
+@pytest.mark.slow
 def test_a_film_that_lifts_in_the_step_of_the_jump():
     """An error of 7 % of a film that lifts by a third in the step of the jump and the next one.
 

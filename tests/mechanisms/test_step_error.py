@@ -107,6 +107,7 @@ def shaft_in_three_films(steps):
     return [joint.history for joint in joints]
 
 
+@pytest.mark.slow
 def test_a_shaft_in_three_films_is_told_its_own_error():
     """0.3 to 3.5 %; with the whole shaft's inertia on each of its films they were told as 70 % and more."""
     for coarse, reference in zip(shaft_in_three_films(120), shaft_in_three_films(960), strict=True):

@@ -41,6 +41,7 @@ def test_random_bearings():
     assert np.median([out.advice.error / max(out.true, 1e-12) for out in found]) <= 5.0
 
 
+@pytest.mark.slow
 def test_trials_warn_of_no_grid():
     """A relief that coarse grids do not see: their error is measured, and no warning leaves (it would be an error)."""
     relief = ehd.EdgeRelief(drop=2e-6, relief_length=3e-4)
@@ -101,6 +102,7 @@ def test_critical_mass():
     assert "does not whirl" in stable.reason
 
 
+@pytest.mark.slow
 def test_supply():
     """The flow of a hole, from wherever the journal presses, and where it is known to press."""
     hole = ehd.Hole(angle=1.0, diameter=4e-3, pressure=2e5)
@@ -117,6 +119,7 @@ def test_supply():
     assert true_error(question, around) <= 0.02
 
 
+@pytest.mark.slow
 def test_areas_that_turn_with_the_journal_are_met_at_all_angles():
     """Whatever direction is given; without an equilibrium there is no critical mass."""
     bearing = _bearing(supply=(ehd.Hole(angle=1.0, diameter=8e-3, pressure=2e5, rotating=True),))

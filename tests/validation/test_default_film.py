@@ -15,6 +15,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.static.equilibrium import whirl_threshold
+from tests.sampling import sample
 
 SPEED = 100.0
 FINE = {0.25: (384, 48), 0.35: (384, 40), 0.5: (384, 32), 0.7: (384, 32), 1.0: (384, 32), 2.0: (384, 32)}
@@ -83,7 +84,7 @@ def worst_errors(model, fine, eccentricities=ECCENTRICITIES):
     return worst
 
 
-@pytest.mark.parametrize("ratio", list(FINE))
+@pytest.mark.parametrize("ratio", sample(list(FINE), 2))
 def test_figures_in_any_direction(make_bearing, measured, ratio):
     n_theta, n_z = FINE[ratio]
     fine = _model(make_bearing, ratio, film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z))

@@ -108,6 +108,7 @@ def _land_shear_of_patch(eps, tilt):
     return 0.01 * 100.0 * math.pi * 0.05**3 * integral
 
 
+@pytest.mark.slow
 def test_groove_patch_against_another_finite_volume_code(table, measured):
     for row in table("groove_misaligned_finite_volume"):
         eps = float(row["case"].split()[0].split("=")[1])

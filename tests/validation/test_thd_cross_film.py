@@ -29,6 +29,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 R, C, DENSITY, HEAT, CONDUCTIVITY = 0.05, 75e-6, 860.0, 2000.0, 0.13
 SUPPLY, WALL, MU, BETA = 313.15, 325.0, 0.0277, 0.034
@@ -214,7 +215,7 @@ def test_the_reference_without_thinning_is_the_film_model(measured, eps):
 STATES = [(0.5, 3000.0), (0.7, 3000.0), (0.8, 2000.0), (0.9, 1000.0)]
 
 
-@pytest.mark.parametrize(("eps", "rpm"), STATES)
+@pytest.mark.parametrize(("eps", "rpm"), sample(STATES, 1, 3))
 def test_adiabatic_film(measured, eps, rpm):
     """The bush's side is hotter and thinner than the mean, which lowers load and heat:
     5 % of load and peak pressure, 4 % of the rise; the rise at the bush itself to 7 %."""
@@ -231,7 +232,7 @@ COOLED = {"both": (WALL, WALL), "journal": (None, WALL), "bush": (WALL, None)}
 
 
 @pytest.mark.parametrize("cooled", COOLED)
-@pytest.mark.parametrize(("eps", "rpm"), STATES)
+@pytest.mark.parametrize(("eps", "rpm"), sample(STATES, 2))
 def test_cooled_film(measured, cooled, eps, rpm):
     """Walls held at 325 K, with the oil's conductivity: the profile that the model assumes is fully developed,
     while that of one cooled wall takes as long as the oil's whole way. 4 % of load and peak pressure with both

@@ -204,6 +204,7 @@ def test_equilibrium_tangent_and_audit():
     assert oily["turbulence"].unneeded
 
 
+@pytest.mark.slow
 def test_advice_on_what_does_not_go_together_can_be_followed():
     """A law of the oil does not pass for turbulence, nor is offered where the film is turbulent."""
     law = ehd.RoelandsPressure(coefficient=2e-8)

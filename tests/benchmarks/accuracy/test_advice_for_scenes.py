@@ -24,6 +24,7 @@ def _values(scene, quantity, options, **integration):
     return known, scene.prepare(setting)().values[quantity]
 
 
+@pytest.mark.slow
 def test_steady_scene():
     scene = measured.steady_scene(0.8)
     advice = advice_for_scene(scene, 0.01, "peak pressure")

@@ -274,6 +274,7 @@ def test_a_carrier_welded_to_ground_equals_a_fixed_outer_surface():
     assert np.allclose(shapes[0], shapes[1], atol=1e-7 * np.abs(shapes[1]).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", sample(KINDS, 2))
 def test_a_tumbling_housing_with_a_stiff_bush_moves_as_one_rigid_body(kind):
     """The carried mass enters the housing's equations with its velocity terms: compare with the summed inertia."""

@@ -92,7 +92,7 @@ FALLING = [(kind, "Rxyz") for kind in ("rigid", "liner", "modal", "nodal")] + [(
 ON_TETRAHEDRA = [(kind, "Rxyz") for kind in BUSHES if kind.endswith("tetrahedra")]
 
 
-@pytest.mark.parametrize(("kind", "node"), FALLING + sample(ON_TETRAHEDRA))
+@pytest.mark.parametrize(("kind", "node"), sample(FALLING + sample(ON_TETRAHEDRA), 0, 1, 3))
 def test_everything_falls_with_g_whatever_the_bush_is_made_of(kind, node, measured):
     mbs, joint, bodies, gravity = pair(BUSHES[kind], node)
     t = fall(mbs)

@@ -50,14 +50,11 @@ def slow(*case):
         # resolve
         ("rigid", False, 80, 3.0),
         ("rigid", True, 80, 3.0),
-        slow("modal", False, 40, 3.0),
         ("modal", True, 40, 3.0),
         slow("foot", True, 40, 3.0),
-        slow("nodal", False, 40, 3.0),
         slow("nodal", True, 40, 3.0),
         slow("damped", True, 40, 3.0),
         # the liner's own rate is backward Euler: a half, once its relaxation within some microseconds is resolved
-        slow("liner", False, 640, 1.6),
         slow("liner", True, 640, 1.5),
     ],
 )
@@ -67,7 +64,7 @@ def test_work_on_the_film_is_heat_elastic_and_kinetic_energy_to_the_order_of_the
     assert fine < coarse / least
 
 
-@pytest.mark.parametrize(("bush", "steps"), sample([("rigid", 20), ("modal", 20), ("nodal", 10)], 0, 1))
+@pytest.mark.parametrize(("bush", "steps"), sample([("rigid", 20), ("modal", 20), ("nodal", 10)], 0))
 def test_momentum_of_journal_bush_and_an_accelerating_housing_is_the_impulse_of_the_loads(bush, steps):
     linear, angular = run(bush, True, steps, 5e-5 * steps).momentum_errors()
     # trapezoidal rule of the loads' course; spin of 314 rad/s in steps of the integrator, second order (below)

@@ -173,6 +173,7 @@ def test_force_and_moment_on_journal_and_housing_cancel_on_a_turning_housing():
     assert np.allclose(after[3:], before[3:], rtol=0, atol=2e-3 * np.abs(before[3:]).max())
 
 
+@pytest.mark.slow
 def test_modes_follow_the_film_at_every_accepted_step():
     mbs, joint, _, _ = scene(BEARING)
     run(mbs, 50)
@@ -234,6 +235,7 @@ def test_explicit_solvers_that_are_not_stored_end_after_some_steps():
         mbs.ComputeODE2Eigenvalues(ignoreAlgebraicEquations=True)
 
 
+@pytest.mark.slow
 def test_small_fast_bearings_are_like_large_slow_ones():
     """The modes' numerical mass was that of a period, 6e-6 s: half the force of a rotor of 77 000 rad/s."""
 

@@ -219,6 +219,7 @@ def test_own_solver_follows_exudyns_full_newton_on_a_moving_housing():
 RUBBER = dataclasses.replace(CYLINDER, inner_radius=0.03 + C, thickness=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "modulus", "load"),
     [

@@ -71,10 +71,13 @@ def test_start_with_end_pressures_is_the_steady_film(kind, grid, ends):
 
 @pytest.mark.parametrize(
     "thermal",
-    [
-        ehd.LumpedThermal(supply_temperature=313.15, capacity=1.0),
-        ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=2e4),
-    ],
+    sample(
+        [
+            ehd.LumpedThermal(supply_temperature=313.15, capacity=1.0),
+            ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=2e4),
+        ],
+        0,
+    ),
     ids=["lumped", "energy"],
 )
 @pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)])
@@ -155,7 +158,7 @@ def carrier(order, clearances=(C, C), moved=False, released=True):
     return mbs, joints, modes
 
 
-@pytest.mark.parametrize("released", [False, True])
+@pytest.mark.parametrize("released", sample([False, True], 1))
 def test_bores_of_one_body_start_in_balance_together(released):
     """The start is equal at both ends, and the run keeps it so.
 
@@ -200,7 +203,7 @@ def unsettled(seed, solve):
 
 @pytest.mark.parametrize(
     ("seed", "solve"),
-    [(0, ehd.SolveDynamic), (1, ehd.SolveDynamicSparse), (2, ehd.SolveDynamic), (3, ehd.SolveDynamic)],
+    sample([(0, ehd.SolveDynamic), (1, ehd.SolveDynamicSparse), (2, ehd.SolveDynamic), (3, ehd.SolveDynamic)], 1),
 )
 def test_modes_out_of_balance_are_not_thrown_by_a_mass_that_they_have_not(monkeypatch, seed, solve):
     """Their numerical mass lets Exudyn find the accelerations of the other bodies; a hundredth of it does the same."""

@@ -203,7 +203,7 @@ def held(kind, bush):
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=pytest.mark.slow if kind == "nodal FE body" else ()) for kind in JACOBIANS]
+    "kind", sample(JACOBIANS, *(k for k, kind in enumerate(JACOBIANS) if k % 4 == 0 and kind != "nodal FE body"))
 )
 def test_modal_bushes_start_in_equilibrium_on_every_body(kind, measured):
     mbs, joint = held(kind, dataclasses.replace(MODAL, mesh=RING))

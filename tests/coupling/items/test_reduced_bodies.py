@@ -113,6 +113,7 @@ def test_reduced_body_is_the_modal_bush_of_the_same_mesh(measured):
     assert np.abs(rigid.peak_pressure[after] / modal.peak_pressure[after] - 1.0).max() > 0.05
 
 
+@pytest.mark.slow
 def test_exact_jacobian_changes_nothing_but_the_time(measured):
     """To Newton's tolerance, 1e-8 of a step's forces."""
     ours, exudyns = (journal_run("reduced body", steps=6, exact=exact) for exact in (True, False))
@@ -121,6 +122,7 @@ def test_exact_jacobian_changes_nothing_but_the_time(measured):
         measured(name, np.abs(getattr(ours, name) / expected - 1.0).max(), 1e-6)
 
 
+@pytest.mark.slow
 def test_stiff_reduced_body_is_a_rigid_bore(measured):
     """The deviation falls with the compliance: 1.4e-2, 1.5e-3, 1.5e-4 at 1e2, 1e3, 1e4 times steel's modulus, most of
     it in the first steps, where the bore takes up its motion."""
@@ -182,6 +184,7 @@ def test_jacobian_is_the_derivative_of_the_force():
         assert np.all(np.abs(exact - numeric) < 1e-4 * scale + 1e-9 * np.abs(numeric).max())
 
 
+@pytest.mark.slow
 def test_film_does_no_work_in_a_common_rigid_motion():
     mbs, joint = moving()
     element = joint.element
@@ -200,6 +203,7 @@ def test_film_does_no_work_in_a_common_rigid_motion():
     assert abs(work) < 1e-12 * scale
 
 
+@pytest.mark.slow
 def test_reduced_body_and_journal_fall_with_g(measured):
     """The momentum of all nodes grows by the weight. The error of 2e-8 is the time integration's: 9e-7 with half of the
     steps, 5e-9 with twice as many."""
@@ -261,6 +265,7 @@ def test_modes_report_and_modes_beyond_those_that_are_there():
     assert np.abs(coupling).max() < 1e-8
 
 
+@pytest.mark.slow
 def test_thin_eye_on_a_shank_keeps_what_the_film_sees(measured):
     """A ring held at one side moves and gets oval 17 times as much as it deforms locally; the modes must have the
     latter.

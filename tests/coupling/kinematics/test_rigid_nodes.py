@@ -110,6 +110,34 @@ def test_motion_does_not_depend_on_the_place_of_the_marker_along_the_axis():
     np.testing.assert_allclose(motion_of(housing, shifted), before, rtol=0, atol=2e-14)
 
 
+def test_variation_is_the_derivative_of_the_motion():
+    """Tilts of a fifth, coordinates that move and turn both frames and change their velocities in any way.
+
+    Central differences with a step of 1e-5: truncation of some 1e-10, round-off of 1e-11.
+    """
+    rng = np.random.default_rng(17)
+    frames, jacobians = [random_frame(rng) for _ in range(2)], rng.normal(size=(2, 4, 3, 7))
+    frames[1][:, :3] = frames[0][:, :3] @ scenes.rotation([0.2, -0.25, 0.0]) @ scenes.rotation([0.0, 0.0, 1.3])
+
+    def at(q, q_t):
+        out = []
+        for frame, (place, turn, velocity, spin), own, rate in zip(frames, jacobians, q, q_t, strict=True):
+            new = frame.copy()
+            new[:, :3] = scenes.rotation(turn @ own) @ frame[:, :3]
+            new[:, 3] += place @ own
+            new[:, 4] += velocity @ own + place @ rate
+            new[:, 5] += spin @ own + turn @ rate
+            out.append(new)
+        return motion_of(*out)
+
+    for found, by_rate in zip(relative.variation_of(*frames, *jacobians), (False, True), strict=True):
+        for k, column in enumerate(found.T):
+            step, rest = np.zeros((2, 7)), np.zeros((2, 7))
+            step.flat[k] = 1e-5
+            ends = [at(rest, s * step) if by_rate else at(s * step, rest) for s in (1.0, -1.0)]
+            np.testing.assert_allclose(column, (ends[0] - ends[1]) / 2e-5, rtol=0, atol=1e-8 * np.abs(found).max())
+
+
 def test_motion_rates_are_time_derivatives():
     """x_t, y_t, bx_t, by_t against central differences of x, y, bx, by along a screw motion of both frames.
 

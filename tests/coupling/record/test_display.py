@@ -158,6 +158,7 @@ def test_frame_of_every_kind_of_housing(name):
     np.testing.assert_allclose(joint.display._frame(mbs)[:, :4], frame[:, :4], atol=1e-14)
 
 
+@pytest.mark.slow
 def test_modal_bush_is_drawn_around_the_film():
     mbs, joint = rotor(steel_bush(ehd.ModalBush))
     mbs.Assemble()

@@ -62,6 +62,7 @@ def test_any_course_gives_the_record_in_memory(tmp_path):
         same(kept.snapshot(None), stored.snapshot(None))
 
 
+@pytest.mark.slow
 def test_a_part_of_a_long_file_is_read_alone(tmp_path, monkeypatch):
     """Bit for bit; no more rows are touched."""
     path, record = tmp_path / "long.rows", Record(Bearing)
@@ -88,21 +89,27 @@ def test_a_part_of_a_long_file_is_read_alone(tmp_path, monkeypatch):
     same(ehd.load_history(tmp_path / "whole.npz", start=0.1, end=0.2), whole.between(0.1, 0.2))
 
 
+def memory_of_records():
+    """Bytes that lines of the package hold: threads of a parallel test run take some, too."""
+    own = tracemalloc.Filter(True, str(Path(rows_of.__file__).parent / "*"))
+    return sum(block.size for block in tracemalloc.take_snapshot().filter_traces([own]).traces)
+
+
 def test_memory_does_not_grow(tmp_path):
     """Less than 50 bytes a step for what would take 416: 500 MB for ten joints and a million steps."""
     record, rng = Record(Bearing), np.random.default_rng(1)
     record.keep_on_disk(tmp_path / "long.rows", "main")
     rows = [random_row(rng, 0.0) for _ in range(50)]
     tracemalloc.start()
-    for k in range(12000):
+    for k in range(5000):
         rows[k % 50][0] = 1e-4 * k
         record.append(rows[k % 50])
         if k == 2000:
-            before = tracemalloc.get_traced_memory()[0]
-    after = tracemalloc.get_traced_memory()[0]
+            before = memory_of_records()
+    after = memory_of_records()
     tracemalloc.stop()
-    assert (after - before) / 10000 < 1.0
-    assert record.snapshot(None).time.size == 12000
+    assert before > 0 and (after - before) / 3000 < 1.0
+    assert record.snapshot(None).time.size == 5000
 
 
 def model(*names, record):
@@ -154,6 +161,7 @@ def test_a_run_in_a_file_is_the_run_in_memory(tmp_path):
     assert ehd.load_history(tmp_path / "runs" / "right.rows").time.size == 301
 
 
+@pytest.mark.slow
 def test_a_killed_run_leaves_its_rows(tmp_path):
     code = f"""
 import os, sys
@@ -179,6 +187,7 @@ ehd.SolveDynamic(mbs, settings(1000))
     assert ehd.load_history(tmp_path / "main.rows").time.size == 0
 
 
+@pytest.mark.slow
 def test_a_file_of_two_joints_is_told(tmp_path):
     mbs, _ = model("left", "right", record=ehd.File(path=tmp_path / "both.rows"))
     with pytest.raises(ehd.EHDError, match=r"'(left|right)': another record has replaced.*'\{name\}' in it"):

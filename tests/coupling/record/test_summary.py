@@ -204,6 +204,7 @@ def test_effects_left_out_are_named_where_they_matter(lines, load, options, name
     assert [name for name in absent if name in line] == []
 
 
+@pytest.mark.slow
 def test_effects_left_out_come_with_numbers(lines):
     """Sizes are those of the audit: a steel ring's deflection, an oil's thickening at the peak, the mean heating."""
     mbs, joint = scene(12e3)

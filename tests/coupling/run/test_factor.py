@@ -22,7 +22,6 @@ def system(rng, *, coupled, mesh=40, rest=9):
     return csc_matrix(J)[places][:, places].tocsc(), is_mesh
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("coupled", [False, True])
 @pytest.mark.parametrize("rest", [0, 1, 9, LARGEST_REST + 1])
 def test_solution(coupled, rest):

@@ -66,6 +66,7 @@ def test_last_cycle_is_that_of_many_cycles(steps):
     assert np.abs(orbit - own.eccentricity).max() < (2e-3 if steps == STEPS else 2e-2) * BEARING.radial_clearance
 
 
+@pytest.mark.slow
 def test_orbits_that_do_not_close_are_an_error():
     """A wrong period; and a journal that slows down by 0.4 % a cycle, of which no two cycles in a row tell much."""
     mbs, joint = loaded()

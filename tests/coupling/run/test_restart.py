@@ -90,7 +90,7 @@ def assert_same(one, other, tolerance):
         np.testing.assert_allclose(b, a, rtol=0.0, atol=share * scale, err_msg=field.name)
 
 
-@pytest.mark.parametrize("what", but_slow(BEARINGS, "liner", "temperature field", "wear"))
+@pytest.mark.parametrize("what", but_slow(BEARINGS, "liner", "temperature", "temperature field", "wear"))
 def test_run_goes_on(what, tmp_path):
     mbs, joint = system(BEARINGS[what])
     ehd.SolveDynamic(mbs, settings(0, STEPS))
@@ -123,6 +123,7 @@ def test_restart_in_the_same_system_and_from_memory():
     assert_same(whole, joint.history, 1e-9)
 
 
+@pytest.mark.slow
 def test_without_memory_the_run_is_another():
     """The film's history is needed: from coordinates alone a run starts with a bearing full of oil."""
     mbs, joint = system(BEARINGS["oil content"])
@@ -299,6 +300,7 @@ def test_states_of_other_bushes_materials_and_tables_are_refused():
         assert marks[0] == marks[1] and marks[0] != marks[2], what
 
 
+@pytest.mark.slow
 def test_another_bush_is_refused_in_a_run(tmp_path):
     _, one, other = next(other_bearings())
     mbs, joint = system(dataclasses.replace(PLAIN, **one))

@@ -97,7 +97,7 @@ def test_same_motion(node, radius):
     assert less < 0.8 * more
 
 
-@pytest.mark.parametrize("newmark", [False, True])
+@pytest.mark.parametrize("newmark", sample([False, True], 1))
 def test_newmark_and_index_2(newmark):
     settings = turn(720, 1e-10, turns=0.2)
     if newmark:

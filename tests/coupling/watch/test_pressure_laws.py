@@ -52,7 +52,7 @@ def test_a_film_near_the_end_of_its_law_is_told_once_with_what_it_can_carry():
         dataclasses.replace(BEARING, lubricant=ehd.Lubricant(viscosity=0.02)),
         dataclasses.replace(BEARING, bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=6e10, poisson_ratio=0.33)),
     ],
-    ids=["no law", "a bore that deflects"],
+    ids=["no law", "liner"],
 )
 def test_other_films_have_no_such_end(bearing):
     assert told(bearing, 16e3)[0] == []

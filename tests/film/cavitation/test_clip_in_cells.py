@@ -9,6 +9,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from tests.film.cavitation.test_rupture_line import _coefficients
 from tests.reference import short_bearing
+from tests.sampling import but_slow
 
 C, R = 25e-6, 0.025
 CELLS = ehd.Gumbel(line_in_cells=True)
@@ -37,8 +38,7 @@ OPTIONS = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", OPTIONS)
+@pytest.mark.parametrize("name", but_slow(OPTIONS, "compressible", "thin"))
 def test_tangent_is_the_derivative(make_bearing, name):
     """Random states, none of which lies at a kink: there is none."""
     rng = np.random.default_rng(2)
@@ -61,7 +61,6 @@ def test_tangent_is_the_derivative(make_bearing, name):
         assert (np.abs(tangent - numeric) / rows[:, None]).max() < 1e-7
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("eccentricity", (0.3, 0.6))
 def test_short_bearing_against_its_closed_form(eccentricity, measured):
     """Stiffness and damping in 16 directions: order two, where clipped vertices are of order one."""

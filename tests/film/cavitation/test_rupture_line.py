@@ -13,9 +13,8 @@ from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, powers
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import Status
+from tests.sampling import but_slow
 
-# the kernels of the line take longer to compile than these tests to run
-pytestmark = pytest.mark.slow
 LINE = SwiftStieber(line_in_cells=True)
 
 
@@ -187,6 +186,7 @@ def test_coefficients_do_not_know_where_the_line_lies(measured):
     assert _error(film, 1.0, 0.6, SwiftStieber(line_in_cells=False), reference, directions)[0] > 0.04
 
 
+@pytest.mark.slow
 def test_few_rows_with_a_large_stretch(measured):
     """84 x 4 with a stretch of 0.85, as `FiniteLength` says: random bearings, the line anywhere in its cell."""
     rng, few, worst = np.random.default_rng(5), ehd.FiniteLength(n_theta=84, n_z=4, stretch=0.85), np.zeros(3)
@@ -273,7 +273,7 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("name", PLACES)
+@pytest.mark.parametrize("name", but_slow(PLACES, "map", "liner", "density"))
 def test_where_the_line_lies_by_default(make_bearing, name):
     """Inside the cells where the film knows it; None is bit by bit what `JournalBearing.closure` names."""
     options, in_cells = PLACES[name]

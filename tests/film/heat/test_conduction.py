@@ -10,6 +10,7 @@ from scipy.special import i0, i1
 import exudyn_ehd as ehd
 from exudyn_ehd.film.heat.energy import through_surfaces
 from exudyn_ehd.film.heat.options import Rings
+from tests.sampling import sample
 
 R, L, THICKNESS, G, K = 0.025, 0.04, 0.02, 3.0, 45.0
 CAPACITY = 7800.0 * 460.0
@@ -98,7 +99,7 @@ def _fine(inward, heat, end):
     return T[0] + heat * abs(R - r[0]) / (K * 2.0 * math.pi * R * L), float(T @ volume / volume.sum())
 
 
-@pytest.mark.parametrize("inward", [False, True])
+@pytest.mark.parametrize("inward", sample([False, True], 0))
 def test_warming_up_in_time(inward):
     """Surface and mean under sudden heat after 20 s: first order in the step, and the rings' own error below it."""
     heat, end = 100.0, 20.0

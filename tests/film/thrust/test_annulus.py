@@ -56,18 +56,18 @@ PLANE = np.array([0.004, 0.006, 0.02, 0.001, 0.001, 0.01, 0.01])
 
 def test_error_of_the_default_grid():
     rng = np.random.default_rng(3)
-    assert np.all([_errors(*_draw(rng)) <= PADS for _ in range(5)])
-    assert np.all([_errors(*_draw(rng, pads=False)) <= PLANE for _ in range(2)])
+    assert np.all(_errors(*_draw(rng)) <= PADS)
+    assert np.all(_errors(*_draw(rng, pads=False)) <= PLANE)
 
 
 @pytest.mark.slow
 def test_error_of_the_default_grid_over_the_range():
     rng = np.random.default_rng(31)
-    errors = np.array([_errors(*_draw(rng)) for _ in range(100)])
+    errors = np.array([_errors(*_draw(rng)) for _ in range(40)])
     assert np.all(errors <= PADS)
     # damping is off where the cavity behind an edge ends between two rows
     assert np.mean(errors[:, 2] <= 0.025) >= 0.95
-    assert np.all([_errors(*_draw(rng, pads=False)) <= PLANE for _ in range(40)])
+    assert np.all([_errors(*_draw(rng, pads=False)) <= PLANE for _ in range(16)])
 
 
 def test_every_edge_has_a_column():

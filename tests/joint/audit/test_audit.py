@@ -1,6 +1,7 @@
 """The audit: every finding flips where its effect begins to matter, whatever film model and closure a bearing has."""
 
 import dataclasses
+import itertools
 import math
 import pickle
 import re
@@ -82,11 +83,14 @@ def test_findings_flip_with_the_position(effect):
 
 @pytest.mark.parametrize(
     ("effect", "small", "large"),
-    [
-        ("Taylor vortices", {"viscosity": 0.02}, {"viscosity": 1e-4}),
-        ("turbulence", {"viscosity": 0.02}, {"viscosity": 4e-5}),
-        ("fluid inertia", {"viscosity": 0.02}, {"viscosity": 4e-5}),
-    ],
+    sample(
+        [
+            ("Taylor vortices", {"viscosity": 0.02}, {"viscosity": 1e-4}),
+            ("turbulence", {"viscosity": 0.02}, {"viscosity": 4e-5}),
+            ("fluid inertia", {"viscosity": 0.02}, {"viscosity": 4e-5}),
+        ],
+        1,
+    ),
 )
 def test_thin_liquids_leave_the_laminar_film(effect, small, large):
     # 12 m/s in a film of 20 um: Re = 9 for an oil, 1700 and 4300 for gas-like liquids
@@ -209,6 +213,7 @@ def test_half_sommerfeld_is_compared_with_the_rupture_that_keeps_the_flow():
         audit(bearing())["rupture"]
 
 
+@pytest.mark.slow
 def test_coarse_areas_of_supply_are_told():
     narrow = ehd.AxialGroove(angle=math.pi, width_angle=0.2, pressure=3e6)
     film = ehd.FiniteLength(n_theta=32, n_z=6)
@@ -275,7 +280,7 @@ def test_effects_that_do_not_matter_are_unneeded(effect):
     assert f"{finding.time_share:.0%}" in str(found)
 
 
-@pytest.mark.parametrize("across", [1, 2])
+@pytest.mark.parametrize("across", sample([1, 2], 0))
 def test_fields_of_temperature_are_compared_with_finer_grids(across):
     """They settle there anew; the audit ended with an error of numpy."""
     thermal = ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=2e3, conductivity=0.13, across=across)
@@ -347,6 +352,7 @@ def test_profile_matters_in_thin_films():
     assert audit(bearing(profile=ehd.Crown(drop=2e-6)), eps=0.8)["profile"].matters
 
 
+@pytest.mark.slow
 def test_time_is_only_measured_when_asked():
     assert all(f.time_share is None for f in audit(bearing(asperity=ASPERITY)).findings)
     measured = audit(bearing(asperity=ASPERITY), measure_time=True)
@@ -375,8 +381,10 @@ MODELS = {
 }
 
 
-@pytest.mark.parametrize("name", list(MODELS))
-@pytest.mark.parametrize("eps", [0.0, 0.7])
+# every film once, the even ones in their centre
+@pytest.mark.parametrize(
+    ("eps", "name"), sample(itertools.product([0.0, 0.7], MODELS), *range(0, 12, 2), *range(13, 24, 2))
+)
 def test_every_film_model_and_closure(name, eps):
     found = audit(bearing(**MODELS[name]), eps=eps, measure_time=True)
     check_readable(found)
@@ -462,13 +470,15 @@ def test_inertia_of_a_flow_that_swings_between_plates():
 def test_dampers_have_the_inertia_of_their_squeeze():
     """Whirls and vibrations of any ellipse, with any spin: at an instant, and over a run."""
     rng = np.random.default_rng(3)
-    for _ in range(40):
+    for k in range(40):
         c, mu, w = 10.0 ** rng.uniform(-5.0, -3.8), 10.0 ** rng.uniform(-3.0, -1.0), 10.0 ** rng.uniform(1.0, 3.5)
         made = bearing(radial_clearance=c, lubricant=ehd.Lubricant(viscosity=mu), cavitation=ehd.FullSommerfeld())
         eps, per_rate = rng.uniform(0.1, 0.9), 870.0 * c * c / mu
-        whirl = audit(made, eps=eps, speed=0.0, velocity=(0.0, eps * c * w))["fluid inertia"]
-        assert whirl.value == pytest.approx(per_rate * w, rel=1e-9)
-        assert whirl.matters is (per_rate * w > 1.0)
+        if k < 3:
+            # an audit solves many films, all for one product
+            whirl = audit(made, eps=eps, speed=0.0, velocity=(0.0, eps * c * w))["fluid inertia"]
+            assert whirl.value == pytest.approx(per_rate * w, rel=1e-9)
+            assert whirl.matters is (per_rate * w > 1.0)
         # means over two turns of an ellipse less the first and last of 400 steps
         t = np.linspace(0.0, 4.0 * math.pi / w, 401)
         motion, axes, tilted = np.zeros((401, 10)), rng.uniform(0.0, 0.5, 2) * eps * c, rng.integers(2)
@@ -521,7 +531,7 @@ def load(made, eps):
     return float(np.hypot(*ehd.steady(made, speed=SPEED, eccentricity_ratio=eps).force[:2]))
 
 
-@pytest.mark.parametrize(("n_theta", "eps"), [(48, 0.95), (64, 0.98), (48, 0.98), (192, 0.1), (256, 0.4)])
+@pytest.mark.parametrize(("n_theta", "eps"), sample([(48, 0.95), (64, 0.98), (48, 0.98), (192, 0.1), (256, 0.4)], 0, 3))
 def test_advised_grids_carry_the_load(n_theta, eps, measured):
     """Both "too coarse" and "finer than needed" name a grid that is neither."""
     made = bearing(film=ehd.FiniteLength(n_theta=n_theta, n_z=12))

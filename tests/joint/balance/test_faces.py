@@ -106,6 +106,7 @@ def test_wide_plane_faces_change_next_to_nothing():
     assert 0.0 < moved < drag / np.abs(alone.stiffness).min()
 
 
+@pytest.mark.slow
 def test_refused():
     plain = dataclasses.replace(_bearing(), thrust=None)
     for options in ({"axial_position": 1e-6}, {"axial_load": 10.0}):

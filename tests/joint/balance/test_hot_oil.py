@@ -70,6 +70,7 @@ def test_isothermal_films_have_no_temperature_to_tell():
         ehd.steady(made, speed=OMEGA, eccentricity_ratio=0.0).audit()["oil temperature"]
 
 
+@pytest.mark.slow
 def test_asperities_that_rub_the_oil_away_are_no_film():
     """A small fast bearing: beyond an eccentricity ratio of 0.85 heat takes more of its load than the gap gives."""
     law = ehd.ReynoldsTemperature(point=(SUPPLY, 0.027), coefficient=0.03)

@@ -104,6 +104,7 @@ def test_the_film_on_a_tongue_is_the_one_reached_from_the_undeformed_bore():
     assert others <= 2
 
 
+@pytest.mark.slow
 def test_a_bore_without_an_equilibrium_is_named():
     model, motion = next(tongues(0, 1))
     motion[:2] *= 40.0 * C / np.hypot(*motion[:2])

@@ -117,6 +117,29 @@ def test_a_mirrored_film_has_mirrored_temperatures():
         np.testing.assert_allclose(of(films[0]), there, atol=1e-7)
 
 
+def test_surfaces_share_the_heat_of_sliding_and_pressure_flow_unequally():
+    """Constant viscosity between walls of one temperature, all heat by conduction: with the stress
+    mu U / h + p' (y - h / 2) the walls' heats differ by the first moment of the stress squared over mu,
+
+        q_bush - q_journal = int (stress^2 / mu) (1 - 2 y / h) dy = -U p' h / 3.
+    """
+    walls = {"bush_coefficient": 1e9, "bush_temperature": SUPPLY}
+    walls |= {"journal_coefficient": 1e9, "journal_temperature": SUPPLY}
+    law = ehd.ReynoldsTemperature(point=(SUPPLY, 0.03), coefficient=1e-14)
+    made = bearing(walls, law=law, cavitation=ehd.FullSommerfeld())
+    made = dataclasses.replace(made, thermal=dataclasses.replace(made.thermal, conductivity=100.0))
+    film, model = ehd.steady(made, speed=SPEED, eccentricity_ratio=0.6), build_model(made)
+    at = np.zeros(10)
+    at[0], at[8] = 0.6 * C, SPEED
+    settled = settled_history(model, at)
+    balance = model.effects.thermal.balance(model.evaluate(at, settled).film, settled.temperature)
+    slope = (np.roll(film.pressure, -1, 0) - np.roll(film.pressure, 1, 0)) / (4.0 * np.pi / 48 * 0.02)
+    area = 0.02**2 * ehd.bearing_grid(0.02, 0.02, 48, 8).area
+    expected = -np.sum(area * slope * film.gap) * 0.02 * SPEED / 3.0
+    assert abs(expected) > 0.03 * balance["heat_in"]
+    assert balance["bush"] - balance["journal"] == pytest.approx(expected, rel=2e-3)
+
+
 def test_results_have_the_surfaces():
     b = bearing(GIVEN)
     film = ehd.steady(b, speed=SPEED, eccentricity_ratio=0.6)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 MESH = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=2, radial=1, circumferential=12)
 OIL = ehd.oil("ISO VG 46")
@@ -35,6 +36,7 @@ def modal(modulus):
     return ehd.ModalBush(mesh=MESH, material=material, tolerance=0.2)
 
 
+@pytest.mark.slow
 def test_film_at_the_settled_temperature_is_the_isothermal_film_of_its_viscosity():
     hot = solve(modal(2.1e11), EFFECTS["lumped"])
     assert hot.temperature > 313.15 + 1.0
@@ -45,7 +47,7 @@ def test_film_at_the_settled_temperature_is_the_isothermal_film_of_its_viscosity
     assert hot.minimum_gap == pytest.approx(same.minimum_gap, rel=1e-8)
 
 
-@pytest.mark.parametrize("effect", EFFECTS)
+@pytest.mark.parametrize("effect", sample(EFFECTS, 1))
 def test_a_stiff_bush_tends_to_the_rigid_bore_at_first_order(effect):
     rigid = solve(None, EFFECTS[effect])
     changes = [

@@ -168,15 +168,15 @@ def check_cycle(number, tolerance, per_turn=64, **options):
     assert convected + conducted == pytest.approx(loss - gained, abs=tolerance * loss)
 
 
-@pytest.mark.parametrize("numbers", [(23,), pytest.param(range(0, 200, 3), marks=pytest.mark.slow)])
-def test_heat_balance_over_a_settled_cycle(numbers):
+@pytest.mark.slow
+def test_heat_balance_over_a_settled_cycle():
     """0.5 %: heat of the pressure flow on ten rows; 0.1 %: storage that 64 steps a turn leave."""
-    for number in numbers:
+    for number in (23, *range(0, 200, 11)):
         check_cycle(number, 0.01)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [14, 24, 29, 35, 46])
+@pytest.mark.parametrize("number", [14, 24, 46])
 def test_heat_balance_over_a_settled_cycle_on_a_fine_grid(number):
     check_cycle(number, 0.005, film=ehd.FiniteLength(n_theta=96, n_z=40))
 
@@ -188,7 +188,7 @@ AREAS = {
 }
 
 
-@pytest.mark.parametrize("carry_over", [1.0, 0.6])
+@pytest.mark.parametrize("carry_over", sample([1.0, 0.6], 1))
 @pytest.mark.parametrize("area", AREAS.values(), ids=AREAS)
 @pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.ElrodAdams()], ids=["swift", "elrod"])
 def test_a_supply_area_is_well_mixed(closure, area, carry_over):

@@ -4,6 +4,7 @@ One bearing throughout: R = 25 mm, L = 50 mm, c = 25 um. Couette heat per area o
 / c.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -13,6 +14,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
+from tests.sampling import covering, sample
 
 R, L, C = 0.025, 0.05, 25e-6
 SUPPLY, MU, BETA, OMEGA = 320.0, 0.02, 0.03, 300.0
@@ -61,7 +63,7 @@ def run(model, at, step, steps, history=None):
 
 
 @pytest.mark.parametrize(
-    "thermal", [ehd.LumpedThermal(supply_temperature=SUPPLY), ehd.FilmEnergy(supply_temperature=SUPPLY)]
+    "thermal", sample([ehd.LumpedThermal(supply_temperature=SUPPLY), ehd.FilmEnergy(supply_temperature=SUPPLY)], 0)
 )
 def test_adiabatic_petroff_heating_in_time(thermal):
     """No through-flow, no conduction.
@@ -182,20 +184,25 @@ def test_isothermal_walls_are_the_limit_of_strong_cooling():
     assert 9.0 < loss[0] / loss[1] < 11.0
 
 
-@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+THERMAL = {
+    "lumped": ehd.LumpedThermal(
+        supply_temperature=SUPPLY, housing_conductance=3.0, housing_temperature=310.0, capacity=0.01
+    ),
+    "field": ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e3, bush_temperature=310.0),
+    "conducting": ehd.FilmEnergy(
+        supply_temperature=SUPPLY, bush_coefficient=2e4, bush_temperature=310.0, conductivity=0.13
+    ),
+}
+
+
 @pytest.mark.parametrize(
-    "thermal",
-    [
-        ehd.LumpedThermal(supply_temperature=SUPPLY, housing_conductance=3.0, housing_temperature=310.0, capacity=0.01),
-        ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e3, bush_temperature=310.0),
-        ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e4, bush_temperature=310.0, conductivity=0.13),
-    ],
-    ids=["lumped", "field", "conducting"],
+    ("ends", "kind", "cavitation"),
+    covering(itertools.product([(0.0, 0.0), (1e5, 4e5)], THERMAL, CLOSURES)),
+    ids=lambda x: x if isinstance(x, str) else type(x).__name__,
 )
-@pytest.mark.parametrize("ends", [(0.0, 0.0), (1e5, 4e5)])
-def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
+def test_balance_over_a_transient_and_at_rest(cavitation, kind, ends):
     """Heat in = convected + conducted + stored, at every accepted step with squeeze, and in the steady state."""
-    model = build_model(bearing(thermal, cavitation=cavitation, end_pressures=ends))
+    model = build_model(bearing(THERMAL[kind], cavitation=cavitation, end_pressures=ends))
     history, worst = run(model, motion(0.6, vx=2e-3, vy=-3e-3), 1e-4, 20)
     assert worst < BALANCE
     assert np.all(np.isfinite(history.temperature))
@@ -208,7 +215,7 @@ def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
     assert defect(balance) < BALANCE
 
 
-@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+@pytest.mark.parametrize("cavitation", sample(CLOSURES, 2), ids=lambda c: type(c).__name__)
 def test_steady_temperature_is_where_the_transient_ends(cavitation):
     thermal = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=5e3)
     b = bearing(thermal, cavitation=cavitation, end_pressures=(1e5, 4e5), film=ehd.FiniteLength(n_theta=32, n_z=6))

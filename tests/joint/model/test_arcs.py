@@ -11,6 +11,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.coupling.element.display import ring_triangles
 from exudyn_ehd.joint.model.build import build_model
 from tests.reference.arc_film import arc_film
+from tests.sampling import sample
 
 R, C, MU = 0.025, 25e-6, 0.02
 OIL = ehd.Lubricant(viscosity=MU)
@@ -38,7 +39,7 @@ def random_scene(rng):
     return arc, length, motion
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", sample(range(10), 0, 2))
 def test_against_an_independent_solution(seed):
     """Force within 0.5 %, torque within 0.1 %, peak within 1 %, with pressures at the edges, tilt, squeeze, both
     directions of spin; its share of the ring's columns.
@@ -135,6 +136,7 @@ def test_the_journal_is_free_beside_the_arc():
         ehd.steady(bearing_on(arc), speed=300.0, eccentricity_ratio=1.05, direction=math.radians(270.0))
 
 
+@pytest.mark.slow
 def test_equilibrium_stiffness_and_damping_against_the_independent_solution():
     """K and C within 1 % of their largest entry: differences over 1e-3 of the clearance leave some 0.1 %."""
     arc = ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0))
@@ -151,7 +153,7 @@ def test_equilibrium_stiffness_and_damping_against_the_independent_solution():
         assert np.abs(matrix[:2, :2] - reference).max() < 1e-2 * np.abs(reference).max()
 
 
-@pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams()], ids=repr)
+@pytest.mark.parametrize("cavitation", sample([ehd.SwiftStieber(), ehd.ElrodAdams()], 0), ids=repr)
 def test_a_rotor_in_exudyn_comes_to_rest_in_its_arc(cavitation):
     bearing = bearing_on(ehd.Arc(start=math.radians(210.0), extent=math.radians(120.0)), cavitation=cavitation)
     container = exu.SystemContainer()

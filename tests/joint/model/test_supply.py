@@ -10,6 +10,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.quantities import supply_flows
+from tests.sampling import sample
 
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams()]
 GRID = ehd.FiniteLength(n_theta=48, n_z=8)
@@ -293,7 +294,7 @@ def test_holes_of_any_size_and_place_feed_as_on_fine_grids(make_bearing, measure
         measured(f"{hole}: load", force, 0.02)
 
 
-@pytest.mark.parametrize("line_in_cells", [False, True])
+@pytest.mark.parametrize("line_in_cells", sample([False, True], 1))
 def test_flows_of_a_film_that_is_cut_off_do_not_hang_on_the_grid(make_bearing, line_in_cells):
     """Random grooves, half and more of them beside the cavity: within 2 % of the larger flow on the default grid.
 
@@ -316,6 +317,7 @@ def test_flows_of_a_film_that_is_cut_off_do_not_hang_on_the_grid(make_bearing, l
     assert balanced > 4
 
 
+@pytest.mark.slow
 def test_flows_beside_a_cavity_on_the_default_grid(make_bearing):
     """Random areas, a third at the cavity's pressure: within 2.5 % of the larger of flow and leakage, half within 2 %
     of the flow itself, which may be a small difference of what goes in and out."""
@@ -345,7 +347,7 @@ def test_starved_films_on_the_default_grid(make_bearing):
     """Random areas that feed a film which conserves mass, many from within its cavity: the load is within 12 %, of half
     of them within 2 %, if it is not next to nothing."""
     rng, errors = np.random.default_rng(11), []
-    for k in range(72):
+    for k in range(36):
         pressure = 0.0 if rng.random() < 0.3 else 10 ** rng.uniform(3.0, 5.7)
         ratio, angle, width = rng.choice([0.5, 1.0, 2.0]), rng.uniform(0.0, 2.0 * math.pi), rng.uniform(0.1, 0.6)
         length, eps = 0.05 * ratio, rng.uniform(0.2, 0.9)
@@ -364,7 +366,7 @@ def test_starved_films_on_the_default_grid(make_bearing):
                 assert pressure == 0.0 and "needs oil from somewhere" in str(error)
         if len(loads) == 2 and loads[1] > 0.03 * bearing.reference_force(314.0):
             errors.append(abs(loads[0] / loads[1] - 1.0))
-    assert len(errors) > 50
+    assert len(errors) > 25
     assert np.median(errors) < 0.02 and max(errors) < 0.12
 
 
@@ -379,7 +381,7 @@ def test_flow_of_a_hole_grows_steadily_with_its_diameter(make_bearing):
     assert np.all(growth > 0.02) and np.all(growth < 0.12)
 
 
-@pytest.mark.parametrize("diameter", [None, 0.004, 0.011])
+@pytest.mark.parametrize("diameter", sample([None, 0.004, 0.011], 1))
 @pytest.mark.parametrize("closure", CLOSURES, ids=_ids)
 def test_areas_turn_over_the_grid_without_steps(make_bearing, closure, diameter):
     """Force and flow over two of the grid's intervals: half the angle, half the largest change.

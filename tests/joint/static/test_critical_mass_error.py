@@ -1,5 +1,6 @@
 """The estimated error of the critical mass bounds the true one, which comes from where the rupture line lies."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -86,6 +87,9 @@ def test_what_a_result_says(make_bearing):
     assert f"(within {100.0 * rough.critical_mass_error:.0f} %)" in repr(rough)
     assert math.isinf(open_.critical_mass_error)
     assert "(uncertain)" in repr(open_)
+    # an error as large as the mass says nothing about it
+    for error, said in ((0.99, "(within 99 %)"), (1.0, "(uncertain)"), (1.5, "(uncertain)")):
+        assert said in repr(dataclasses.replace(rough, critical_mass_error=error))
     default = ehd.equilibrium(make_bearing(film=ehd.FiniteLength()), speed=SPEED, load=force[0.72])
     assert default.critical_mass_error < 0.5 * rough.critical_mass_error
 

@@ -7,6 +7,7 @@ from scipy.sparse.linalg import spsolve
 import exudyn_ehd as ehd
 from exudyn_ehd.solid.bush_modes import bore_modes
 from tests.finite_elements import fem_of
+from tests.sampling import sample
 from tests.solid_tetrahedra import tet_mesh
 
 R, C = 0.025, 25e-6
@@ -72,7 +73,7 @@ IGNORED = pytest.mark.filterwarnings(
 
 
 @IGNORED
-@pytest.mark.parametrize("seed", [1, 3, 4, 7, 15])
+@pytest.mark.parametrize("seed", sample([1, 3, 4, 7, 15], 0))
 def test_films_on_modal_bushes_are_those_on_the_mesh(seed):
     """Peak and minimum film thickness within 1 %: a long bush, a foot, one held at its end, a seat, a plain one.
 
@@ -86,10 +87,10 @@ def test_films_on_modal_bushes_are_those_on_the_mesh(seed):
 @pytest.mark.slow
 def test_films_on_many_modal_bushes_are_those_on_the_mesh():
     """Within 1 %; a third of the meshes are tetrahedra."""
-    found = [compare(seed) for seed in range(150)]
+    found = [compare(seed) for seed in range(60)]
     for kind in KINDS:
         errors = np.array([e for k, e in found if k == kind and e is not None])
-        assert len(errors) > 20
+        assert len(errors) > 8
         assert np.abs(errors).max() < 0.01, kind
 
 
@@ -154,6 +155,7 @@ def test_a_journal_that_tilts_on_even_modes_is_warned_of():
         ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.8, tilt=(0.0, 2e-4))
 
 
+@pytest.mark.slow
 @IGNORED
 def test_a_bush_held_at_its_end_has_odd_modes_for_parallel_journals():
     bush = ehd.ModalBush(mesh=held_at_its_end(), material=STEEL, tilted=False)
@@ -161,6 +163,7 @@ def test_a_bush_held_at_its_end_has_odd_modes_for_parallel_journals():
     assert np.abs(shape[:, 0] - shape[:, 1]).max() > 0.1
 
 
+@pytest.mark.slow
 @IGNORED
 def test_a_body_that_is_not_symmetric_about_its_bore_has_odd_modes_for_parallel_journals():
     mesh = held_at_its_end()
@@ -172,6 +175,7 @@ def test_a_body_that_is_not_symmetric_about_its_bore_has_odd_modes_for_parallel_
     assert aligned == tilted
 
 
+@pytest.mark.slow
 @IGNORED
 def test_modes_of_a_mirror_image_are_as_many():
     found = [bore_modes(ehd.ModalBush(mesh=held_at_its_end(side), material=STEEL, tolerance=0.1)) for side in (1, -1)]

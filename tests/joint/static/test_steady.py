@@ -172,7 +172,7 @@ class TestSolveFilm:
             ehd.solve_film(self.GRID, self._gap(), lubricant=0.02)
 
 
-@pytest.mark.parametrize("bush", [None, ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9)])
+@pytest.mark.parametrize("bush", [None, ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9)], ids=["rigid", "liner"])
 def test_force_at_an_instant_is_the_same_at_any_speed(bush):
     """Similar films have similar forces: the short step that stands for none is scaled by the speeds, from slow gates
     to dental drills. A fixed step of 1e-6 s on liners took a tenth of the force at 1e5 rad/s."""

@@ -219,6 +219,7 @@ def test_response_of_a_bore_and_of_its_cavity_is_that_in_time(surface, periods, 
     assert np.abs(found - hard).max() > 0.04 * np.abs(found).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closure", [ELROD, pytest.param(IN_CELLS, marks=pytest.mark.slow)], ids=["vertices", "cells"])
 @pytest.mark.parametrize("surface", ["pin", pytest.param("bush", marks=pytest.mark.slow)])
 def test_hard_bores_respond_as_rigid_ones_with_a_cavity(surface, closure):
@@ -234,6 +235,7 @@ def test_hard_bores_respond_as_rigid_ones_with_a_cavity(surface, closure):
     assert np.abs(slow - found.settled_stiffness).max() < 1e-6 * np.abs(slow).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("surface", ["pin", pytest.param("bush", marks=pytest.mark.slow)])
 def test_bores_answer_in_a_small_space(surface, monkeypatch):
     """A small space gives the dynamic stiffness of all coordinates, from standstill to four times the spin."""

@@ -11,6 +11,7 @@ from exudyn_ehd.solid.journal import modes
 from exudyn_ehd.solid.journal.harmonics import Cylinder
 from exudyn_ehd.solid.journal.modes import _Reduction, journal_modes
 from tests.reference.elastic_rings import cylinder_yielding
+from tests.sampling import sample
 
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 RADIUS, LENGTH = 0.011, 0.022
@@ -76,6 +77,7 @@ def square(weight, values):
     return around * np.einsum("nkfz,z->nf", values**2, weight)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("held", "inner", "tolerance"),
     [
@@ -122,7 +124,7 @@ def test_told_error_is_that_of_the_elements_under_films(held, inner, tolerance):
     assert true.max() / 1.5 < found.error < (2.0 if tolerance > 0.05 else 1.5) * true.max()
 
 
-@pytest.mark.parametrize("held", HELD)
+@pytest.mark.parametrize("held", sample(HELD, 0))
 def test_even_pressures_displace_the_modes_as_they_displace_the_elements(held):
     """Even pressures, as those of pressurised ends, displace the modes as the elements, to 1e-3."""
     journal = pin(held, tolerance=0.1)
@@ -135,6 +137,7 @@ def test_even_pressures_displace_the_modes_as_they_displace_the_elements(held):
         assert np.abs(q @ found.profiles[own] - exact).max() < 1e-3 * np.abs(exact).max()
 
 
+@pytest.mark.slow
 def test_modes_are_kept_on_disk(monkeypatch):
     journal = pin("ends", tolerance=0.2)
     first = journal_modes(journal, RADIUS, LENGTH)

@@ -17,6 +17,7 @@ def _silent(text):
     pass
 
 
+@pytest.mark.slow
 def test_factors_are_those_of_a_block():
     """A machine twice as slow in one block changes the times, not the factors."""
     blocks = {"plain": [1.0, 2.0, 1.0], "effect": [1.5, 3.0, 1.5], "alone": [3.0, 3.0, 3.0]}
@@ -50,6 +51,7 @@ def test_round_trip(tmp_path):
 
 
 # tabulating a map takes seconds
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in effects.CASES if name != "`ImpedanceMap`"])
 def test_every_case_of_effects_is_evaluated_on_the_orbit(name):
     case = effects.CASES[name]

@@ -41,6 +41,7 @@ def _find(rows, setting, quantity="load"):
     return row
 
 
+@pytest.mark.slow
 def test_errors(rows):
     coarse, fine = _find(rows, "2D 32 x 4"), _find(rows, "2D 64 x 8")
     assert fine.error < 0.5 * coarse.error
@@ -64,6 +65,7 @@ def test_times(rows):
     assert _find(rows, "SOR 80 x 8, 1e-05 (paper)").newton > _find(rows, "SOR 80 x 8, 1e-03").newton > 5
 
 
+@pytest.mark.slow
 def test_errors_repeat_to_rounding(rows):
     for row, again in zip(rows, run_study(_study(), repeats=1, progress=None), strict=True):
         assert again.setting == row.setting
@@ -71,6 +73,7 @@ def test_errors_repeat_to_rounding(rows):
         assert again.value == pytest.approx(row.value, rel=1e-13)
 
 
+@pytest.mark.slow
 def test_in_parallel(rows):
     """A study in two processes finds the errors of one in a single process, and measures no times."""
     study = _study(settings=_study().settings[:2])
@@ -80,6 +83,7 @@ def test_in_parallel(rows):
         assert row.error == pytest.approx(_find(rows, row.setting, row.quantity).error, rel=1e-9, abs=1e-14)
 
 
+@pytest.mark.slow
 def test_a_failing_rung_is_recorded():
     bad = Setting(
         label="touching",
