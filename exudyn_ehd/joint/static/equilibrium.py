@@ -229,12 +229,7 @@ class EquilibriumResult:
 
 
 @overload
-def equilibrium(
-    bearing: TiltingPads,
-    *,
-    speed: float,
-    load: tuple[float, float],
-) -> TiltingPadResult: ...
+def equilibrium(bearing: TiltingPads, *, speed: float, load: tuple[float, float]) -> TiltingPadResult: ...
 @overload
 def equilibrium(
     bearing: JournalBearing,
@@ -338,12 +333,7 @@ def equilibrium(
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
     if isinstance(bearing, TiltingPads):
-        if np.any(b) or place != 0.0 or axial_load is not None:
-            raise InputError(
-                "equilibrium: tilt, axial_position and axial_load are not for TiltingPads(...), whose pads follow a "
-                "parallel journal only and hold nothing along the axis; leave them out."
-            )
-        return pad_equilibrium(bearing, omega, force, size)
+        return pad_equilibrium(bearing, omega, force, size, not np.any(b) and place == 0.0 and axial_load is None)
     require_rest(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
     faces, along = _faces(bearing, place, axial_load)

@@ -345,11 +345,19 @@ class TiltingPadResult:
         return own.real, own.imag / nu
 
 
-def pad_equilibrium(bearing: TiltingPads, speed: float, load: np.ndarray, size: float) -> TiltingPadResult:
+def pad_equilibrium(
+    bearing: TiltingPads, speed: float, load: np.ndarray, size: float, parallel: bool
+) -> TiltingPadResult:
     """Equilibrium of a journal in tilting pads under a load (2,), N, checked by `equilibrium`.
 
-    ``size``: force that the residual is divided by, N.
+    ``size``: force that the residual is divided by, N; ``parallel``: whether the journal has no tilt and nothing along
+    the axis is asked for.
     """
+    if not parallel:
+        raise InputError(
+            f"{WHERE}: tilt, axial_position and axial_load are not for TiltingPads(...), whose pads follow a parallel "
+            "journal only and hold nothing along the axis; leave them out."
+        )
     if bearing.cavitation.conserves_mass:
         raise InputError(
             f"{WHERE}: TiltingPads.cavitation={type(bearing.cavitation).__name__}(...) makes stiffness and damping "
