@@ -113,8 +113,7 @@ KINDS: dict[str, Kind] = {
 _AREAS = ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")
 _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
-        "JournalBearing.journal_radius",
-        "TiltingPads.journal_radius",
+        *(f"{bearing}.journal_radius" for bearing in ("JournalBearing", "TiltingPads")),
         "SphericalBearing.ball_radius",
         *(f"ThrustFaces.{name}_radius" for name in ("inner", "outer")),
         *(f"TiltingThrustPads.{name}_radius" for name in ("inner", "outer", "pivot")),
@@ -253,8 +252,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "flow": ("GivenFlow.flow",),
     "seal": ("EndSeal.conductance",),
     "time": (
-        "JointHistory.revolutions.period",
-        "LubricatedJoint.revolutions.period",
+        *(f"{record}.revolutions.period" for record in ("JointHistory", "LubricatedJoint")),
         "LubricatedJoint.record_films.period",
         "UntilPeriodic.period",
         "recommend_steps.period",
@@ -275,16 +273,12 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         *("CreateLubricatedJoint.bushGravity", "Gravity.acceleration"),
     ),
     "spin": (
-        "steady.speed",
+        *(f"{call}.speed" for call in ("steady", "equilibrium", "recommend", "recommend_steps")),
         "steady_spherical.angular_velocity",
-        "equilibrium.speed",
         "stribeck.speeds",
         "SolveEquilibrium.speeds",
         *(f"{call}.{end}" for call in ("SolveThreshold", "stability_map") for end in ("lowest", "highest")),
-        "recommend.speed",
-        "recommend_steps.speed",
-        "LubricatedJoint.place_in_equilibrium.speed",
-        "TiltingPadJoint.place_in_equilibrium.speed",
+        *(f"{joint}.place_in_equilibrium.speed" for joint in ("LubricatedJoint", "TiltingPadJoint")),
         "reduced.frequency",
         "CreateFlexibleBush.initialAngularVelocity",
     ),
@@ -294,12 +288,9 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "stiffness": ("TiltingThrustPads.pivot_stiffness", "TiltingPads.pivot_stiffness"),
     "damping": ("TiltingThrustPads.pivot_damping",),
     "force": (
-        "equilibrium.load",
+        *(f"{call}.load" for call in ("equilibrium", "stribeck", "recommend_steps")),
         "equilibrium.axial_load",
-        "stribeck.load",
-        "recommend_steps.load",
-        "LubricatedJoint.place_in_equilibrium.load",
-        "TiltingPadJoint.place_in_equilibrium.load",
+        *(f"{joint}.place_in_equilibrium.load" for joint in ("LubricatedJoint", "TiltingPadJoint")),
         "LubricatedJoint.stop_at.force",
     ),
     "line force": ("LineLoad.force_per_length",),

@@ -263,10 +263,17 @@ def CreateTiltingPadBearing(
         The system, before Assemble.
     name : str, default ""
         Name of the bearing; by default "tilting pads" and a number. Its pads are called "... pad 1" and so on.
-    itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame, show
-        As for `CreateLubricatedJoint`; the housing is a rigid body, its node, a marker on it, or ground.
+    itemNumbers : sequence of two, default (None, None)
+        Required: housing, journal, as for `CreateLubricatedJoint`; the housing is a rigid body, its node, a marker on
+        it, or ground.
+    position : (3,) [m], default ()
+        Point of the bearing's axis in its mid-plane, as for `CreateLubricatedJoint`.
+    axis : (3,), default ()
+        Axis z of the bearing, as for `CreateLubricatedJoint`.
     bearing : TiltingPads, default None
         Required: pads, pivots and oil, with mass and inertia.
+    rotationMatrixAxes : (3, 3) or None, default None
+        Frame of the bearing, from whose x the pivots' angles count, as for `CreateLubricatedJoint`.
     axial : Free or Held, default Free()
         Free: the journal slides along the axis, on which the pads hold nothing. Held: a constraint between housing and
         journal stops it.
@@ -277,6 +284,10 @@ def CreateTiltingPadBearing(
         Acceleration that gives the pads their weight, global.
     stepControl : StepControl or None, default None
         As for `CreateLubricatedJoint`, in the films of all pads.
+    useGlobalFrame : bool, default True
+        As for `CreateLubricatedJoint`.
+    show : bool, default True
+        Draw the films in Exudyn's renderer.
 
     Returns
     -------

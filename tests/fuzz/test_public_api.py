@@ -23,6 +23,7 @@ OF_A_MESH = {"DeadPressure", "FollowerPressure", "LineLoad", "SurfaceLoad", "Sup
 # One good example of every public description that needs more than numbers of any size.
 GOOD = [
     ehd.JournalBearing(journal_radius=0.02, length=0.02, radial_clearance=2e-5, lubricant=OIL),
+    ehd.TiltingPads(journal_radius=0.02, length=0.02, radial_clearance=2e-5, lubricant=OIL, pad_thickness=0.01),
     ehd.Lubricant(viscosity=0.02, temperature=310.0),
     ehd.RegularisedWall(onset=1e-6),
     ehd.GreenwoodTripp(composite_roughness=4e-7, composite_modulus=1e11),

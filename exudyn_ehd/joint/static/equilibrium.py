@@ -359,12 +359,7 @@ def equilibrium(
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
     if isinstance(bearing, TiltingPads):
-        if np.any(b) or place != 0.0 or axial_load is not None:
-            raise InputError(
-                "equilibrium: tilt, axial_position and axial_load are not for TiltingPads(...), whose pads follow a "
-                "parallel journal only and hold nothing along the axis; leave them out."
-            )
-        return pad_equilibrium(bearing, omega, force, size)
+        return pad_equilibrium(bearing, omega, force, size, not np.any(b) and place == 0.0 and axial_load is None)
     line, kind = isinstance(bearing.inlet, MaximumGap), LoadSearch
     if line:
         require_turning(bearing, force, b)

@@ -30,10 +30,11 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
-# Share of the force that may be left; rounds of the search, and of one for the tilt of a pad.
-TOLERANCE, ROUNDS, TILT_ROUNDS = 1e-9, 60, 60
+# Share of the force that may be left; rounds of a search for the tilt of a pad; steps in a row that may leave more than
+# a share of the unbalance before.
+TOLERANCE, TILT_ROUNDS, PATIENCE, FALLS = 1e-9, 60, 12, 0.9
 # Places after which a search gives up, and force on a pad, over the load, from which on it carries.
-MOST_PLACES, CARRIES = 300, 0.01
+MOST_PLACES, CARRIES = 400, 0.01
 # Round-off of the films' forces, as a share of them.
 ROUNDING = 1e-11
 # Change of a pad's edge over the clearance that ends the search for its tilt.
@@ -98,7 +99,7 @@ def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoa
                 best = max(best, (sense * float(here.forces[2]), place))
             above = tilt
         # a moment that is positive between two places only
-        places = tuple(best[1] + BETWEEN)
+        places = tuple(np.clip(best[1] + BETWEEN, 0.01, 0.99))
     resting = pad.at(journal, shift, widening)
     return None if resting is None else resting._replace(loaded=False)
 
@@ -220,20 +221,19 @@ class PadSearch:
     def _descend(self, here: Balanced) -> Balanced:
         """Steps downhill from a place until the load is carried or no step leads further."""
         first = 10.0 * self.size / self.bearing.radial_clearance
-        resistance, longest = 0.0, 0.5 * self.bearing.machined_clearance
-        for _ in range(ROUNDS):
-            if here.is_balanced(self.size, 1e-2 * TOLERANCE) or resistance > 1e6 * first or self.count > MOST_PLACES:
-                break
+        resistance, longest, idle = 0.0, 0.5 * self.bearing.machined_clearance, 0
+        while not here.is_balanced(self.size, 1e-2 * TOLERANCE) and idle < PATIENCE:
             rows = np.vstack((here.slope, resistance * np.eye(here.unknowns.size)))
             step, *_ = np.linalg.lstsq(rows, np.append(here.unbalance, np.zeros_like(here.unbalance)), rcond=None)
             step *= min(1.0, longest / max(float(np.abs(step).max()), 1e-300))
             there = self.at(here.unknowns + step)
-            if there is None or there.left >= here.left:
-                if here.is_balanced(self.size):
-                    break
+            idle = 0 if there and there.left < FALLS * here.left else idle + 1
+            if there and there.left < here.left:
+                here, resistance = there, resistance / 5.0 if resistance > 1e-6 * first else 0.0
+            elif here.is_balanced(self.size):
+                break
+            else:
                 resistance = max(8.0 * resistance, 1e-3 * first)
-                continue
-            here, resistance = there, resistance / 5.0 if resistance > 1e-6 * first else 0.0
         return here
 
 
@@ -345,11 +345,19 @@ class TiltingPadResult:
         return own.real, own.imag / nu
 
 
-def pad_equilibrium(bearing: TiltingPads, speed: float, load: np.ndarray, size: float) -> TiltingPadResult:
+def pad_equilibrium(
+    bearing: TiltingPads, speed: float, load: np.ndarray, size: float, parallel: bool
+) -> TiltingPadResult:
     """Equilibrium of a journal in tilting pads under a load (2,), N, checked by `equilibrium`.
 
-    ``size``: force that the residual is divided by, N.
+    ``size``: force that the residual is divided by, N; ``parallel``: whether the journal has no tilt and nothing along
+    the axis is asked for.
     """
+    if not parallel:
+        raise InputError(
+            f"{WHERE}: tilt, axial_position and axial_load are not for TiltingPads(...), whose pads follow a parallel "
+            "journal only and hold nothing along the axis; leave them out."
+        )
     if bearing.cavitation.conserves_mass:
         raise InputError(
             f"{WHERE}: TiltingPads.cavitation={type(bearing.cavitation).__name__}(...) makes stiffness and damping "

@@ -93,8 +93,14 @@ class TiltingPads(Checked):
         about z at equal distances.
     film : FiniteLength, default FiniteLength()
         Film model and grid; a pad gets its share of the columns of the whole circle.
-    cavitation, contact, turbulence, end_pressures
-        As for `JournalBearing`.
+    cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure, default SwiftStieber()
+        Cavitation model; `equilibrium` takes those that do not conserve mass.
+    contact : RegularisedWall or None, default None
+        Smooth wall that carries load before the gap vanishes, as for `JournalBearing`.
+    turbulence : NgPan, Hirs or None, default None
+        Turbulent films; None: laminar.
+    end_pressures : (float, float), default (0.0, 0.0)
+        Gauge pressures at both ends of the pads along the axis, Pa.
     edge_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at the leading and the trailing edges, Pa.
 

@@ -132,6 +132,15 @@ def test_unloaded_pads_are_reported():
         ehd.equilibrium(pads, speed=SPEED, load=(0.0, -1.0))
 
 
+def test_a_pad_that_would_carry_too_little_is_tipped_over():
+    """On flexible pivots the upper pad carries 96 N, and less at no position: under more load it is unloaded."""
+    pads = dataclasses.replace(PADS, pivot_stiffness=3e8, film=ehd.FiniteLength(n_theta=64, n_z=6))
+    found = [ehd.equilibrium(pads, speed=SPEED, load=(1000.0 * f, -4000.0 * f)) for f in (0.8, 0.85, 0.9)]
+    assert [rest.loaded[2] for rest in found] == [True, False, False]
+    assert found[0].pad_forces[2] > 50.0 > 1.0 > found[1].pad_forces[2]
+    assert all(rest.residual < 1e-8 for rest in found)
+
+
 def test_contact_holds_a_pad_that_sprags():
     wall = ehd.RegularisedWall(onset=3e-6)
     rest = ehd.equilibrium(dataclasses.replace(PADS, preload=0.0, contact=wall), speed=SPEED, load=(0.0, -LOAD))
