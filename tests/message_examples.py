@@ -1382,6 +1382,8 @@ ehd.TiltingPads(**plain, pad_thickness=0.01, pivot_offset=1.5)
 
 ehd.TiltingPads(**rocking, pads=2)
 
+ehd.TiltingPads(**rocking, film=ehd.ShortBearing())
+
 ehd.equilibrium(pads, speed=300.0, load=(0.0, -1000.0), tilt=(1e-4, 0.0))
 
 mass = ehd.TiltingPads(**rocking, cavitation=ehd.ElrodAdams())

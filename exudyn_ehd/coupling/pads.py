@@ -37,8 +37,6 @@ from exudyn_ehd.joint.static.pads import PadModel, TiltingPads
 from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
 
 _WHERE = "CreateTiltingPadBearing"
-# Rounds of the tilts from the motions in the pads' frames, each of which gains a factor of the clearance over R.
-ROUNDS = 4
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -166,7 +164,8 @@ class TiltingPadJoint:
         outward = np.einsum("dk,knd->kn", radial, motions) - b.arm
         along = np.einsum("dk,knd->kn", across, motions)
         pivots, tilts = b.arm - b.preload * b.machined_clearance + shifts, np.zeros_like(along)
-        for _ in range(ROUNDS):
+        # each round gains a factor of the clearance over R
+        for _ in range(4):
             position = np.linalg.lstsq(radial.T, pivots + outward * np.cos(tilts) - along * np.sin(tilts))[0].T
             tilts = np.arcsin(((position @ across).T - along * np.cos(tilts)) / outward)
         return position, tilts
@@ -336,15 +335,23 @@ def CreateTiltingPadBearing(
         centre = points[0] - bearing.preload * bearing.machined_clearance * radial
         own, pivot = f"{name} pad {k + 1}", centre + bearing.arm * radial
         body, *joints = _add_pad(mbs, own, bearing, (housing, pivot), (rotation, radial), weight)
-        item, places = body_item(mbs, _WHERE, body), (centre, points[1])
-        joint = attach(mbs, PadModel(bearing.pad(k)), item, journal, places, rotation, name=own, show=show)
+        joint = attach(
+            mbs,
+            PadModel(bearing.pad(k)),
+            body_item(mbs, _WHERE, body),
+            journal,
+            (centre, points[1]),
+            rotation,
+            name=own,
+            show=show,
+        )
         if stepControl is not None:
             joint.element.steps.control = GapWatch(stepControl, joint.bearing)
         pads.append(joint)
         objects.append((body, *joints))
     constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
-    side, numbers = housing.side(points[0], rotation), [*zip(*objects, strict=True), ()][:3]
-    return TiltingPadJoint(mbs, name, bearing, pads, numbers, constraint, side)
+    numbers = [*zip(*objects, strict=True), ()][:3]
+    return TiltingPadJoint(mbs, name, bearing, pads, numbers, constraint, housing.side(points[0], rotation))
 
 
 def _add_pad(

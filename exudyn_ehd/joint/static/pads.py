@@ -160,14 +160,17 @@ class TiltingPads(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.pads * self.extent >= TURN:
+        if self.pads >= TURN / self.extent:
             raise InputError(
-                f"TiltingPads.extent: {self.pads} pads of {self.extent:g} rad overlap; they must be below "
-                f"{TURN / self.pads:g} rad each."
+                f"TiltingPads.extent: {self.pads} pads of {self.extent:g} rad overlap; take at most "
+                f"{math.ceil(TURN / self.extent) - 1} pads of this extent, or a smaller one."
             )
         edges = require_vector("TiltingPads.edge_pressures", self.edge_pressures, 2, "Pa")
         object.__setattr__(self, "edge_pressures", tuple(edges.tolist()))
-        self.pad(0)
+        try:
+            self.pad(0)
+        except InputError as error:
+            raise InputError(f"TiltingPads: a pad has no film: {error}") from None
 
     @property
     def pivots(self) -> np.ndarray:
