@@ -62,7 +62,7 @@ def _jac_column(jac, which, k):
     return jac[which, 0, k], jac[which, 1, k], jac[which, 2, k]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def relative_motion(frame_h, frame_j, motion_out):
     """Motion (10,) of the journal axis in the joint frame of the housing; see `exudyn_ehd.joint.solved_film`.
 
@@ -117,7 +117,7 @@ def _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, out):
     out[9, c] = sign * (dd_t[2] - (da_t[2] * d[2] + a_t[2] * dd[2]) / a[2] + a_t[2] * d[2] * da[2] / (a[2] * a[2]))
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out):
     """Derivatives (10, n) of the motion with respect to q and q_t, columns in the order housing, journal."""
     axis, omega_h = column(frame_j, AXIS), column(frame_h, SPIN)
@@ -173,7 +173,7 @@ def variation_of(
     return motion_q, motion_qt
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def global_loads(frame_h, frame_j, wrench, loads_out):
     """Global force and moment at the two markers, rows F_H, M_H, F_J, M_J of ``loads_out`` (4, 3).
 
@@ -197,7 +197,7 @@ def wrench_force(frame_h, frame_j, jac_h, jac_j, wrench, force_out):
             force_out[k] += loads[k, c] * wrench[c]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def wrench_map(frame_h, frame_j, jac_h, jac_j):
     """Map (n, 6) from the wrench on the journal, joint frame, to the generalized forces of both sides."""
     n_h = jac_h.shape[2]
@@ -253,7 +253,7 @@ def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f
         out[n + a, n + a] += f_q * stiffness[a]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, k_out, d_out):
     """Add dQ/dq to ``k_out`` and write dQ/dq_t to ``d_out`` (n, n); ``k_out`` brings the geometric blocks of the sides.
 
