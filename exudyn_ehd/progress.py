@@ -99,6 +99,12 @@ class Progress:
         self.width = len(text)
 
 
+def tell(message: str) -> None:
+    """Print a line, to pipes and files too; not in the processes of a study, nor with the display switched off."""
+    if _asked[0] is not False and multiprocessing.parent_process() is None:
+        print(message, file=_stream(), flush=True)
+
+
 @contextmanager
 def announced(message: str, patience: float = PATIENCE) -> Iterator[None]:
     """Print a message if the block takes longer than ``patience`` seconds: work whose share can't be told."""

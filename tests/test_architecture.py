@@ -29,7 +29,7 @@ def _sources():
 
 def test_only_coupling_and_studies_import_exudyn():
     for path, _, tree, _ in _parsed():
-        if path.is_relative_to(PACKAGE / "coupling") or path.is_relative_to(PACKAGE / "studies"):
+        if path.relative_to(PACKAGE).parts[0] in ("coupling", "studies", "__main__.py"):
             continue
         for node in ast.walk(tree):
             names = []

@@ -45,22 +45,21 @@ def is_plain(parts: FilmParts, effects: Effects) -> bool:
 def solve_plain(
     parts: FilmParts, scales: Scales, motion: np.ndarray, known: np.ndarray, step: float
 ) -> tuple[SolvedFilm | None, int]:
-    """The film of a motion (10,) from the one before, and the number of linear solves.
+    """The film of a motion (10,), from the one before if there is one, and the number of linear solves.
 
-    None where there is no film before, no gap, or no film found. ``known`` (3,): scaled pressures at both ends and
-    in the cavity.
+    None where there is no gap, or no film found. ``known`` (3,): scaled pressures at both ends and in the cavity.
     """
     s = parts.solver
     y, line, work, g = s.system, s.line, s.work, parts.grid
     if not work.warm:
-        return None, 0
+        np.logical_not(g.fixed, out=work.active)
     out = np.empty(18)
     found, steps, count, width, smallest, couette, s_theta = _plain_film(
         motion,
         parts.motion_scale,
         known,
         (scales.force, scales.shear, g.reference_length, parts.half_length, s.flow_x, s.closure.cavity_shear),
-        (s.squeeze, line is not None),
+        (s.squeeze, line is not None, work.warm),
         g.directions,
         g.mesh,
         g.weight,
@@ -106,11 +105,11 @@ def solve_plain(
 def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, columns, work, out):
     """Returns (found, steps, count, width, smallest gap, integral of the Couette shear, s_theta).
 
-    ``kinds``: whether there is a squeeze, and whether the line lies inside the cells; ``columns``: `ColumnLine` or
-    None; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
+    ``kinds``: whether there is a squeeze, whether the line lies inside the cells, and whether the start is warm;
+    ``columns``: `ColumnLine` or None; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
     force, shear, radius, half_length, flow_x, cavity_shear = sizes
-    squeeze, in_cells = kinds
+    squeeze, in_cells, warm = kinds
     pc = known[2]
     vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
     kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[10]
@@ -127,7 +126,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
         P[i, 0], P[i, -1] = known[0], known[1]
     set_links(H, HF, H_t, squeeze, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
     forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
-    ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, True, line, active, factor, x, P)
+    ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, warm, line, active, factor, x, P)
     if columns is not None:
         count = extend_film(columns, b, sets, pc, factor, count, P)
     pressure_integrals(P, weight, at[0], at[1], at[4], integrals)

@@ -1,6 +1,7 @@
-"""Compilation of the first films of an installation by two processes.
+"""Compilation of kernels.
 
 Module map
 ----------
-ahead  which kernels a scene needs, by the table ``first_films.txt``, shared out between this process and a helper
+ahead         kernels of first films by the table ``first_films.txt``, shared out between this process and a helper
+compilations  what goes along with every compilation: a line for the user, a pause of the garbage collector
 """

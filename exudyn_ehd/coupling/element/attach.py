@@ -27,13 +27,11 @@ from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
-from exudyn_ehd.joint.model.build import MESSAGE
 from exudyn_ehd.joint.model.build_flexible import TurningModel
 from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.joint.thrust import ThrustModel
-from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.loads import Gravity
@@ -330,9 +328,8 @@ def add_faces(mbs: exu.MainSystem, element: FilmElement, items: tuple[Item, Item
     model, sides = ThrustModel(element.model.bearing), element.sides
     element.faces, element.offset = model, offset
     housing, journal = (initial_frame(mbs, item, side) for item, side in zip(items, sides, strict=True))
-    with announced(MESSAGE):
-        start = model.evaluate(np.append(motion_of(housing, journal), centre_of(housing, journal, offset)[2]))
-        start.tangent()
+    start = model.evaluate(np.append(motion_of(housing, journal), centre_of(housing, journal, offset)[2]))
+    start.tangent()
     if start.status is not Status.CONVERGED:
         _, _, bx, by, *_, place = start.motion
         raise InputError(

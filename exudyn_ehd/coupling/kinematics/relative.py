@@ -63,7 +63,7 @@ def _jac_column(jac, which, k):
     return jac[which, 0, k], jac[which, 1, k], jac[which, 2, k]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def motion_of(frame_h, frame_j):
     """Motion (10,) of the journal axis in the joint frame of the housing; see `exudyn_ehd.joint.solved_film`.
 
@@ -114,7 +114,7 @@ def _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, out):
     out[9, c] = sign * (dd_t[2] - (da_t[2] * d[2] + a_t[2] * dd[2]) / a[2] + a_t[2] * d[2] * da[2] / (a[2] * a[2]))
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def variation_of(frame_h, frame_j, jac_h, jac_j):
     """Derivatives (10, n) of the motion with respect to q and q_t, columns in the order housing, journal."""
     axis, omega_h = column(frame_j, AXIS), column(frame_h, SPIN)
@@ -156,7 +156,7 @@ def angle_of(frame_h: np.ndarray, frame_j: np.ndarray) -> float:
     return math.atan2(turn[1], turn[0])
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def global_loads(frame_h, frame_j, wrench, loads_out):
     """Global force and moment at the two markers, rows F_H, M_H, F_J, M_J of ``loads_out`` (4, 3).
 
@@ -170,7 +170,7 @@ def global_loads(frame_h, frame_j, wrench, loads_out):
         loads_out[2, i], loads_out[3, i] = force[i], moment[i] - arm[i]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def wrench_map(frame_h, frame_j, jac_h, jac_j):
     """Map (n, 6) from the wrench on the journal, joint frame, to the generalized forces of both sides."""
     n_h = jac_h.shape[2]
@@ -189,7 +189,7 @@ def wrench_map(frame_h, frame_j, jac_h, jac_j):
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, k_out, d_out):
     """Add dQ/dq to ``k_out`` and write dQ/dq_t to ``d_out`` (n, n); ``k_out`` brings the geometric blocks of the sides.
 

@@ -120,7 +120,7 @@ def _rotation_euler(e0, e1, e2, e3, a_out):
     return norm2
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _turn_vector(v0, v1, v2, a_out, jr_out):
     """Exponential map of a rotation vector, and the same matrix as Jr."""
     angle = np.sqrt(v0 * v0 + v1 * v1 + v2 * v2)
@@ -133,7 +133,7 @@ def _turn_vector(v0, v1, v2, a_out, jr_out):
             jr_out[i, j] = a_out[i, j]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _turn_tait_bryan(v0, v1, v2, a_out, jr_out):
     """A = Rx(a) Ry(b) Rz(c), and the global axes about which the three angles turn, as columns of Jr."""
     ca, sa, cb, sb, cc, sc = np.cos(v0), np.sin(v0), np.cos(v1), np.sin(v1), np.cos(v2), np.sin(v2)
@@ -199,7 +199,7 @@ def rotation_of(kind: int, reference: np.ndarray) -> np.ndarray:
     return a
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _turn_change(kind, theta, jr, w_out):
     """Changes (3, m, m) of the columns of Jr (3, m) with theta, in the first entries of ``w_out`` (3, 4, 4)."""
     w_out.fill(0.0)
@@ -283,7 +283,7 @@ def node_change(kind, q, reference, rho, change_out):
                 change_out[i, nt + k, nt + j], change_out[3 + i, nt + k, nt + j] = dp[i], dr[i]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def lever_change(dr, turn, moving, arm):
     """Change of turn x arm, 3-tuples, for a change ``dr`` of the turn while the arm turns with ``moving``."""
     first, second = cross(dr, arm), cross(turn, cross(moving, arm))

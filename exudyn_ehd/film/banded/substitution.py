@@ -31,13 +31,13 @@ _0, _1, _2 = (_unsigned(k) for k in range(3))
 _YES, _NO = np.True_, np.False_
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def solve_ldl(band, inverse, count, width, x):
     """Solve ``A x = b`` with the symmetric factor of `factors.factor_band` for every row of x (k, count), in place."""
     _solve_rows(band, band, _YES, _YES, inverse, count, width, x)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def solve_ldl_one(band, inverse, count, width, x):
     """Solve ``A x = b`` as `solve_ldl`, for one right-hand side x (count,), in place."""
     _solve_one(band.reshape(-1), band.reshape(-1), band.shape[1], _YES, _YES, inverse, count, width, x)
@@ -236,8 +236,8 @@ def solve_columns(lower, upper, inverse, symmetric, count, width, x):
     symmetric : bool
         ``A = U^T D^-1 U`` with ``upper`` alone; else ``A = L U`` with a unit diagonal of L.
     """
-    back = pack_blocks(upper, inverse, True, count, width)
-    ahead = back if symmetric else pack_blocks(lower, inverse, False, count, width)
+    back = pack_blocks(upper, inverse, _YES, count, width)
+    ahead = back if symmetric else pack_blocks(lower, inverse, _NO, count, width)
     blocks = len(ahead)
     diagonal, tile = np.zeros(4 * blocks), np.zeros((blocks, 4 * TILE))
     rows = tile.reshape(4 * blocks, TILE)

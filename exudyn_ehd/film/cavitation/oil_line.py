@@ -77,7 +77,7 @@ class CurveFields(NamedTuple):
     rise: np.ndarray
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def curve_of(f):
     """Return `CurveFields` of its fields (9, n m)."""
     return CurveFields(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8])

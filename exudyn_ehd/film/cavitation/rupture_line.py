@@ -123,7 +123,7 @@ class RuptureLine:
         return out
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def line_terms(kx, b, fixed, in_cells, line):
     """f and k of all vertices, and what follows from them; f = 0 where the line is not looked for ``in_cells``."""
     links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]

@@ -66,9 +66,11 @@ BENDS = 6.0
 FAR = 10.0
 # Outcomes of `look`.
 GOES_ON, FOUND, LOST = 0, 1, 2
+# numba would compile everything below anew for a plain False
+_NO = np.False_
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _factor(terms, kind, oil, curve, full, fill, factor):
     """Number the unknowns and factor Newton's matrix; returns (ok, count, width)."""
     order, number, lower, upper, inv_diag, slopes = factor
@@ -94,7 +96,7 @@ def factor_film(film, kind, oil, full, P, fill, factor):
     return _factor(terms_of(film[0], film[1]), kind, oil, curve_of(film[3]), full, fill, factor)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def look(terms, late, kind, curve, even, stored, is_last, full, state, rest, progress):
     """Add vertices at which oil piles up to the film, and judge the residual; returns (outcome, progress).
 
@@ -138,7 +140,7 @@ def look(terms, late, kind, curve, even, stored, is_last, full, state, rest, pro
     return outcome, (ready, own, done, drift, last)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def take_step(kind, bends, curve, factor, size, is_first, fresh, x, full, state, rest, progress):
     """Take Newton's step; returns (whether it is finite, number of vertices that change their side, progress).
 
@@ -167,7 +169,7 @@ def take_step(kind, bends, curve, factor, size, is_first, fresh, x, full, state,
     return moved < 1e300, changes, (ready, own, done, drift + bent, moved)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _newton(film, pc, kind, oil, start, factor, x, full, state):
     """Solve as `solve_film`, with pressures P above the cavity's."""
     (u, P, fill), (order, _, lower, upper, inv_diag, _), (known, ready, count, width) = state, factor, start
@@ -185,7 +187,7 @@ def _newton(film, pc, kind, oil, start, factor, x, full, state):
         start_states(terms, pc, curve, full, u)
     else:
         place_states(curve, full, P, fill, u)
-    progress, band = (ready, False, False, 0.0, LEFT), (order, lower, upper, inv_diag)
+    progress, band = (ready, _NO, _NO, 0.0, LEFT), (order, lower, upper, inv_diag)
     set_states(terms, carried, curve, full, u, P, fill)
     for step in range(MOST_STEPS):
         if oil is None:
@@ -218,7 +220,7 @@ def _newton(film, pc, kind, oil, start, factor, x, full, state):
     return False, MOST_STEPS, False, count, width
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def is_exact(progress):
     """Return whether the factor at the end is that of the solved film."""
     _, own, done, drift, _ = progress

@@ -54,7 +54,7 @@ def join_film(links, line, active, lack, p):
     return joined
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def line_rows(lack, line, order, count, rhs_out):
     """Write the lack of the unknowns' balances (count,) with the line, and its share of their diagonals."""
     rest, f, k, s, share = lack.reshape(-1), line[0], line[1], line[2], line[6]
@@ -65,7 +65,7 @@ def line_rows(lack, line, order, count, rhs_out):
         share[r] = k[c] * short / s[c]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def factor_line(links, line, factor, count, width, first, kept):
     """Assemble and factor from the first row that changes, which is ``first`` or whose s does, by more than ``kept``
     of itself.
@@ -163,7 +163,7 @@ MOST_STEPS = 100
 _NONE = np.int64(0)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _newton(links, line, active, factor, x, forth, p):
     """Film from the sets and pressures at hand; returns (ok, steps, count, width)."""
     order, old_order, number, band, inv_diag = factor
@@ -194,7 +194,7 @@ def _newton(links, line, active, factor, x, forth, p):
     return False, most, count, width
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor, x, P):
     """Film from the set ``active``, if it ``is_known`` also from the pressures P; returns (ok, steps, count, width).
 
@@ -261,7 +261,7 @@ def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace) -> Non
     refine_line((system.kx, system.kz, system.b), line.block, work.factor, work.count, work.width)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def refine_line(links, line, factor, count, width):
     """Factor of a solution; rows whose diagonals are its own to rounding stay."""
     (order, _, _, _, _), k, s, share = factor, line[1], line[2], line[6]

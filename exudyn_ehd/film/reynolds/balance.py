@@ -20,6 +20,8 @@ import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+# numpy's integers, since numba compiles kernels anew for each plain one
+_0, _1 = np.int64(0), np.int64(1)
 
 
 class FilmTerms(NamedTuple):
@@ -39,7 +41,7 @@ class FilmTerms(NamedTuple):
     fixed: np.ndarray
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def terms_of(f, fixed):
     """`FilmTerms` of their fields (10, n, m)."""
     return FilmTerms(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], fixed)
@@ -140,9 +142,9 @@ def film_balance(P, fill, rho, film, out):
         fx[:last],
         p[:last],
         p[m:],
-        part(carried, 0, last),
+        part(carried, _0, last),
         part(carried, m, size),
-        part(rho, 0, last),
+        part(rho, _0, last),
         part(rho, m, size),
         along[m:size],
     )
@@ -152,9 +154,9 @@ def film_balance(P, fill, rho, film, out):
         p[last:],
         p[:m],
         part(carried, last, size),
-        part(carried, 0, m),
+        part(carried, _0, m),
         part(rho, last, size),
-        part(rho, 0, m),
+        part(rho, _0, m),
         along[size:],
     )
     for j in range(m):
@@ -166,10 +168,10 @@ def film_balance(P, fill, rho, film, out):
         fz[:e],
         p[:e],
         p[1:],
-        part(carried, 0, e),
-        part(carried, 1, size),
-        part(rho, 0, e),
-        part(rho, 1, size),
+        part(carried, _0, e),
+        part(carried, _1, size),
+        part(rho, _0, e),
+        part(rho, _1, size),
         across[1:size],
     )
     across[0] = across[size] = 0.0
@@ -178,8 +180,8 @@ def film_balance(P, fill, rho, film, out):
         film.grow.reshape(-1),
         film.known.reshape(-1),
         film.kept.reshape(-1),
-        part(fill, 0, size),
-        part(rho, 0, size),
+        part(fill, _0, size),
+        part(rho, _0, size),
         across[1:],
         across[:size],
         along[m:],
@@ -286,15 +288,15 @@ def film_slopes(fill, full, rho, rho_P, film, slopes):
             slopes[1, start:stop],
         )
     k, f = kz[:e], fz[:e]
-    fill_a, fill_b, rho_a, rho_b = part(carried, 0, e), part(carried, 1, size), part(rho, 0, e), part(rho, 1, size)
+    fill_a, fill_b, rho_a, rho_b = part(carried, _0, e), part(carried, _1, size), part(rho, _0, e), part(rho, _1, size)
     _end_slopes(
-        k, f, -1.0, part(full, 0, e), fill_a, fill_b, rho_a, rho_b, part(rho_P, 0, e), prompt[:e], slopes[2, :e]
+        k, f, -1.0, part(full, _0, e), fill_a, fill_b, rho_a, rho_b, part(rho_P, _0, e), prompt[:e], slopes[2, :e]
     )
     _end_slopes(
-        k, f, 1.0, part(full, 1, size), fill_a, fill_b, rho_a, rho_b, part(rho_P, 1, size), prompt[1:], slopes[3, :e]
+        k, f, 1.0, part(full, _1, size), fill_a, fill_b, rho_a, rho_b, part(rho_P, _1, size), prompt[1:], slopes[3, :e]
     )
     slopes[2:4, e] = 0.0
     _storage_slopes(
-        film.area.reshape(-1), part(full, 0, size), part(fill, 0, size), part(rho, 0, size), part(rho_P, 0, size),
+        film.area.reshape(-1), part(full, _0, size), part(fill, _0, size), part(rho, _0, size), part(rho_P, _0, size),
         film.grow.reshape(-1), film.known.reshape(-1), slopes[4],
     )  # fmt: skip

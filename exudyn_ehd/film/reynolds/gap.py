@@ -51,7 +51,7 @@ def largest_eccentricity(pose, half_length):
     return worst
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
     """Gaps of a rigid journal at vertices and links, with ``squeeze`` also their rate; returns the smallest gap.
 

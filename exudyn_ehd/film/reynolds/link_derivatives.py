@@ -20,7 +20,7 @@ from numba import njit
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def derivatives_of(d):
     """DX, DZ, SX, SZ, SZX of their array (5, n, m), see the module's docstring."""
     return d[0], d[1], d[2], d[3], d[4]

@@ -1,7 +1,4 @@
-"""Model from a bearing's description, and compilation of its kernels before a study or a run.
-
-A message says so if the compilation takes noticeable time.
-"""
+"""Model from a bearing's description, and compilation of its kernels before a study or a run."""
 
 from __future__ import annotations
 
@@ -18,13 +15,7 @@ from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.kernels.ahead import compile_ahead
-from exudyn_ehd.progress import announced
 from exudyn_ehd.status import InputError
-
-MESSAGE = (
-    "exudyn_ehd: compiling the film's kernels; this happens once (15 to 30 s, some effects more), later runs read "
-    "them from numba's cache ..."
-)
 
 # Options with the same kernels as without them, or with more.
 _BESIDE = {
@@ -50,8 +41,7 @@ def compile_together(bearing: JournalBearing, *more: str) -> None:
     *more : str
         Other groups of `exudyn_ehd.kernels`.
     """
-    with announced(MESSAGE):
-        compile_ahead(*_groups(bearing), *more)
+    compile_ahead(*_groups(bearing), *more)
 
 
 def _groups(bearing: JournalBearing) -> tuple[str, ...]:
@@ -70,14 +60,13 @@ def compile_kernels(model: BearingModel) -> None:
     motion = np.zeros(MOTION_SIZE)
     motion[0] = 0.1 * model.bearing.radial_clearance
     motion[8] = 1.0
-    with announced(MESSAGE):
-        compile_ahead(*_groups(model.bearing))
-        history = model.initial_history(motion)
-        evaluation = model.evaluate(motion, history, 1.0)
-        if evaluation.film is not None:
-            evaluation.tangent()
-            evaluation.quantities()
-            evaluation.history()
+    compile_ahead(*_groups(model.bearing))
+    history = model.initial_history(motion)
+    evaluation = model.evaluate(motion, history, 1.0)
+    if evaluation.film is not None:
+        evaluation.tangent()
+        evaluation.quantities()
+        evaluation.history()
     model.forget()
 
 

@@ -13,6 +13,8 @@ from exudyn_ehd.film.sensitivity import columns_of_links
 from exudyn_ehd.film.solvers.liner.elements import combine, gaps_of, slopes_of
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+# numpy's integers, since numba compiles kernels anew for each plain one
+_0, _1 = np.int64(0), np.int64(1)
 
 
 @njit(cache=True)
@@ -89,17 +91,17 @@ def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz
     combine(H[:e], 0.5, H[1:], 0.5, mean[:e])
     g, g_h, c_h = of_axis(links, 1)
     _conductance_gradients(
-        p[:e], p[1:], kz[:e], mean[:e], lean[:e], part(g, 0, e), part(g_h, 0, e), by[2, :e], by[3, :e]
+        p[:e], p[1:], kz[:e], mean[:e], lean[:e], part(g, _0, e), part(g_h, _0, e), by[2, :e], by[3, :e]
     )
     _add_carriers(
         fz[:e],
         vz,
         deep[:e],
-        part(c_h, 0, e),
-        part(fill, 0, e),
-        part(fill, 1, size),
-        part(rho, 0, e),
-        part(rho, 1, size),
+        part(c_h, _0, e),
+        part(fill, _0, e),
+        part(fill, _1, size),
+        part(rho, _0, e),
+        part(rho, _1, size),
         by[2, :e],
     )
     by[2:, e] = 0.0
@@ -196,13 +198,13 @@ def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, 
         _add_end(h, d, -1.0, D[start:stop], H[start:stop], part(full, start, stop), slopes[0, start:stop])
         _add_end(h, d, 1.0, D[there:end], H[there:end], part(full, there, end), slopes[1, start:stop])
     h, d = by[2, :e], by[3, :e]
-    _add_end(h, d, -1.0, H[:e], H[:e], part(full, 0, e), slopes[2, :e])
-    _add_end(h, d, 1.0, H[1:], H[1:], part(full, 1, size), slopes[3, :e])
+    _add_end(h, d, -1.0, H[:e], H[:e], part(full, _0, e), slopes[2, :e])
+    _add_end(h, d, 1.0, H[1:], H[1:], part(full, _1, size), slopes[3, :e])
     _add_storage(
         area,
-        part(fill, 0, size),
-        part(full, 0, size),
-        part(rho, 0, size),
+        part(fill, _0, size),
+        part(full, _0, size),
+        part(rho, _0, size),
         H,
         gap_slopes.rate_P.reshape(-1),
         rates,

@@ -1,0 +1,58 @@
+"""Compilations of the package's kernels in this process: a line for the user, and a pause of the garbage collector.
+
+numba reports every compilation as an event. Kernels that are read from its cache make none. The collector would look
+through numba's syntax trees again and again, which takes a tenth of the processor time.
+"""
+
+from __future__ import annotations
+
+import gc
+
+from numba.core import event
+
+from exudyn_ehd.progress import tell
+
+PACKAGE = __name__.split(".")[0]
+MESSAGE = "exudyn_ehd: compiling kernels, once per installation (about 20 s for a first film) ..."
+
+
+class Compilations(event.Listener):
+    """Listener to numba's compilations, which runs under numba's lock.
+
+    Attributes
+    ----------
+    count : int
+        Kernels of the package that this process has compiled.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._running, self._collects = 0, False
+
+    def on_start(self, event: event.Event) -> None:
+        """Begin a compilation, maybe within another one."""
+        if self._running or _is_own(event):
+            if self._running == 0:
+                self._collects = gc.isenabled()
+                gc.disable()
+            if self.count == 0:
+                tell(MESSAGE)
+            # no kernel is handed over as a C function
+            event.data["dispatcher"].targetoptions["no_cfunc_wrapper"] = True
+            self.count += 1
+            self._running += 1
+
+    def on_end(self, event: event.Event) -> None:
+        """End the compilation that began last."""
+        if self._running:
+            self._running -= 1
+            if self._running == 0 and self._collects:
+                gc.enable()
+
+
+def _is_own(event: event.Event) -> bool:
+    return bool(event.data["dispatcher"].py_func.__module__.split(".")[0] == PACKAGE)
+
+
+COMPILATIONS = Compilations()
+event.register("numba:compile", COMPILATIONS)
