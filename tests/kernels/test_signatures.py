@@ -12,7 +12,7 @@ from exudyn_ehd.kernels.ahead import TABLE, find, read_types, table
 from tests.benchmarks.first_films import write_type
 
 # Kernels that a first model compiles
-MOST_KERNELS = 75
+MOST_KERNELS = 63
 f2, b2 = types.Array(types.float64, 2, "C"), types.Array(types.boolean, 2, "C")
 
 
