@@ -224,7 +224,7 @@ class JournalBearing(Checked):
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
         require_seals(self.end_seals)
         require_areas(self.supply)
-        self._check_arcs()
+        check_arcs(self.arc, self.arcs, self.length)
         open_ring = isinstance(self.inlet, MaximumGap)
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         if isinstance(self.film, ImpedanceMap):
@@ -257,20 +257,6 @@ class JournalBearing(Checked):
                 "JournalBearing.cavitation must be Gumbel() or SwiftStieber() at cavity_pressure=0 and cavity_shear=1 "
                 f"with film=ImpedanceMap(...), got {closure!r}; {expected}"
             )
-
-    def _check_arcs(self) -> None:
-        if not isinstance(self.arcs, tuple) or not all(isinstance(arc, Arc) for arc in self.arcs):
-            raise InputError(
-                f"JournalBearing.arcs must be a tuple of Arc(...), got {self.arcs!r}; for a single one write "
-                "arcs=(Arc(...),), for lobes arcs=two_lobe(...)."
-            )
-        if self.arcs and self.arc is not None:
-            raise InputError(
-                "JournalBearing.arc and JournalBearing.arcs exclude each other: arc=Arc(...) stands for "
-                "arcs=(Arc(...),); leave one of the two out."
-            )
-        if self.bore_arcs:
-            check_arcs(self.bore_arcs, self.length)
 
     def _check_supply(self) -> None:
         if not self.supply:

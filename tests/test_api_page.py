@@ -179,7 +179,7 @@ def test_every_column_of_a_history_is_in_the_table_and_occurs(joints):
     quantities = {member.value for member in ehd.Quantity}
     assert quantities | {"time", "step_error", "step_count"} == fields
     # where a sign is told: a spin in the positive sense about z, a weight along -y and -z
-    first, second = histories
+    first, second, _ = histories
     assert (first.friction_torque < 0.0).all() and (first.power_loss > 0.0).all() and first.force[-1, 1] > 0.0
     # the groove feeds the film under pressure once the journal no longer squeezes it
     assert first.supply_flow[-1] > 0.0 and first.leakage[-1] > 0.0

@@ -53,7 +53,15 @@ def test_descriptions_stay_what_they_were():
     """Signatures, pickling and equality; what is missing is Python's to say; a second call changes nothing."""
     hole = ehd.Hole(angle=1.0, diameter=0.004)
     assert pickle.loads(pickle.dumps(hole)) == hole == ehd.Hole(angle=1.0, diameter=0.004)
-    assert list(inspect.signature(ehd.Hole).parameters) == ["angle", "z", "diameter", "pressure", "depth", "rotating"]
+    assert list(inspect.signature(ehd.Hole).parameters) == [
+        "angle",
+        "z",
+        "diameter",
+        "pressure",
+        "supply",
+        "depth",
+        "rotating",
+    ]
     with pytest.raises(TypeError, match="missing 1 required keyword-only argument: 'diameter'"):
         ehd.Hole(angle=1.0)
     before = ehd.Hole.__init__

@@ -306,14 +306,25 @@ def _lobes(
     )
 
 
-def check_arcs(arcs: tuple[Arc, ...], length: float) -> None:
+def check_arcs(arc: Arc | None, arcs: tuple[Arc, ...], length: float) -> None:
     """Raise `InputError` for arcs that overlap or do not follow each other, and for dams without lands."""
-    ends = [arc.start + arc.extent for arc in arcs]
+    if not isinstance(arcs, tuple) or not all(isinstance(part, Arc) for part in arcs):
+        raise InputError(
+            f"JournalBearing.arcs must be a tuple of Arc(...), got {arcs!r}; for a single one write arcs=(Arc(...),), "
+            "for lobes arcs=two_lobe(...)."
+        )
+    if arcs and arc is not None:
+        raise InputError(
+            "JournalBearing.arc and JournalBearing.arcs exclude each other: arc=Arc(...) stands for arcs=(Arc(...),); "
+            "leave one of the two out."
+        )
+    arcs = arcs if arc is None else (arc,)
+    ends = [part.start + part.extent for part in arcs]
     between = [
         (after.start - end + TOUCHING) % TURN - TOUCHING
         for after, end in zip((*arcs[1:], *arcs[:1]), ends, strict=True)
     ]
-    if sum(between) + sum(arc.extent for arc in arcs) > 1.5 * TURN:
+    if sum(between) + sum(part.extent for part in arcs) > 1.5 * TURN:
         k = int(np.argmax(between))
         after = arcs[(k + 1) % len(arcs)]
         raise InputError(
@@ -321,11 +332,11 @@ def check_arcs(arcs: tuple[Arc, ...], length: float) -> None:
             f"overlaps arcs[{k}], from {arcs[k].start:g} to {ends[k]:g} rad, or does not follow it; give arcs without "
             "overlaps in the order of their angles."
         )
-    for k, arc in enumerate(arcs):
-        if arc.dam is not None and not arc.dam.length <= (1.0 - LEAST_LANDS) * length:
+    for k, part in enumerate(arcs):
+        if part.dam is not None and not part.dam.length <= (1.0 - LEAST_LANDS) * length:
             raise InputError(
                 f"JournalBearing.arcs[{k}].dam.length must be at most {1.0 - LEAST_LANDS:g} of the bearing's "
-                f"{length:g} m, got {arc.dam.length!r}; the lands beside a dam hold its pressure."
+                f"{length:g} m, got {part.dam.length!r}; the lands beside a dam hold its pressure."
             )
 
 

@@ -28,7 +28,7 @@ from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.impedance import ImpedanceEvaluation, ImpedanceModel
 from exudyn_ehd.joint.model.quantities import supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.static.equilibrium import whirl_threshold
+from exudyn_ehd.joint.static.dynamic_stiffness import whirl_threshold
 from exudyn_ehd.status import FilmError, InputError, Status
 
 LOWEST_ORDER = 0.5

@@ -44,6 +44,7 @@ GOOD = [
     ehd.EdgeRelief(drop=1e-6, relief_length=2e-3),
     ehd.AxialProfile(positions=(-0.01, 0.01), depths=(0.0, 1e-6)),
     ehd.VogelTemperature(first=(313.0, 0.04), second=(373.0, 0.006)),
+    ehd.TableViscosity(temperatures=(293.0, 313.0, 373.0), viscosities=(0.1, 0.04, 0.006)),
     ehd.WaltherTemperature(first=(313.0, 0.04), second=(373.0, 0.006)),
     ehd.ReynoldsTemperature(point=(313.0, 0.04), coefficient=0.03),
     ehd.HollowCylinder(inner_radius=0.02, thickness=0.01, length=0.02, axial=2, radial=1, circumferential=8),

@@ -52,6 +52,9 @@ SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
 # Places and slopes x, y, bx, by of a journal, and the rows of a wrench that do work on them: F_x, F_y, M_y, -M_x.
 PLACES, LOADS, SIGNS = 4, [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 
+# Share of the largest stiffness that the k of a threshold may miss.
+ROUNDING = 1e-12
+
 
 def slow_motions(tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """K and C (4, 4) of x, y (m) and slopes bx, by (rad): minus the derivatives of F_x, F_y (N), M_y, -M_x (N m).
@@ -212,10 +215,52 @@ def response_of(evaluation: Evaluation) -> tuple[tuple[np.ndarray, np.ndarray], 
     return slow, FilmResponse(evaluation.film, evaluation.steady_tangent())
 
 
+def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:
+    """Whirl ratio and critical mass of a rigid rotor on one bearing (half of a symmetric rotor on two).
+
+    With ``det(M s^2 + C s + K) = 0`` at ``s = i gamma omega``::
+
+        k = (Kxx Cyy + Kyy Cxx - Kxy Cyx - Kyx Cxy) / (Cxx + Cyy),
+        (gamma omega)^2 = ((k - Kxx)(k - Kyy) - Kxy Kyx) / (Cxx Cyy - Cxy Cyx),   M = k / (gamma omega)^2.
+
+    Source: J. W. Lund, J. Tribology 109 (1987) 37, derived again from the determinant.
+
+    Parameters
+    ----------
+    stiffness, damping : (2, 2) arrays
+    omega : float
+        Spin, rad/s, > 0.
+
+    Returns
+    -------
+    whirl_ratio, critical_mass : float
+        (nan, inf) if stable at any mass; (nan, 0) if unstable at any, as k is not positive or C singular.
+    """
+    (kxx, kxy), (kyx, kyy) = stiffness
+    (cxx, cxy), (cyx, cyy) = damping
+    trace = cxx + cyy
+    if trace <= 0.0:
+        return math.nan, 0.0
+    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
+    above, below = (k - kxx) * (k - kyy) - kxy * kyx, cxx * cyy - cxy * cyx
+    # an unbroken film about the centre has k = 0, to rounding of either sign
+    rounding = ROUNDING * max(map(abs, (kxx, kxy, kyx, kyy)))
+    if k < -rounding or (k <= rounding and above <= 0.0):
+        return math.nan, 0.0
+    k = max(k, 0.0)
+    if below == 0.0 < above:
+        # it whirls ever faster, at ever smaller a mass
+        return math.nan, 0.0
+    if below == 0.0 or above / below <= 0.0:
+        return math.nan, math.inf
+    square = above / below
+    return math.sqrt(square) / omega, k / square
+
+
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:
     """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu), x and y its first.
 
-    As `exudyn_ehd.joint.static.equilibrium.whirl_threshold`; thresholds are looked for between 0.05 and twice the
+    As `whirl_threshold`; thresholds are looked for between 0.05 and twice the
     spin omega > 0, and the one of the smallest mass counts.
     """
 

@@ -27,8 +27,15 @@ from exudyn_ehd.joint.balance.position import (
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.fields import remembered
+from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, response_of, slow_motions, threshold
+from exudyn_ehd.joint.static.dynamic_stiffness import (
+    FilmResponse,
+    response_of,
+    slow_motions,
+    threshold,
+    whirl_threshold,
+)
 from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult, pad_equilibrium
 from exudyn_ehd.joint.static.pads import TiltingPads
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, model_at, require_rest, result_at, result_of
@@ -109,8 +116,6 @@ LOADS = {"smallest": 1e-30, "largest": 1e15}
 # pressure of restrictors. Smaller ones ask for a more exact position, which round-off ends at 1e-16 of the first force,
 # and the balances of restrictors at 1e-13 of the second.
 NO_LOAD, NO_LOAD_FED = 1e-5, 1e-3
-# Share of the largest stiffness that the k of a threshold may miss.
-ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -352,10 +357,7 @@ def equilibrium(
     place = require_number("equilibrium: axial_position", axial_position, "m")
     size = float(np.hypot(*force))
     if size == 0.0:
-        pad = bearing.pad(0) if isinstance(bearing, TiltingPads) else bearing
-        fed = max((getattr(area.supply, "supply_pressure", 0.0) for area in pad.supply), default=0.0)
-        area = 2.0 * bearing.journal_radius * bearing.length
-        size = NO_LOAD * pad.reference_force(omega) + NO_LOAD_FED * area * fed
+        size = _no_load(bearing.pad(0) if isinstance(bearing, TiltingPads) else bearing, omega)
     else:
         require_size("equilibrium: load", size, "N", **LOADS)
     if isinstance(bearing, TiltingPads):
@@ -371,10 +373,27 @@ def equilibrium(
     motion = np.array([*first_guess(bearing, omega, force, b), *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0, place])
     search = kind(model, "equilibrium", np.append(force, along), size=size, faces=faces)
     found = steadiest(search, search.find(motion))
-    K, C, response = _small_motions(found)
-    model = model_at(bearing, found.motion) if line else model
-    ratio, mass = whirl_threshold(K, C, abs(omega)) if response is None else threshold(response.at, abs(omega))
-    frequency = abs(omega) * (0.5 if math.isnan(ratio) else ratio)
+    small = _small_motions(found)
+    return _result(search, found, model_at(bearing, found.motion) if line else model, small)
+
+
+def _no_load(bearing: JournalBearing, omega: float) -> float:
+    """Force, N, that counts as the load of a bearing without one."""
+    fed = max((getattr(area.supply, "supply_pressure", 0.0) for area in bearing.supply), default=0.0)
+    area = 2.0 * bearing.journal_radius * bearing.length
+    return NO_LOAD * bearing.reference_force(omega) + NO_LOAD_FED * area * fed
+
+
+def _result(
+    search: LoadSearch,
+    found: Place,
+    model: BearingModel,
+    small: tuple[np.ndarray, np.ndarray, FilmResponse | None],
+) -> EquilibriumResult:
+    """The result at a place that was found, with its `_small_motions`."""
+    (K, C, response), bearing, omega = small, model.bearing, abs(float(found.motion[8]))
+    ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
+    frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)[:2, :2]
     there = Z.real, Z.imag / frequency
     if not model.remembers_mass:
@@ -436,48 +455,6 @@ def _faces(bearing: JournalBearing, position: float, load: float | None) -> tupl
             "is held along the axis, or finds its place under a load; leave one out."
         )
     return ThrustModel(bearing), along
-
-
-def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:
-    """Whirl ratio and critical mass of a rigid rotor on one bearing (half of a symmetric rotor on two).
-
-    With ``det(M s^2 + C s + K) = 0`` at ``s = i gamma omega``::
-
-        k = (Kxx Cyy + Kyy Cxx - Kxy Cyx - Kyx Cxy) / (Cxx + Cyy),
-        (gamma omega)^2 = ((k - Kxx)(k - Kyy) - Kxy Kyx) / (Cxx Cyy - Cxy Cyx),   M = k / (gamma omega)^2.
-
-    Source: J. W. Lund, J. Tribology 109 (1987) 37, derived again from the determinant.
-
-    Parameters
-    ----------
-    stiffness, damping : (2, 2) arrays
-    omega : float
-        Spin, rad/s, > 0.
-
-    Returns
-    -------
-    whirl_ratio, critical_mass : float
-        (nan, inf) if stable at any mass; (nan, 0) if unstable at any, as k is not positive or C singular.
-    """
-    (kxx, kxy), (kyx, kyy) = stiffness
-    (cxx, cxy), (cyx, cyy) = damping
-    trace = cxx + cyy
-    if trace <= 0.0:
-        return math.nan, 0.0
-    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
-    above, below = (k - kxx) * (k - kyy) - kxy * kyx, cxx * cyy - cxy * cyx
-    # an unbroken film about the centre has k = 0, to rounding of either sign
-    rounding = ROUNDING * max(map(abs, (kxx, kxy, kyx, kyy)))
-    if k < -rounding or (k <= rounding and above <= 0.0):
-        return math.nan, 0.0
-    k = max(k, 0.0)
-    if below == 0.0 < above:
-        # it whirls ever faster, at ever smaller a mass
-        return math.nan, 0.0
-    if below == 0.0 or above / below <= 0.0:
-        return math.nan, math.inf
-    square = above / below
-    return math.sqrt(square) / omega, k / square
 
 
 def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping: np.ndarray) -> float:

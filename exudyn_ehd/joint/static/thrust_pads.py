@@ -138,7 +138,7 @@ def axial(pads: TiltingThrustPads, K: np.ndarray, C: np.ndarray, nu: float) -> c
     return complex(pads.pads * Z)
 
 
-class PadSearch:
+class ThrustPadSearch:
     """Films of a pad at coordinates v under a collar that turns at a speed.
 
     Parameters
@@ -220,7 +220,7 @@ def equilibrium_of_pads(
             "one number along the axis, under a collar that does not tilt."
         )
     carried = require_number(f"{WHERE}: load", load, "N", above=0.0, hint=ALONG)  # type: ignore[arg-type]
-    search = PadSearch(pads, speed, carried / pads.pads)
+    search = ThrustPadSearch(pads, speed, carried / pads.pads)
     for trailing in STARTS:
         place = search.find(trailing)
         if place is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
@@ -234,18 +234,19 @@ def equilibrium_of_pads(
     )
 
 
-def _result(search: PadSearch, v: np.ndarray, found: FaceState, r: np.ndarray) -> ThrustPadsResult:
+def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndarray) -> ThrustPadsResult:
     """Result at coordinates of an equilibrium, whose film is the model's last."""
     pads, film, nu = search.pads, search.film, abs(search.speed)
     K, C = search.matrices()
     Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
     (inner, outer), (first, last) = film.flows(), film.flows_along()
+    peak, _, _ = refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.link_x, grid.z)
     return ThrustPadsResult(
         film_thickness=float(v[0]),
         inclination=np.array([v[2], -v[1]]),
         minimum_gap=found.minimum_gap,
         maximum_gap=float(film.gap.max()),
-        peak_pressure=film.scales.pressure * refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.z, False)[0],
+        peak_pressure=film.scales.pressure * peak,
         power_loss=pads.pads * found.power_loss,
         friction_torque=-pads.pads * found.power_loss / search.speed,
         flows=pads.pads * np.array([-first, last, -inner, outer]),

@@ -14,7 +14,7 @@ from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.equilibrium import whirl_threshold
+from exudyn_ehd.joint.static.dynamic_stiffness import whirl_threshold
 from tests.reference import short_bearing
 
 SPEED = 100.0
