@@ -348,7 +348,7 @@ LEFT = "Messages without an example"
 NAMES = "Every section says with the names of which of these blocks its code begins."
 REST = wrapped(
     'The texts of all other messages, with "..." for values. They need folders that can\'t be written, an object of '
-    "Exudyn without matrices, or a solver that gives up."
+    "Exudyn without matrices, or a solver or a search that gives up."
 )
 
 
