@@ -74,7 +74,7 @@ def test_tangents_against_differences(seed):
         assert error.max() < 2e-5 * np.abs(matrix / scale).max()
 
 
-@pytest.mark.parametrize("between, stiffness", itertools.product((True, False), (None, 4e8)))
+@pytest.mark.parametrize("between, stiffness", [*itertools.product((True, False), (None, 4e8))])
 def test_load_on_and_between_pads(between, stiffness):
     pads = dataclasses.replace(PADS, load_between_pads=between, pivot_stiffness=stiffness)
     rest = ehd.equilibrium(pads, speed=SPEED, load=(0.0, -LOAD))
