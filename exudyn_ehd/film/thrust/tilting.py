@@ -30,7 +30,6 @@ from exudyn_ehd.status import (
     Checked,
     InputError,
     require_count,
-    require_integer,
     require_number,
     require_type,
     require_vector,
@@ -130,7 +129,7 @@ class TiltingThrustPads(Checked):
         **dict.fromkeys(
             ("inner_radius", "outer_radius", "pivot_radius", "clearance", "pad_mass", "pivot_stiffness"), POSITIVE
         ),
-        "pads": partial(require_integer, at_least=1),
+        "pads": partial(require_count, at_least=1, hint="bearings have 3 to 20."),
         "extent": partial(require_number, at_least=1e-3, below=2.0 * math.pi),
         "pivot_angle": POSITIVE,
         "pivot_damping": NOT_NEGATIVE,

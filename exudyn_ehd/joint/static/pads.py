@@ -47,7 +47,7 @@ from exudyn_ehd.status import (
     InputError,
     Status,
     require_bool,
-    require_integer,
+    require_count,
     require_number,
     require_vector,
 )
@@ -146,7 +146,7 @@ class TiltingPads(Checked):
         "journal_radius": partial(POSITIVE, hint="it is half the diameter."),
         "length": POSITIVE,
         "radial_clearance": partial(POSITIVE, hint="it is the gap at the pivots under a concentric journal."),
-        "pads": partial(require_integer, at_least=3, hint="a journal needs pads on all sides."),
+        "pads": partial(require_count, at_least=3, hint="a journal needs pads on all sides."),
         "extent": partial(require_number, at_least=SMALLEST_ARC, below=TURN, hint="it is the angle of one pad."),
         "preload": partial(require_number, at_least=0.0, below=1.0, hint="it is 1 - c_b / c_p."),
         "pivot_offset": partial(require_number, above=0.0, below=1.0, hint="0.5 is the middle of the pad."),
