@@ -1,10 +1,10 @@
 """Storage on disk: files that are either whole or absent, and arrays kept between runs.
 
 Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. A
-damaged file gives a warning and is replaced. Simultaneous
-runs don't disturb each other, since a file appears under its name only when complete. If a folder can't be written,
-every run computes the arrays again. When the folder is full, the file unused for longest is deleted. numba keeps
-compiled kernels in folders of its own; where it finds none, the process gets one.
+damaged file, or that of other inputs, gives a warning and is replaced. Simultaneous runs don't disturb each other,
+since a file appears under its name only when complete. If a folder can't be written, every run computes the arrays
+again. When the folder is full, the file unused for longest is deleted. numba keeps compiled kernels in folders of its
+own; where it finds none, the process gets one.
 """
 
 from __future__ import annotations
@@ -195,7 +195,7 @@ def cached_arrays(name: str, key: object, compute: Callable[[], Arrays]) -> Arra
     path = cache_folder() / f"{name}_{fingerprint(key)}.bin"
     stored = None
     with suppress(OSError):
-        stored = read_arrays(path, name)
+        stored = read_arrays(path, path.stem)
         if stored is None:
             warnings.warn(f"exudyn_ehd: the cache file {path.name} is damaged; it is built again.", stacklevel=3)
         # files that nobody reads go first, see _make_room
@@ -207,7 +207,7 @@ def cached_arrays(name: str, key: object, compute: Callable[[], Arrays]) -> Arra
     with suppress(OSError):
         with replacing(path, binary=True) as file:
             # numpy's stub lets keywords be flags too
-            np.savez(file, format=name, **arrays)  # type: ignore[arg-type]
+            np.savez(file, format=path.stem, **arrays)  # type: ignore[arg-type]
         _make_room(path)
     return arrays
 
