@@ -27,8 +27,8 @@ from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.status import Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization
-# Colour of the housing's ring or the bush.
-GREY = [0.72, 0.74, 0.78, 0.3]
+# Colour of the housing's ring or the bush, through which the film is seen.
+GREY = [0.72, 0.74, 0.78, 0.2]
 # Thickness of the housing's ring, and the clearance as drawn: shares of the journal's radius.
 WALL, CLEARANCE = 0.2, 0.1
 
