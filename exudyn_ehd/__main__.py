@@ -32,10 +32,8 @@ GROUPS = {
 """Bearing of every group."""
 
 
-def run(group: str) -> None:
-    """Run two steps of a journal in a free housing, and one steady film."""
-    bearing = GROUPS[group]
-    ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.5)
+def run_bodies(bearing: ehd.JournalBearing) -> None:
+    """Run two steps of a journal in a free housing."""
     container = exu.SystemContainer()
     system = container.AddSystem()
     inertia = InertiaCylinder(7800.0, 0.1, 0.01, 2)
@@ -48,6 +46,12 @@ def run(group: str) -> None:
     settings.solution.file.write = False
     ehd.ConfigureSolver(settings)
     ehd.SolveDynamic(system, settings)
+
+
+def run(group: str) -> None:
+    """Run a steady film of a group, and two steps of its joint."""
+    ehd.steady(GROUPS[group], speed=314.0, eccentricity_ratio=0.5)
+    run_bodies(GROUPS[group])
 
 
 def main(arguments: list[str]) -> None:

@@ -15,9 +15,7 @@ import exudyn as exu
 import exudyn.graphics
 import exudyn.itemInterface as eii
 import numpy as np
-from exudyn.rigidBodyUtilities import (
-    RigidBodyInertia,
-)
+from exudyn.rigidBodyUtilities import RigidBodyInertia
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.api import attach

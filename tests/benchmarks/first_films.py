@@ -14,12 +14,11 @@ import tempfile
 import time
 from typing import Any
 
-import exudyn as exu
-from exudyn.utilities import InertiaCylinder
 from numba.core import types
 from numba.core.types.containers import BaseTuple
 
 import exudyn_ehd as ehd
+from exudyn_ehd.__main__ import FILM, run_bodies
 from exudyn_ehd.kernels.ahead import HELPER_VARIABLE, PACKAGE, SCALARS, TABLE, find
 
 SIZE = {"journal_radius": 0.01, "length": 0.02, "radial_clearance": 20e-6}
@@ -107,23 +106,6 @@ def run_film(cavitation: str) -> None:
     ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.7)
 
 
-def run_bodies() -> None:
-    """Two steps of a journal in a housing that moves."""
-    container = exu.SystemContainer()
-    mbs = container.AddSystem()
-    inertia = InertiaCylinder(7800.0, 0.1, 0.01, 2)
-    bodies = [mbs.CreateRigidBody(inertia=inertia, initialAngularVelocity=[0.0, 0.0, w]) for w in (1.0, 314.0)]
-    bearing = ehd.JournalBearing(**SIZE, lubricant=ehd.Lubricant(viscosity=0.02))
-    ehd.CreateLubricatedJoint(mbs, "film", bodies, [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], bearing)
-    mbs.Assemble()
-    settings = exu.SimulationSettings()
-    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 2, 1e-5
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    ehd.ConfigureSolver(settings)
-    ehd.SolveDynamic(mbs, settings)
-
-
 def notes_of(film: str) -> list[Note]:
     """Kernels that a film compiles, as noted by a process with an empty cache."""
     with tempfile.TemporaryDirectory() as folder:
@@ -173,7 +155,7 @@ if __name__ == "__main__":
     if len(sys.argv) > 1:
         seen = note_compilations()
         if sys.argv[1] == "bodies":
-            run_bodies()
+            run_bodies(FILM)
         else:
             run_film(sys.argv[1])
         print()

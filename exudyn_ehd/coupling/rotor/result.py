@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import exudyn as exu
@@ -13,16 +13,13 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
 from exudyn_ehd.coupling.rotor.films import FilmMemory
+from exudyn_ehd.coupling.rotor.vibrations import delayed_vibrations, vibrations
 from exudyn_ehd.pictures.records import Target
-from exudyn_ehd.status import FilmError, InputError, require_number
+from exudyn_ehd.status import InputError, require_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-# Vibrations of films with a memory: steps that may pass, relative change of the last one, and step of the difference
-# quotients over half the speed; each step divides the error by some 1e5.
-STEPS, SETTLED, DIFFERENCE = 30, 1e-7, 1e-5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -149,10 +146,11 @@ class RotorResult:
     def _modes(self) -> tuple[np.ndarray, np.ndarray]:
         """Eigenvalues (k, 2n), sorted by imaginary and real part, and modes (k, N, 2n) in the directions."""
         matrices = self.mass_matrix, self.damping_matrix, self.stiffness_matrix
-        found = [_vibrations(*parts) for parts in zip(*matrices, strict=True)]
+        found = [vibrations(*parts) for parts in zip(*matrices, strict=True)]
         for k, memories in enumerate(self.memories):
             if memories:
-                found[k] = self._with_memory(k)
+                M, D, K = (part[k] for part in matrices)
+                found[k] = delayed_vibrations(M, D, K, partial(self._beyond, k), abs(float(self.speeds[k])))
         values, vectors = (np.array(part) for part in zip(*found, strict=True))
         order = np.lexsort((values.real, values.imag))
         values = np.take_along_axis(values, order, axis=1)
@@ -162,37 +160,12 @@ class RotorResult:
         """Dynamic stiffness (n, n) of motions exp(s t) at a speed beyond that of slow motions."""
         return sum((film.beyond(s) for film in self.memories[k]), np.zeros(self.mass_matrix.shape[1:]))
 
-    def _with_memory(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + Z(s)) y = 0`` with the whole dynamic stiffness Z.
-
-        Every vibration is that of ``K + s D`` tangent to Z at the one before, from the vibrations at half the speed on.
-        """
-        M, D, K = self.mass_matrix[k], self.damping_matrix[k], self.stiffness_matrix[k]
-        half = 0.5 * abs(self.speeds[k])
-        slower = self._beyond(k, 1j * half)
-        values, vectors = _vibrations(M, D + slower.imag / half, K + slower.real)
-        for j in np.flatnonzero(values.imag >= 0.0):
-            twin = np.argmin(np.abs(values - values[j].conj())) if values[j].imag > 0.0 else j
-            for _ in range(STEPS):
-                s, at = values[j], self._beyond(k, values[j])
-                by_s = (self._beyond(k, s + DIFFERENCE * half) - at) / (DIFFERENCE * half)
-                near, shapes = _vibrations(M, D + by_s, K + at - s * by_s)
-                best = np.argmin(np.abs(near - s))
-                values[j], vectors[:, j] = near[best], shapes[:, best]
-                if abs(near[best] - s) <= SETTLED * abs(s):
-                    break
-            else:
-                raise FilmError(
-                    f"RotorResult: the vibration near {s:.6g} 1/s at {self.speeds[k]:.6g} rad/s is not found, because "
-                    "its films follow it with a delay; look at speeds beside it, or run it in time."
-                )
-            if twin != j:
-                values[twin], vectors[:, twin] = values[j].conj(), vectors[:, j].conj()
-        return values, vectors
-
     @property
     def eigenvalues(self) -> np.ndarray:
-        """(k, 2n) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency."""
+        """(k, 2n) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency.
+
+        With `ElrodAdams` and liners a motion that only decays may stand here twice, since films have more of these.
+        """
         return self._modes[0]
 
     @property
@@ -349,14 +322,6 @@ class RotorResult:
 
         places = self.motion[:, :, :2] / self.clearances[:, None]
         return plot_positions(self.speeds, places, self.joints, ax=ax, path=path)
-
-
-def _vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K) y = 0``."""
-    n = len(M)
-    lower = -np.linalg.solve(M, np.hstack((K, D)))
-    values, vectors = np.linalg.eig(np.vstack((np.eye(n, 2 * n, n), lower)))
-    return values.astype(complex), vectors[:n].astype(complex)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

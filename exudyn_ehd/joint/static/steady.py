@@ -158,7 +158,7 @@ SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 @dataclass(frozen=True, eq=False)
 class SteadyResult(FilmRecord, FilmPictures):
-    """Result of `steady`: one film.
+    """Result of `steady`: the film at one position.
 
     ``plot_pressure()`` and its like draw it. SI units; vectors in the joint frame: origin on the bearing's mid-plane,
     z = bearing axis, fixed in the housing. Angles count from x towards y.

@@ -91,6 +91,36 @@ def test_a_symmetric_rotor_in_films_that_remember_is_two_single_bearings(options
     np.testing.assert_allclose(response.films[0, 0], expected, rtol=1e-5)
 
 
+def unstable_motions(result):
+    """Number of eigenvalues with a positive real part, by the turns of det T along the imaginary axis.
+
+    ``det T(s)`` behaves as s^2n far away, and stable films have no poles on the right: of n half turns from 0 to
+    infinity every root on the right takes two.
+    """
+    M, D, K = result.mass_matrix[0], result.damping_matrix[0], result.stiffness_matrix[0]
+    signs = []
+    for nu in (0.0, *np.geomspace(1e-2, 1e8, 1000)):
+        T = K + 1j * nu * D - nu**2 * M + sum(memory.beyond(1j * nu) for memory in result.memories[0])
+        signs.append(np.linalg.slogdet(T)[0])
+    angles = np.unwrap(np.angle(signs))
+    return len(M) - (angles[-1] - angles[0]) / np.pi
+
+
+@pytest.mark.parametrize(("mass", "speed"), [(20.0, 300.0), (200.0, 300.0), (4000.0, 600.0)])
+@pytest.mark.parametrize("name", ["oil content", "liner", "oil content, liner"])
+def test_no_vibration_in_films_that_remember_is_missed(name, mass, speed):
+    """Nyquist counts the unstable ones, and no vibration stands twice, in a rotor that is not symmetric."""
+    film = bearing(**MEMORIES[name])
+    scale = {"transverse": 0.01 * mass, "polar": 0.005 * mass, "weight": 200.0 * WEIGHT / mass}
+    found = ehd.SolveEquilibrium(shaft(place=0.05, mass=mass, film=film, **scale)[0], speed)
+    values = found.eigenvalues[0]
+    assert np.sum(values.real > 0.0) == pytest.approx(unstable_motions(found), abs=0.02)
+    vibrations = values[values.imag > 0.0]
+    apart = np.abs(vibrations[:, None] - vibrations) / np.abs(vibrations) + np.eye(vibrations.size)
+    assert vibrations.size >= 2 and apart.min() > 1e-3
+    assert np.isfinite(found.campbell()["frequency"]).sum() == vibrations.size
+
+
 def test_a_vertical_rotor_at_the_exact_centre_has_the_coefficients_of_a_slight_load():
     """Without a load, and with one that moves it by 1e-5 of the clearance."""
     fine = bearing(film=ehd.FiniteLength())

@@ -150,10 +150,10 @@ def test_balance_over_a_settled_cycle(number):
     assert exchanged == pytest.approx(max(flows), rel=0.02)
 
 
-def check_cycle(number, tolerance, per_turn=64, **options):
+def check_cycle(number, tolerance, per_turn=64, turns=15, **options):
     """Over the last turn the loss leaves by oil and walls, but for the heat by which the film's oil still gains."""
     rows, held = [], []
-    for model, evaluation, history in whirl(number, 15, per_turn, **options):
+    for model, evaluation, history in whirl(number, turns, per_turn, **options):
         film, T, thermal = evaluation.film, history.temperature, model.effects.thermal
         balance, rise = thermal.balance(film, T), thermal.split(T)[0] - SUPPLY
         content = film.solver.content if film.solver.closure.conserves_mass else film.solver.H
@@ -171,8 +171,9 @@ def check_cycle(number, tolerance, per_turn=64, **options):
 @pytest.mark.slow
 def test_heat_balance_over_a_settled_cycle():
     """0.5 %: heat of the pressure flow on ten rows; 0.1 %: storage that 64 steps a turn leave."""
-    for number in (23, *range(0, 200, 9)):
-        check_cycle(number, 0.01)
+    for number in (23, *range(0, 200, 11)):
+        # a wide groove, whose own oil warms up for long
+        check_cycle(number, 0.01, turns=45 if number == 154 else 15)
 
 
 @pytest.mark.slow
