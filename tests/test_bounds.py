@@ -39,6 +39,8 @@ def beyond():
 @pytest.mark.slow
 def test_kernels_stay_within_their_arrays(tmp_path):
     environment = os.environ | {"NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
+    # the tests of a worker share the cache of modes of its run; these are a run of their own
+    environment.pop("PYTEST_XDIST_WORKER", None)
     look = "import importlib.util as u; s = u.spec_from_file_location('t', {!r}); t = u.module_from_spec(s); "
     look += "s.loader.exec_module(t); t.beyond()"
     options = {"cwd": ROOT, "env": environment, "capture_output": True, "text": True}

@@ -456,13 +456,14 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     warn_of_overload(model.bearing, peak, force, where)
     warn_of_grid(film, where)
     warn_of_starved(model.bearing, film.solver.reservoirs, where)
-    reference, (pressures, flows) = model.bearing.reference_force(motion[8]), pocket_pressures(film)
+    # quotients of Python's own numbers overflow without a warning
+    reference, friction = float(model.bearing.reference_force(motion[8])) or math.nan, abs(float(q["friction_torque"]))
+    pressures, flows = pocket_pressures(film)
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
     inlet, through = passing_flows(film)
-    sommerfeld = force / reference if reference > 0.0 else math.nan
     heat: dict[str, float] = {}
     if model.effects.thermal is not None and film.history is not None:
         heat = model.effects.thermal.balance(film, film.history.temperature)
@@ -485,12 +486,10 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         contact_torque=q["contact_torque"],
         contact_power_loss=q["contact_power_loss"],
         peak_contact_pressure=q["peak_contact_pressure"],
-        sommerfeld_number=sommerfeld,
+        sommerfeld_number=force / reference,
         attitude_angle=attitude,
-        characteristic_number=0.5 / (math.pi * sommerfeld) if force > 0.0 else math.inf,
-        friction_number=(
-            abs(q["friction_torque"]) / (model.bearing.radial_clearance * force) if force > 0.0 else math.inf
-        ),
+        characteristic_number=reference / force / (2.0 * math.pi) if force > 0.0 else math.inf,
+        friction_number=friction / model.bearing.radial_clearance / force if force > 0.0 else math.inf,
         status=evaluation.status,
         iterations=evaluation.iterations,
         peak_temperature=q.get("peak_temperature"),
