@@ -60,7 +60,7 @@ def solve_plain(
         known,
         (scales.force, scales.shear, g.reference_length, parts.half_length, s.flow_x, s.closure.cavity_shear),
         (s.squeeze, line is not None, work.warm),
-        g.directions,
+        (g.directions, g.gap_shapes),
         g.mesh,
         g.weight,
         y.fields,
@@ -102,7 +102,7 @@ def solve_plain(
 
 
 @njit(cache=True, nogil=True)
-def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, columns, work, out):
+def _plain_film(motion, scale, known, sizes, kinds, normals, mesh, weight, fields, sets, line, columns, work, out):
     """Returns (found, steps, count, width, smallest gap, integral of the Couette shear, s_theta).
 
     ``kinds``: whether there is a squeeze, whether the line lies inside the cells, and whether the start is warm;
@@ -114,7 +114,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
     kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[10]
     H, HF, H_t, P = fields[11], fields[12], fields[13], fields[14]
-    (fixed, active), (factor, x) = sets, work
+    (fixed, active), (factor, x), (at, shapes) = sets, work, normals
     for q in range(8):
         out[10 + q] = motion[q] * scale[q]
     pose, rate, integrals = out[10:14], out[14:], out[6:10]
@@ -129,7 +129,7 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
     ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, warm, line, active, factor, x, P)
     if columns is not None:
         count = extend_film(columns, b, sets, pc, factor, count, P)
-    pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
+    pressure_integrals(P, weight, shapes, integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     ends = end_forces(H, mesh[0], known)
     speeds = motion[8], motion[9]

@@ -145,6 +145,7 @@ EFFECTS = {
 # Modules that every film uses, that describe a scene, or (the last line) whose
 # kernels only other kernels of their effect call.
 SHARED = {
+    "gradients",
     "combinations",
     "cavitation.closures",
     "cavitation.linear_film",
@@ -166,7 +167,6 @@ SHARED = {
     "solvers.answers",
     "solvers.film",
     "solvers.solver",
-    "sensitivity",
     "supply.areas",
     "supply.rows",
     "reynolds.link_derivatives",

@@ -1,20 +1,12 @@
-"""Derivatives of the links' flows to gap and speeds at fixed pressure, and their sums with adjoint solutions.
+"""Derivatives of the links' flows to gap and speeds at fixed pressure.
 
-For an adjoint solution lam the gradient of ``-lam . r``, r the balance of the vertices, is taken either as fields
-(`contract_links`) or, with the chain rule to the journal's pose, from the gradients of the balances
-(`exudyn_ehd.film.sensitivity.motion_columns`).
-
-Symbols: DX, DZ derivative of the flow of a link in theta, z with respect to the gap that the link sees (with the
-limiter's slope for the true gap), SX, SZ with respect to its own mean speed, SZX of the flow in z with respect to vx;
-all with metric. ``sigma = fill_upstream (rho_a + rho_b) / 2`` on the link a -> b with the density ratio rho: what a
-link carries of a full film's Couette flow.
+Symbols: DX derivative of the flow of a link in theta to the gap that the link sees, DZ of the flow of one in z to the
+gap at either of its ends; SX, SZ to its own mean speed, SZX of the flow in z to vx; all with metric. What a link a -> b
+carries of a full film's Couette flow is ``sigma = fill_upstream (rho_a + rho_b) / 2`` with the density ratio rho.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -86,7 +78,7 @@ def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flo
             else:
                 v *= slopes[5][i, j]
                 g_h = slopes[1][i, j]
-            DZ[i, j] = (v - g_h * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
+            DZ[i, j] = 0.5 * (v - g_h * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
         for j in range(m - 1):
             carrier = 0.5 * (H[i, j] + H[i, j + 1]) if slopes is None else slopes[3][i, j]
             SZ[i, j] = carrier * _convected(fill, rho, couette, 1, i, j, i, j + 1) * wx
@@ -95,26 +87,6 @@ def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flo
                 SX[i, j] -= by_speed[0][i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
             for j in range(m - 1):
                 SZX[i, j] = -by_speed[1][i, j] * (link_z[j] * (P[i, j + 1] - P[i, j])) * wx
-
-
-@dataclass(eq=False)
-class Sensitivities:
-    """Gradients of k adjoint functionals.
-
-    Attributes
-    ----------
-    cell, face : (k, n, m) arrays
-        With respect to the gap at vertices and on the links i -> i+1.
-    rate : (k, n, m) array
-        With respect to the gap's rate at vertices.
-    speed : (k, 2) array
-        With respect to (vx, vz).
-    """
-
-    cell: np.ndarray
-    face: np.ndarray
-    rate: np.ndarray
-    speed: np.ndarray
 
 
 @njit(cache=True)
@@ -137,28 +109,7 @@ def add_cuts(P, H, HF, flow, slopes, by_speed, cuts, kx, kz, out):
             if cuts[1, i, j] != 1.0:
                 more = kz[i, j] * (1.0 - 1.0 / cuts[1, i, j]) * (P[i, j + 1] - P[i, j])
                 DZ[i, j] -= more * (
-                    6.0 / (H[i, j] + H[i, j + 1]) if slopes is None else slopes[1][i, j] / flow[1][i, j]
+                    3.0 / (H[i, j] + H[i, j + 1]) if slopes is None else 0.5 * slopes[1][i, j] / flow[1][i, j]
                 )
                 if by_speed is not None:
                     SZX[i, j] -= more * by_speed[1][i, j] / flow[1][i, j]
-
-
-def contract_links(lam: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m) and the links' derivatives d (5, n, m).
-
-    Returns
-    -------
-    cell, face : (k, n, m) arrays
-        To the gaps at vertices and on the links i -> i+1.
-    speed : (k, 2) array
-        To (vx, vz).
-    """
-    DX, DZ, SX, SZ, SZX = d
-    along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
-    half = -0.5 * across * DZ[:, :-1]
-    cell = np.zeros_like(lam)
-    cell[:, :, :-1] += half
-    cell[:, :, 1:] += half
-    turning = np.sum(along * SX, axis=(1, 2)) + np.sum(across * SZX[:, :-1], axis=(1, 2))
-    sliding = np.sum(across * SZ[:, :-1], axis=(1, 2))
-    return cell, -along * DX, -np.stack([turning, sliding], axis=1)

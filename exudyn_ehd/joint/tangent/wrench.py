@@ -11,10 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
-from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.sensitivity import functional_gradients, integral_weights, motion_columns, wrench_gradient
+from exudyn_ehd.film.gradients import functional_gradients
+from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.supply.restrictors import Reservoirs
@@ -24,13 +22,11 @@ from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 from exudyn_ehd.joint.tangent.true_gap import (
     add_drag_by_pose,
     drag_by_deflection,
-    line_by_motion,
     ratio_of,
     shear_of_ends,
     shear_of_fills,
     true_fills,
-    true_line,
-    weigh_fills,
+    true_gradients,
 )
 
 
@@ -57,7 +53,7 @@ def film_gradient(film: SolvedFilm, rows: np.ndarray, slow_motion: bool) -> np.n
     columns = balance_gradients(film)
     functional_gradients(rows, columns, gradient)
     if slow_motion and p.liner is not None:
-        gradient[:, 4:8] += _following_deflection(film, p.liner, s.fields_of(rows), columns)
+        gradient[:, 4:8] += _following_deflection(film, p.liner, rows, columns)
     return gradient
 
 
@@ -74,7 +70,7 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
         if has_extra_rows(film):
             extra = gradient[-2:]
     if fills is not None:
-        shear += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
+        shear += fills.weighed(shear_of_fills(film)).columns(p.grid.gap_shapes, 1)[:, 0]
     _contract_couette(film, shear)
     if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
@@ -101,76 +97,46 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
 
 
 def _following_deflection(film: SolvedFilm, liner: LinerFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Gradient (k, 4) of adjoint functionals lam (k, n, m) to the scaled rates through the deflection's rate.
+    """Gradient (k, 4) of adjoint functionals lam (k, count) to the scaled rates through the deflection's rate.
 
     A second adjoint solve. ``columns``: `balance_gradients`. The rupture line adds nothing, since its liner rests.
     """
-    p, s, w = film.parts, film.solver, film.solver.work
-    by_rate, gradient = -lam * s.storage_weights()[0], np.empty((len(lam), MOTION_SIZE))
-    rows = (by_rate * liner.deflection_by_pressure).reshape(len(lam), -1)[:, w.order[: w.count]].copy()
+    s, at, gradient = film.solver, film.solver.work.order[: film.solver.work.count], np.empty((len(lam), MOTION_SIZE))
+    by_rate = -lam * s.storage_weights()[0].reshape(-1)[at]
+    rows = by_rate * liner.deflection_by_pressure.reshape(-1)[at]
     s.solve_transposed(rows)
     functional_gradients(rows, columns, gradient)
-    out = gradient[:, :4].copy()
-    contract_pose(by_rate * liner.gap_slopes.D_r, p.directions.cos_x, p.directions.sin_x, film.grid.z, out)
-    return out
+    shapes = film.grid.gap_shapes[0].reshape(-1, 4)[at]
+    followed: np.ndarray = gradient[:, :4] + (by_rate * liner.gap_slopes.D_r.reshape(-1)[at]) @ shapes
+    return followed
 
 
 def balance_gradients(film: SolvedFilm) -> np.ndarray:
     """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz)."""
-    s, w, at = film.solver, film.solver.work, film.grid.directions
+    s, shapes = film.solver, film.grid.gap_shapes
     if isinstance(s, ClassicSolver):
         return _difference_columns(film, s)
-    out = np.empty((MOTION_SIZE, w.count))
-    if film.parts.liner is not None:
-        film.parts.liner.motion_columns(*s.storage_weights(), at, out)
-    else:
-        motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
-    if (line := true_line(film)) is not None:
-        add_line_columns(tuple(line), at, out)
+    out = true_gradients(film).columns(shapes, s.work.count)
     return out if s.reservoirs is None else np.hstack((out, _reservoir_gradients(film, s.reservoirs)))
 
 
 def _reservoir_gradients(film: SolvedFilm, reservoirs: Reservoirs) -> np.ndarray:
     """`balance_gradients` (10, k) of the areas with an unknown pressure, from the balances at their vertices."""
-    s, fields = film.solver, reservoirs.fields(film.grid.shape).reshape(-1, film.grid.area.size)
+    fields = reservoirs.fields(film.grid.shape).reshape(-1, film.grid.area.size)
     places = np.flatnonzero(fields.any(axis=0))
-    out = np.empty((MOTION_SIZE, places.size))
-    motion_columns(places, places.size, *gap_derivatives(film), film.grid.directions, out)
-    if s.oil_line is not None and (line := true_line(film, places)) is not None:
-        add_line_columns(tuple(line), film.grid.directions, out)
+    out = true_gradients(film, places).columns(film.grid.gap_shapes, places.size)
     flows: np.ndarray = reservoirs.weights() * (out @ fields[:, places].T)
     return flows
 
 
 def _difference_columns(film: SolvedFilm, solver: ClassicSolver) -> np.ndarray:
     """Return `balance_gradients` of central differences."""
-    shapes, f = -pose_columns(film), film.limited
+    shapes, f = film.grid.gap_shapes[0].reshape(-1, 4), film.limited
     none = np.zeros_like(shapes)
     if f is None:
         return solver.difference_columns(np.hstack((shapes, none)), np.hstack((none, shapes)))
     slope, bend = f.slope.reshape(-1, 1) * shapes, f.bend.reshape(-1, 1) * shapes
     return solver.difference_columns(np.hstack((slope, none)), np.hstack((bend, slope)))
-
-
-def pose_columns(film: SolvedFilm) -> np.ndarray:
-    """Minus dH / d(scaled pose) (n m, 4)."""
-    p, z = film.parts, film.grid.z
-    cos, sin = np.repeat(p.directions.cos_x, z.size), np.repeat(p.directions.sin_x, z.size)
-    heights = np.tile(z, p.directions.cos_x.size)
-    return np.column_stack((cos, sin, cos * heights, sin * heights))
-
-
-def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives to the true gap: of the links (5, n, m), and slope, AR, AC (n, m) as `motion_columns` takes them."""
-    s = film.solver
-    d = s.link_derivatives()
-    by_rate, by_gap = s.storage_weights()
-    slope, f = s.ones, film.limited
-    if f is not None:
-        slope = f.slope
-        d[0] *= f.face_slope
-        by_rate, by_gap = by_rate * slope, by_gap * slope + by_rate * f.bend
-    return d, slope, by_rate, by_gap
 
 
 def shear_needs_adjoint(film: SolvedFilm) -> bool:
@@ -214,9 +180,9 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     p, g, w, P_q = film.parts, film.grid, film.solver.work, film.oil.P_q
     shear, extra = shear_needs_adjoint(film), has_extra_rows(film)
     pressed = p.liner is not None and film.pressing is not None
-    own, at, directions = 4 + shear + 2 * extra, w.order[: w.count], (p.directions.cos_x, p.directions.sin_x, g.z)
+    own, at = 4 + shear + 2 * extra, w.order[: w.count]
     rows = np.empty((own + 5 * pressed, w.count))
-    load_adjoint_rhs(w.order, w.count, g.weight, *directions, w.active, rows)
+    load_adjoint_rhs(w.order, w.count, g.weight, g.gap_shapes, w.active, rows)
     slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
     if extra:
         if film.extra is not None:
@@ -237,12 +203,12 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, at]
     if p.liner is not None and film.pressing is not None:
         by_pressure = g.weight * p.liner.contact_by_pressure
-        load_adjoint_rhs(w.order, w.count, by_pressure, *directions, w.active, rows[own:])
+        load_adjoint_rhs(w.order, w.count, by_pressure, g.gap_shapes, w.active, rows[own:])
         rows[own + 4] = by_pressure.ravel()[at]
     if film.solver.reservoirs is None:
         return rows
     whole, fields = np.zeros((own, g.area.size)), film.solver.reservoirs.fields(g.shape)
-    load_adjoint_rhs(np.arange(g.area.size), g.area.size, g.weight, *directions, p.solver.ones > 0.0, whole)
+    whole[:4] = -(g.gap_shapes[0] * g.weight[..., None]).reshape(-1, 4).T
     whole[own - 2 * extra :] = slopes.reshape(2, -1)[: 2 * extra]
     if film.oil.ratio_q is not None and film.oil.P_q is not None:  # the shear of its land's share
         whole[4] = (g.shear_weight / p.solver.H * film.oil.ratio_q / film.oil.P_q).ravel()
@@ -294,7 +260,7 @@ def _contract_couette(film: SolvedFilm, dc: np.ndarray) -> None:
     dc[8] += by_speed
     if slope is not None:
         gradient *= slope
-    contract_pose(gradient[None], film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z, dc[None, :4])
+    dc[:4] += film.grid.by_pose(gradient[None])[0]
 
 
 def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
@@ -328,15 +294,12 @@ def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
 
     That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
     """
-    slope, edges, g, out = _film_gap_slope(film), film.scales.edges, film.grid, np.zeros((2, 1, 4))
+    slope, edges, g = _film_gap_slope(film), film.scales.edges, film.grid
     whole = slope is None and not g.edges.size
     if edges is None and (whole or not film.scales.ends.any()):
-        return out[:, 0]
-    fields = np.zeros((2, 1, *g.shape))
-    fields[0, 0, :, [0, -1]] = np.outer(film.scales.ends * (-1.0, 1.0), g.width_x)
+        return np.zeros((2, 4))
+    fields = np.zeros((2, *g.shape))
+    fields[0][:, [0, -1]] = np.outer(g.width_x, film.scales.ends * (-1.0, 1.0))
     if edges is not None:
-        fields[1, 0, g.edges.ravel()] = np.outer(edges, g.weight_z)
-    at = film.parts.directions
-    for field, gradient in zip(fields if slope is None else fields * slope, out, strict=True):
-        contract_pose(field, at.cos_x, at.sin_x, g.z, gradient)
-    return out[:, 0]
+        fields[1, g.edges.ravel()] = np.outer(edges, g.weight_z)
+    return g.by_pose(fields if slope is None else fields * slope)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from exudyn_ehd.film.gradients import Gradients, link_rows
 from exudyn_ehd.film.reynolds import links as reynolds
-from exudyn_ehd.film.reynolds.link_derivatives import contract_links, link_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 
 CASES = [(1, False, 1.0), (2, True, 1.0), (3, False, 0.0)]
 
@@ -75,7 +76,10 @@ def test_adjoint_sensitivities(make_film, seed, cut, flow_x):
     P, lam = rng.normal(size=f.H.shape), rng.normal(size=(2, *f.H.shape))
     d = np.zeros((5, *f.H.shape))
     link_derivatives(P, f.H, f.HF, None, None, None, None, None, f.vx, f.vz, flow_x, f.mesh, d)
-    cell, face, speed = contract_links(lam, d)
+    DX, DZ, SX, SZ, SZX = d.reshape(5, -1)
+    places, by, none = np.arange(DX.size), np.empty((10, DX.size)), np.zeros(DX.size)
+    link_rows(places, DX.size, f.H.shape[1], DX, None, (DZ, DZ), (SX, SZX, SZ), (none, none), by)
+    cell, face, _, speed = Gradients(places, places, by).fields(lam.reshape(2, -1), f.H.shape)
     step = 1e-5  # the residual is cubic in the gap: central differences leave step^2 = 1e-10 and rounding 1e-10
     for k in range(2):
         for i, j in np.ndindex(f.H.shape):

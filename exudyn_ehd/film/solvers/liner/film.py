@@ -69,7 +69,7 @@ from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.elements import plain_links
-from exudyn_ehd.film.solvers.liner.gap_response import gap_columns, speed_gradients
+from exudyn_ehd.film.solvers.liner.gap_response import gap_rows, speed_gradients
 from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, open_gaps, see_curves
 from exudyn_ehd.film.solvers.liner.steps import begin, factor_film, find_slopes, proceed, solve_plain
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, liner_residual
@@ -244,16 +244,14 @@ class LinerFilm(WinklerElements):
         fill, rho, _ = self.oil_fields
         find_slopes(self.P, fill, rho, self.film_fields, *self._seen)
 
-    def motion_columns(
-        self, by_rate: np.ndarray, by_gap: np.ndarray, at: tuple[np.ndarray, ...], out: np.ndarray
-    ) -> None:
-        """Derivatives (10, count) of the balances to the motion of a rigid journal, but for the rupture line's, as for
-        `exudyn_ehd.film.sensitivity.motion_columns`; ``by_rate``, ``by_gap``: `FilmSolver.storage_weights`."""
-        f, w, by_speed = self.film, self.film.work, np.empty((3, *self.P.shape))
+    def gap_rows(self, places: np.ndarray, by_rate: np.ndarray, by_gap: np.ndarray, out: np.ndarray) -> None:
+        """`Gradients.by` (10, c) of the balances at flat vertices ``places``, to the gap of the undeformed surfaces,
+        but for the rupture line's; ``by_rate``, ``by_gap``: `FilmSolver.storage_weights`."""
+        f, by_speed = self.film, np.empty((3, *self.P.shape))
         oil = (f.carried if self.kind == OIL else None), self.oil_fields[1]
         rest = self.term_fields, f.grid.fixed, self.gap_fields, f.flux, self.metric
         speed_gradients(self.P, *oil, *rest, by_speed)
-        gap_columns(w.order, w.count, self.by, by_speed, self.slope_fields, by_rate, by_gap, at, out)
+        gap_rows(places, places.size, self.by, by_speed, self.slope_fields, by_rate, by_gap, out)
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""

@@ -8,8 +8,8 @@ conductance ``k = g(h) (1 + (d / h)^2)`` with its metric.
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.gradients import link_rows
 from exudyn_ehd.film.reynolds.balance import part, terms_of
-from exudyn_ehd.film.sensitivity import columns_of_links
 from exudyn_ehd.film.solvers.liner.elements import combine, gaps_of, slopes_of
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -222,11 +222,11 @@ def _end_gain(by_h, by_d, side, yields, bends, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def gap_columns(order, count, by, by_v, slope_fields, gain_t, gain_r, at, out):
-    """Set the derivatives (10, count) of the balances at the unknowns to (scaled pose, scaled rates, vx, vz).
+def gap_rows(order, count, by, by_v, slope_fields, gain_t, gain_r, out):
+    """Set the derivatives (10, count) of the balances at ``order`` to undeformed gaps, see `Gradients.by`.
 
     ``by`` (4, n m): that of `link_gradients`; ``by_v`` (3, n, m): of `speed_gradients`; ``gain_t``, ``gain_r`` (n, m):
-    derivatives of the storage to the undeformed rate and gap; ``at``: `Directions`.
+    derivatives of the storage to the undeformed rate and gap.
     """
     _, n, m = by_v.shape
     size, gap_slopes = n * m, slopes_of(slope_fields.reshape(9, n * m))
@@ -240,4 +240,4 @@ def gap_columns(order, count, by, by_v, slope_fields, gain_t, gain_r, at, out):
     _end_gain(by[2], by[3], -1.0, H, E, low)
     _end_gain(by[2, :e], by[3, :e], 1.0, H[1:], E[1:], high[:e])
     v, storage = by_v.reshape(3, size), (gain_t.reshape(-1), gain_r.reshape(-1))
-    columns_of_links(order, count, m, face, (one, two), (low, high), (v[0], v[1], v[2]), storage, at, out)
+    link_rows(order, count, m, face, (one, two), (low, high), (v[0], v[1], v[2]), storage, out)

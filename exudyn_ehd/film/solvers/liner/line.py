@@ -31,7 +31,8 @@ from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.oil_line import CurveFields, OilLine
-from exudyn_ehd.film.cavitation.rupture_line import LineFields, LineGradients, RuptureLine, line_terms, to_true_gap
+from exudyn_ehd.film.cavitation.rupture_line import LineFields, RuptureLine, line_terms
+from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux, add_squeeze, right_hand_side
 
@@ -99,7 +100,7 @@ def weigh_yielding(places, f, k, lean, weights):
 
 @njit(cache=True)
 def add_yielding(places, line, lean, HF, liner, by):
-    """Add to `LineGradients.by` the derivatives through t to the gap, and through the liner's conductance to vx."""
+    """Add to `Gradients.by` the derivatives through t to the gap, and through the liner's conductance to vx."""
     (beta, vx, width), gap, t, m = liner, HF.reshape(-1), lean.reshape(-1), HF.shape[1]
     f, k, s = line[0], line[1], line[2]
     for q in range(places.size):
@@ -242,24 +243,24 @@ class FilmLine(RuptureLine):
         flow_x: float,
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
-    ) -> LineGradients:
+    ) -> Gradients:
         """Return `RuptureLine.gradients`, with what the liner adds, for gaps and flux at the cavity's pressure."""
         line = super().gradients(work, places, weights, gaps, flux, speeds, flow_x, squeeze, mesh)
         add_yielding(places, self.block, self.lean, gaps[1], self.liner, line.by)
         return line
 
 
-def undeformed(line: LineGradients, chain: GapChain | None) -> LineGradients:
+def undeformed(line: Gradients, chain: GapChain | None) -> Gradients:
     """Convert gradients to the film's gap to gradients to the undeformed gap, with a contact or a limiter."""
     if chain is None:
         return line
     n, m = chain.slope.shape
-    out = to_true_gap(line, chain.slope, chain.bend, chain.face_slope)
+    out = line.to_true_gap(chain.slope, chain.bend, chain.face_slope)
     i, j = np.divmod(line.places, m)
     nxt, prv, here = (i + 1) % n, (i - 1) % n, chain.follow[i, j]
     # a link's deflection is the mean of its ends'
-    around = 0.5 * np.stack((out.by[0] * chain.follow[nxt, j], out.by[1] * chain.follow[prv, j]))
+    out.by[8], out.by[9] = 0.5 * out.by[0] * chain.follow[nxt, j], 0.5 * out.by[1] * chain.follow[prv, j]
     out.by[2] += out.by[2] * here + 0.5 * (out.by[0] + out.by[1]) * here
     out.by[3] *= 1.0 + chain.follow[i, (j + 1) % m]
     out.by[4] *= 1.0 + chain.follow[i, (j - 1) % m]
-    return out._replace(by=np.concatenate((out.by, around)))
+    return out
