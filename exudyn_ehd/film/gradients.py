@@ -1,14 +1,15 @@
 """Derivatives of a film's balances, and of other sums over it, to the gaps around a vertex, at fixed unknowns.
 
-With the derivatives of every link's flow to its gap (symbols of `exudyn_ehd.film.reynolds.link_derivatives`) the
-balance of vertex (i, j) changes with the gap by
+With the derivatives DX and DZ of a link's flow to its gap (`exudyn_ehd.film.reynolds.link_derivatives`), and AC and AR
+of the storage, the balance of vertex (i, j) between rigid surfaces changes with the gap by
 
     dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF gap on links in theta,
     HZ mean over the two ends of a link in z,
 
-and with the surfaces' speeds likewise. A line inside the cells adds entries of the same form. The gap is a sum of
-shapes, ``H = 1 + sum q_k S_k``, whose coefficients q are the journal's pose or a bore's coordinates: derivatives to q
-are those to the gap times S, at vertices and on links. An adjoint functional's gradient is ``-lam . dr``.
+and with the surfaces' speeds likewise. On a liner links follow the gaps at their ends besides. A line inside the cells
+adds entries of the same form. The gap is a sum of shapes, ``H = 1 + sum q_k S_k``, whose coefficients q are the
+journal's pose or a bore's coordinates: derivatives to q are those to the gap times S, at vertices and on links. An
+adjoint functional's gradient is ``-lam . dr``.
 """
 
 from __future__ import annotations
@@ -97,47 +98,59 @@ def join(*parts: Gradients) -> Gradients:
 
 
 @njit(cache=True, fastmath=_FAST)
-def link_rows(order, count, m, face, along, across, by_speed, storage, out):
-    """Derivatives ``out`` (10, count) of the balances at vertices ``order``, see `Gradients.by`; fields are flat.
+def _ends(by_h, by_d, a, b, follows, gap):
+    """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b, by its gap, of which row
+    ``gap`` of ``follows`` tells how it follows, and by E."""
+    if follows is None:
+        return 0.5 * by_h, 0.5 * by_h
+    here, there = by_h * follows[gap, a] - by_d * follows[1, a], by_h * follows[gap, b] + by_d * follows[1, b]
+    return 0.5 * here, 0.5 * there
+
+
+@njit(cache=True, fastmath=_FAST)
+def link_rows(order, count, m, by, by_speed, follows, storage, out):
+    """Derivatives ``out`` (10, count) of the balances at vertices ``order``, see `Gradients.by`.
 
     Parameters
     ----------
-    face : field
-        Derivative of the flow in theta to the gap on the link.
-    along : two fields or None
-        Of the flow in theta to the gaps at the link's ends; None: it does not know them.
-    across : two fields
-        Of the flow in z to the gaps at the link's ends.
-    by_speed : three fields
-        Of the flow in theta to vx, in z to vx and to vz.
-    storage : two fields
-        Of the storage to the gap's rate and to the gap.
+    by, by_speed : (4, n m) arrays
+        Of the links' flows, `exudyn_ehd.film.reynolds.link_derivatives`.
+    follows : (4, n m) array or None
+        How a liner's surfaces follow the undeformed gap: its deflection, E, the film's gap, and the film's gap on a
+        link its true gap; None: rigid surfaces.
+    storage : two (n, m) arrays
+        Derivatives of the storage to the gap's rate and to the gap.
     """
-    start = 0
+    rate, stored, size, start = storage[0].reshape(-1), storage[1].reshape(-1), by.shape[1], 0
     for r in range(count):
         c = order[r]
         j = c - start
         if j < 0 or j >= m:  # rows of a column follow each other: one division per column
             j = c % m
             start = c - j
-        back = c - m if c >= m else c - m + face.size
-        out[0, r], out[1, r], out[5, r], own = face[c], -face[back], storage[0][c], storage[1][c]
-        vx, vz = by_speed[0][c] - by_speed[0][back], 0.0
+        back = c - m if c >= m else c - m + size
+        face, before, own = by[0, c], by[0, back], stored[c]
+        vx, vz = by_speed[0, c] - by_speed[0, back], 0.0
         out[3, r] = out[4, r] = out[8, r] = out[9, r] = 0.0
-        if along is not None:
-            own += along[0][c] - along[1][back]
-            out[8, r], out[9, r] = along[1][c], -along[0][back]
+        if follows is not None:
+            face, before = face * follows[3, c], before * follows[3, back]
+            here, there = _ends(face, by[1, c], c, c + m if c + m < size else c + m - size, follows, 0)
+            behind, at = _ends(before, by[1, back], back, c, follows, 0)
+            own += here - at
+            out[8, r], out[9, r] = there, -behind
         if j + 1 < m:
-            own += across[0][c]
-            out[3, r] = across[1][c]
-            vx += by_speed[1][c]
-            vz += by_speed[2][c]
+            here, there = _ends(by[2, c], by[3, c], c, c + 1, follows, 2)
+            own += here
+            out[3, r] = there
+            vx += by_speed[2, c]
+            vz += by_speed[1, c]
         if j > 0:
-            own -= across[1][c - 1]
-            out[4, r] = -across[0][c - 1]
-            vx -= by_speed[1][c - 1]
-            vz -= by_speed[2][c - 1]
-        out[2, r], out[6, r], out[7, r] = own, vx, vz
+            behind, at = _ends(by[2, c - 1], by[3, c - 1], c - 1, c, follows, 2)
+            own -= at
+            out[4, r] = -behind
+            vx -= by_speed[2, c - 1]
+            vz -= by_speed[1, c - 1]
+        out[0, r], out[1, r], out[2, r], out[5, r], out[6, r], out[7, r] = face, -before, own, rate[c], vx, vz
 
 
 @njit(cache=True, fastmath=_FAST)

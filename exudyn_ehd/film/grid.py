@@ -162,12 +162,6 @@ class FilmGrid:
         across = np.append(self.link_z != 0.0, False)
         return np.array((np.outer(self.link_x != 0.0, self.width_z), np.outer(self.width_x, across)))
 
-    def cut(self, kx: np.ndarray, kz: np.ndarray) -> None:
-        """Multiply conductances (n, m) by ``cuts``, in place."""
-        if self.cuts is not None:
-            kx *= self.cuts[0]
-            kz *= self.cuts[1]
-
 
 def axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Control-volume widths (m,) and inverse distances (m-1,) of axial vertices z (m,)."""

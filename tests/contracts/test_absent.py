@@ -82,7 +82,6 @@ EFFECTS = {
             "film.solvers.liner.film",
             "film.solvers.liner.winkler",
             "film.solvers.liner.elements",
-            "film.solvers.liner.gap_response",
             "film.solvers.liner.steps",
         ),
         {"bush": LINER},

@@ -29,21 +29,31 @@ def change(gradients, count, H, HF, H_t, v):
     return np.tensordot(cell, H, 2) + np.tensordot(face, HF, 2) + np.tensordot(rate, H_t, 2) + speed @ v
 
 
-@pytest.mark.parametrize("knows_ends", [False, True])
-def test_rows_of_links_are_the_derivatives_of_the_balances(rng, knows_ends):
-    face, one, two, low, high, sx, szx, sz, stored_t, stored = rng.normal(size=(10, N, M))
-    for field in (low, high, szx, sz):
-        field[:, -1] = 0.0  # no link behind the last row
-    order, out = rng.permutation(N * M)[:20], np.empty((10, 20))
-    ends = (one.ravel(), two.ravel()) if knows_ends else None
-    across, by_speed = (low.ravel(), high.ravel()), (sx.ravel(), szx.ravel(), sz.ravel())
-    link_rows(order, 20, M, face.ravel(), ends, across, by_speed, (stored_t.ravel(), stored.ravel()), out)
-    (H, HF, H_t), v = rng.normal(size=(3, N, M)), rng.normal(size=2)
-    along = face * HF + sx * v[0]
-    if knows_ends:
-        along += one * H + two * np.roll(H, -1, axis=0)
-    over = szx * v[0] + sz * v[1] + low * H + high * np.roll(H, -1, axis=1)
-    balance = along - np.roll(along, 1, axis=0) + over - np.roll(over, 1, axis=1) + stored * H + stored_t * H_t
+@pytest.mark.parametrize("on_liner", [False, True])
+def test_rows_of_links_are_the_derivatives_of_the_balances(rng, on_liner):
+    by, by_speed, follows, (H, HF, H_t) = *rng.normal(size=(3, 4, N, M)), rng.normal(size=(3, N, M))
+    by[2:, :, -1] = by_speed[1:3, :, -1] = 0.0  # no link behind the last row
+    storage, v, order, out = (
+        rng.normal(size=(2, N, M)),
+        rng.normal(size=2),
+        rng.permutation(N * M)[:20],
+        np.empty((10, 20)),
+    )
+    flat = (x.reshape(4, -1) for x in (by, by_speed))
+    link_rows(order, 20, M, *flat, follows.reshape(4, -1) if on_liner else None, storage, out)
+    D, E, own, link = follows if on_liner else (0.0 * H, 0.0 * H, 0.0 * H + 1.0, 0.0 * H + 1.0)
+
+    def mean(field, axis):
+        return 0.5 * (field + np.roll(field, -1, axis))
+
+    def lean(axis):
+        return 0.5 * (np.roll(E * H, -1, axis) - E * H)
+
+    along = by[0] * link * (HF + mean(D * H, 0)) + by[1] * lean(0) + by_speed[0] * v[0]
+    across = by[2] * mean(own * H, 1) + by[3] * lean(1) + by_speed[2] * v[0] + by_speed[1] * v[1]
+    balance = (
+        along - np.roll(along, 1, axis=0) + across - np.roll(across, 1, axis=1) + storage[1] * H + storage[0] * H_t
+    )
     got = change(Gradients(np.arange(20), order, out), 20, H, HF, H_t, v)
     np.testing.assert_allclose(got, balance.ravel()[order], rtol=1e-12, atol=1e-13)
 

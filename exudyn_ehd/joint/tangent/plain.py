@@ -15,7 +15,7 @@ from exudyn_ehd.film.cavitation.rupture_line import line_gradients, line_weights
 from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.gradients import add_columns, functional_gradients, link_rows
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gradient
-from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.plain_film import has_plain_edges
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
@@ -52,7 +52,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         work.factor,
         (work.count, work.width),
         work.exact,
-        (s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.link_fields),
+        (s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.metric),
         (g.fixed, work.active),
         g.gap_shapes,
         g.mesh,
@@ -75,7 +75,7 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shape
     order, _, number, band, inv_diag = factor
     count, width = size
     kx, kz, b, H, HF, P = film[0], film[1], film[10], film[11], film[12], film[14]
-    by_rate, by_gap, weight, link_fields = fields
+    by_rate, by_gap, weight, metric = fields
     fixed, active = sets
     vx, vz, flow_x, cavity_shear, squeeze, pc = speeds
     if line is not None and not exact:
@@ -87,10 +87,11 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shape
         rows_of_linear(u, fixed, linked, pc, active, number, lam)
         couple_columns(between, active, factor, count, lam.T, True)
     solve_ldl(band, inv_diag, count, width, lam)
-    link_derivatives(P, H, HF, None, None, None, None, None, vx, vz, flow_x, mesh, link_fields)
-    d, columns, whole = link_fields.reshape(5, H.size), np.zeros((10, count)), np.empty((10, count))
-    storage = by_rate.reshape(-1), by_gap.reshape(-1)
-    link_rows(order, count, H.shape[1], d[0], None, (d[1], d[1]), (d[2], d[4], d[3]), storage, whole)
+    by_links, by_speed = np.empty((4, H.size)), np.empty((4, H.size))
+    columns, whole = np.zeros((10, count)), np.empty((10, count))
+    gap_derivatives(P, H, HF, None, film, fixed, None, None, None, metric, vx, vz, by_links)
+    speed_derivatives(P, H, HF, film, fixed, None, None, None, metric, by_speed)
+    link_rows(order, count, H.shape[1], by_links, by_speed, None, (by_rate, by_gap), whole)
     add_columns(np.arange(count), order[:count], whole, shapes, columns)
     if line is not None:
         f, k, s, found = line[0], line[1], line[2], 0

@@ -14,7 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.reynolds.balance import part
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+# numpy's integers, since numba compiles kernels anew for each plain one
+_0, _1 = np.int64(0), np.int64(1)
 
 
 class Gaps(NamedTuple):
@@ -281,28 +285,6 @@ def _bend(h_a, h_b, E_a, E_b, k):
         k[c] *= 1.0 + lean * lean
 
 
-@njit(cache=True, fastmath=_FAST)
-def _plain(h_a, h_b, conducts, linked, v, k, f):
-    for c in range(k.size):
-        h = 0.5 * (h_a[c] + h_b[c])
-        k[c] = conducts[c] * h * h * h
-    for c in range(f.size):
-        f[c] = v * linked[c] * 0.5 * (h_a[c] + h_b[c])
-
-
-@njit(cache=True)
-def plain_links(gap_fields, metric, vx, vz, terms):
-    """Set conductances and Couette fluxes (rows 0 to 3 of ``terms``, see `balance.terms_of`) of a film without flux
-    effects, before `bend_links`.
-
-    ``metric`` (4, n, m): of the conductances in theta and in z, and widths of the Couette flows in theta and in z.
-    """
-    H, HF = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1)
-    by, out = metric.reshape(4, -1), terms.reshape(terms.shape[0], -1)
-    _plain(HF, HF, by[0], by[2], vx, out[0], out[2])
-    _plain(H[:-1], H[1:], by[1, :-1], by[3, :-1], vz, out[1, :-1], out[3, :-1])
-
-
 @njit(cache=True)
 def smallest_of(gap_fields):
     """Return the smallest gap that the film sees, at vertices and on links."""
@@ -323,3 +305,76 @@ def ends_open(rigid, p, beta, fixed):
                 if fixed[nxt, j] and not rigid[1, i, j] + 0.5 * beta * (p[i, j] + p[nxt, j]) > 0.0:
                     return False
     return True
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_end(by_h, by_d, side, steep, lean, full, out):
+    """Add the derivative of a link's flow to the unknown at its end b (``side`` 1) or a (-1), through the gap there."""
+    for c in range(out.size):
+        slope = 0.5 * (by_h[c] * steep[c] + side * by_d[c] * lean[c])
+        if full is not None:
+            slope = slope if full[c] else 0.0
+        out[c] += slope
+
+
+@njit(cache=True, fastmath=_FAST)
+def _product(a, b, out):
+    for c in range(out.size):
+        out[c] = a[c] * b[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
+    """Add the derivative of the storage to the unknowns, through the gap."""
+    for c in range(out.size):
+        by = rate_P[c]
+        if fill is not None:
+            by = fill[c] * (by * rates.own + H_P[c] * (rates.mass + rates.pseudo))
+        if rho is not None:
+            by *= rho[c]
+        if full is not None:
+            by = by if full[c] else 0.0
+        out[c] += area[c] * by
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_pseudo(area, P, drive, slope, factor, out):
+    """Add the derivative of pseudo time's storage, for a film that does not conserve mass."""
+    for c in range(out.size):
+        out[c] += area[c] * factor * (slope[c] if P[c] == drive[c] else 1.0)
+
+
+@njit(cache=True)
+def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, slopes):
+    """Add the derivatives of flows and storage through the gap to ``slopes`` of `balance.film_slopes`; ``by``: that of
+    `exudyn_ehd.film.reynolds.link_derivatives.gap_derivatives`."""
+    n, m = P.shape
+    size = n * m
+    last, e = size - m, size - 1
+    D, H, link, area = (
+        gap_slopes.D_P.reshape(-1),
+        gap_slopes.H_P.reshape(-1),
+        gap_slopes.link.reshape(-1),
+        film.area.reshape(-1),
+    )
+    face = np.empty(size)
+    _product(by[0], link, face)
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        h, d = face[start:stop], by[1, start:stop]
+        _add_end(h, d, -1.0, D[start:stop], H[start:stop], part(full, start, stop), slopes[0, start:stop])
+        _add_end(h, d, 1.0, D[there:end], H[there:end], part(full, there, end), slopes[1, start:stop])
+    h, d = by[2, :e], by[3, :e]
+    _add_end(h, d, -1.0, H[:e], H[:e], part(full, _0, e), slopes[2, :e])
+    _add_end(h, d, 1.0, H[1:], H[1:], part(full, _1, size), slopes[3, :e])
+    _add_storage(
+        area,
+        part(fill, _0, size),
+        part(full, _0, size),
+        part(rho, _0, size),
+        H,
+        gap_slopes.rate_P.reshape(-1),
+        rates,
+        slopes[4],
+    )
+    if fill is None and rates.pseudo != 0.0:
+        _add_pseudo(area, P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1), rates.pseudo * beta, slopes[4])

@@ -34,7 +34,7 @@ from exudyn_ehd.film.cavitation.oil_line import CurveFields, OilLine
 from exudyn_ehd.film.cavitation.rupture_line import LineFields, RuptureLine, line_terms
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.reynolds.balance import FilmTerms
-from exudyn_ehd.film.reynolds.links import LinkFlux, add_squeeze, right_hand_side
+from exudyn_ehd.film.reynolds.links import LinkFlux
 
 # Gap over the clearance below which surfaces at the cavity's pressure touch: no line is looked for there.
 TOUCHING = 1e-6
@@ -51,7 +51,7 @@ def open_gaps(gap_fields, touching_out):
 
 @njit(cache=True)
 def see_line(
-    gap_fields, terms, touching, b, squeeze, widths, fixed, density, liner, line_out, gaps_out, lean_out
+    gap_fields, terms, touching, b, width_z, fixed, density, liner, line_out, gaps_out, lean_out
 ):  # fmt: skip
     """Set f, k and s = 1 of a film at the cavity pressure everywhere, t (``lean_out``) of its liner, and its gaps.
 
@@ -61,16 +61,13 @@ def see_line(
     f, k, s, whole = line_out[0], line_out[1], line_out[2], line_out[3]
     H, HF, kx, shut = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1), terms[0].reshape(-1), touching.reshape(-1)
     at_vertices, at_links, lean = gaps_out[0].reshape(-1), gaps_out[1].reshape(-1), lean_out.reshape(-1)
-    right_hand_side(terms[2], terms[3], b)
-    if squeeze:
-        add_squeeze(gap_fields[4], widths[0], widths[1], b)
     for c in range(s.size):
         kx[c] = 0.0 if shut[c] else kx[c]
         flat[c] *= density
         at_vertices[c], at_links[c], s[c] = H[c], HF[c], 1.0
     line_terms(terms[0], b, fixed, True, line_out)
     for c in range(s.size):
-        k[c] += 0.5 * beta * abs(vx) * widths[1][c % m]
+        k[c] += 0.5 * beta * abs(vx) * width_z[c % m]
         lean[c] = 0.0
         if f[c] > 0.0:
             t = beta * f[c] / (k[c] * (HF[c - m] + HF[c]))
@@ -149,19 +146,15 @@ def see_curves(
     film: FilmTerms,
     shut: tuple[np.ndarray, np.ndarray],
     b: np.ndarray,
-    squeeze: bool,
-    widths: tuple[np.ndarray, np.ndarray],
+    width_z: np.ndarray,
     density: float,
     liner: tuple[float, float],
 ) -> None:
     """Set the curves of a mass-conserving film from its fields at the cavity pressure; parameters as for
     `FilmLine.see`."""
     (beta, vx), (touching, _) = liner, shut
-    line.lift_by_speed = 0.5 * beta * np.sign(vx) * widths[1]
+    line.lift_by_speed = 0.5 * beta * np.sign(vx) * width_z
     film.kx[touching] = 0.0
-    right_hand_side(film.fx, film.fz, b)
-    if squeeze:
-        add_squeeze(gap_fields[4], *widths, b)
     line.take(film, b, density, vx)
 
 
@@ -203,20 +196,19 @@ class FilmLine(RuptureLine):
         term_fields: np.ndarray,
         shut: tuple[np.ndarray, np.ndarray],
         b: np.ndarray,
-        squeeze: bool,
-        widths: tuple[np.ndarray, np.ndarray],
+        width_z: np.ndarray,
         density: float,
         liner: tuple[float, float],
         gaps_out: np.ndarray,
     ) -> None:
         """Set f, k, t and the gaps (2, n, m) from the fields of `LinerFilm` at the cavity pressure.
 
-        ``shut``: links on which surfaces touch there, and prescribed vertices (n, m); ``widths`` of the vertices in
-        theta and z; ``liner``: its scaled compliance, and vx.
+        ``shut``: links on which surfaces touch there, and prescribed vertices (n, m); ``width_z`` (m,) of the vertices;
+        ``liner``: its scaled compliance, and vx.
         """
-        self.density, self.liner, (touching, fixed) = density, (*liner, widths[1]), shut
+        self.density, self.liner, (touching, fixed) = density, (*liner, width_z), shut
         see_line(
-            gap_fields, term_fields, touching, b, squeeze, widths, fixed, density, liner, self.block, gaps_out,
+            gap_fields, term_fields, touching, b, width_z, fixed, density, liner, self.block, gaps_out,
             self.lean,
         )  # fmt: skip
         self._bend()
