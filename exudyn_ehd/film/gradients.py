@@ -113,7 +113,7 @@ def link_rows(order, count, m, by, by_speed, follows, storage, out):
 
     Parameters
     ----------
-    by, by_speed : (4, n m) arrays
+    by, by_speed : (4, n m) and (3, n m) arrays
         Of the links' flows, `exudyn_ehd.film.reynolds.link_derivatives`.
     follows : (4, n m) array or None
         How a liner's surfaces follow the undeformed gap: its deflection, E, the film's gap, and the film's gap on a

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.balance import part, terms_of
+from exudyn_ehd.film.reynolds.balance import part
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 # numpy's integers, since numba compiles kernels anew for each plain one
@@ -53,43 +53,67 @@ def _pressure_flow(P_a, P_b, metric, h_a, h_b, E_a, E_b, g, g_h, by_h, by_d):
             by_d[c] = -metric[c] * (P_b[c] - P_a[c]) * base * (E_b[c] - E_a[c])
 
 
+@njit(cache=True)
+def _both(x, start, stop, there, end):
+    """Parts of a field at both ends of links; None of None."""
+    return part(x, start, stop), part(x, there, end)
+
+
 @njit(cache=True, fastmath=_FAST)
-def _up(c, f, fill_a, fill_b, rho_a, rho_b):
-    """Return ``up`` of the module for the link c."""
-    up = 1.0
-    if fill_a is not None:
-        up = fill_a[c] if f[c] >= 0.0 else fill_b[c]
-    if rho_a is not None:
-        up *= 0.5 * (rho_a[c] + rho_b[c])
+def _upstream(f, fill_a, fill_b, rho_a, rho_b, up):
+    for c in range(up.size):
+        if fill_a is not None:
+            a, b = fill_a[c], fill_b[c]
+            up[c] = a if f[c] >= 0.0 else b
+        if rho_a is not None:
+            up[c] *= 0.5 * (rho_a[c] + rho_b[c])
+
+
+@njit(cache=True)
+def upstream(fx, fz, fill, rho):
+    """Return ``up`` (2, n m) of the links in theta and z, with the Couette flows fx, fz of full films.
+
+    ``fill`` is what flows carry; it and the density ratio ``rho`` are (n, m), or None where they are one everywhere.
+    """
+    m, size = fx.shape[1], fx.size
+    last, e, up = size - m, size - 1, np.ones((2, size))
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        fills, densities = _both(fill, start, stop, there, end), _both(rho, start, stop, there, end)
+        _upstream(part(fx, start, stop), *fills, *densities, up[0, start:stop])
+    _upstream(part(fz, _0, e), *_both(fill, _0, e, _1, size), *_both(rho, _0, e, _1, size), up[1, :e])
     return up
 
 
 @njit(cache=True, fastmath=_FAST)
-def _couette_flow(v, width, c_h, f, fill_a, fill_b, rho_a, rho_b, by_h):
+def _add_couette_flow(v, width, c_h, up, by_h):
     """Add the derivative of the Couette flow to h."""
     for c in range(by_h.size):
-        slope = v * width[c] * _up(c, f, fill_a, fill_b, rho_a, rho_b)
+        slope = v * width[c] * up[c]
         if c_h is not None:
             slope *= c_h[c]
         by_h[c] += slope
 
 
 @njit(cache=True, fastmath=_FAST)
-def _speed(P_a, P_b, metric, g_v, width, carrier, h_a, h_b, f, fill_a, fill_b, rho_a, rho_b, by_own, by_vx):
-    """Set the derivatives to the link's own speed, and through the conductance to vx."""
+def _own_speed(width, carrier, h_a, h_b, up, by_own):
+    """Set the derivative of the Couette flow to the link's own speed."""
     for c in range(by_own.size):
-        carried = 0.5 * (h_a[c] + h_b[c])
+        flow = 0.5 * (h_a[c] + h_b[c])
         if carrier is not None:
-            carried = carrier[c]
-        by_own[c] = width[c] * carried * _up(c, f, fill_a, fill_b, rho_a, rho_b)
-    for c in range(by_vx.size):
-        by_vx[c] = 0.0
-        if g_v is not None:
-            by_vx[c] = -metric[c] * g_v[c] * (P_b[c] - P_a[c])
+            flow = carrier[c]
+        by_own[c] = width[c] * flow * up[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _other_speed(P_a, P_b, metric, g_v, by_vx):
+    """Add the derivative of the pressure flow to vx."""
+    if g_v is not None:
+        for c in range(by_vx.size):
+            by_vx[c] -= metric[c] * g_v[c] * (P_b[c] - P_a[c])
 
 
 @njit(cache=True)
-def gap_derivatives(P, H, HF, E, terms, fixed, fill, rho, flux, metric, vx, vz, by):
+def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
     """Set derivatives ``by`` (4, n m) of the links' flows to h and d, in theta, then in z.
 
     Parameters
@@ -98,67 +122,44 @@ def gap_derivatives(P, H, HF, E, terms, fixed, fill, rho, flux, metric, vx, vz, 
         Pressure, gaps at vertices and on the links in theta.
     E : (n, m) array or None
         None: without a liner; the derivatives to d are not set.
-    terms, fixed
-        Fields of a `FilmTerms`.
-    fill, rho : (n, m) arrays or None
-        What flows carry, and the density ratio; None: one everywhere.
+    up : (2, n m) array
+        Of `upstream`.
     flux : LinkFlux or None
     metric : (4, n, m) array
         `exudyn_ehd.film.reynolds.links.link_metric`.
     vx, vz : float
         Scaled mean speeds.
     """
-    n, m = P.shape
-    film, size = terms_of(terms, fixed), n * m
-    last, e = size - m, size - 1
-    p, h, h_x, by_metric = P.reshape(-1), H.reshape(-1), HF.reshape(-1), metric.reshape(4, size)
-    fx, fz = film.fx.reshape(-1), film.fz.reshape(-1)
+    m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
+    last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
     g, g_h, _, _, c_h = _of_axis(flux, 0)
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        at, over = h_x[start:stop], by_metric[0, start:stop]
-        _pressure_flow(
-            p[start:stop], p[there:end], over, at, at, part(E, start, stop), part(E, there, end),
-            part(g, start, stop), part(g_h, start, stop), by[0, start:stop], by[1, start:stop],
-        )  # fmt: skip
-        _couette_flow(
-            vx, by_metric[2, start:stop], part(c_h, start, stop), fx[start:stop], part(fill, start, stop),
-            part(fill, there, end), part(rho, start, stop), part(rho, there, end), by[0, start:stop],
-        )  # fmt: skip
+        at, law = h_x[start:stop], (part(g, start, stop), part(g_h, start, stop))
+        leans, out = _both(E, start, stop, there, end), (by[0, start:stop], by[1, start:stop])
+        _pressure_flow(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, *law, *out)
+    _add_couette_flow(vx, by_metric[2], part(c_h, _0, size), up[0], by[0])
     g, g_h, _, _, c_h = _of_axis(flux, 1)
-    _pressure_flow(
-        p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], part(E, _0, e), part(E, _1, size), part(g, _0, e),
-        part(g_h, _0, e), by[2, :e], by[3, :e],
-    )  # fmt: skip
-    _couette_flow(
-        vz, by_metric[3, :e], part(c_h, _0, e), fz[:e], part(fill, _0, e), part(fill, _1, size), part(rho, _0, e),
-        part(rho, _1, size), by[2, :e],
-    )  # fmt: skip
+    law, leans = (part(g, _0, e), part(g_h, _0, e)), _both(E, _0, e, _1, size)
+    _pressure_flow(p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
+    _add_couette_flow(vz, by_metric[3], part(c_h, _0, size), up[1], by[2])
     # there are no links behind the last row
     by[2:, e] = 0.0
 
 
 @njit(cache=True)
-def speed_derivatives(P, H, HF, terms, fixed, fill, rho, flux, metric, by):
-    """Set derivatives ``by`` (4, n m) of the links' flows: in theta to vx, in z to vz and vx, one row for use here; the
-    rest as for `gap_derivatives`."""
-    n, m = P.shape
-    film, size = terms_of(terms, fixed), n * m
-    last, e = size - m, size - 1
-    p, h, h_x, by_metric = P.reshape(-1), H.reshape(-1), HF.reshape(-1), metric.reshape(4, size)
-    fx, fz = film.fx.reshape(-1), film.fz.reshape(-1)
+def speed_derivatives(P, H, HF, up, flux, metric, by):
+    """Set derivatives ``by`` (3, n m) of the links' flows: in theta to vx, in z to vz and to vx; the rest as for
+    `gap_derivatives`."""
+    m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
+    last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
     _, _, g_v, carrier, _ = _of_axis(flux, 0)
+    _own_speed(by_metric[2], part(carrier, _0, size), h_x, h_x, up[0], by[0])
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        at = h_x[start:stop]
-        _speed(
-            p[start:stop], p[there:end], by_metric[0, start:stop], part(g_v, start, stop), by_metric[2, start:stop],
-            part(carrier, start, stop), at, at, fx[start:stop], part(fill, start, stop), part(fill, there, end),
-            part(rho, start, stop), part(rho, there, end), by[0, start:stop], by[3, start:stop],
-        )  # fmt: skip
-    for c in range(size):
-        by[0, c] += by[3, c]
+        along, slower = by_metric[0, start:stop], part(g_v, start, stop)
+        _other_speed(p[start:stop], p[there:end], along, slower, by[0, start:stop])
     _, _, g_v, carrier, _ = _of_axis(flux, 1)
-    _speed(
-        p[:e], p[1:], by_metric[1, :e], part(g_v, _0, e), by_metric[3, :e], part(carrier, _0, e), h[:e], h[1:], fz[:e],
-        part(fill, _0, e), part(fill, _1, size), part(rho, _0, e), part(rho, _1, size), by[1, :e], by[2, :e],
-    )  # fmt: skip
-    by[1:3, e] = 0.0
+    _own_speed(by_metric[3, :e], part(carrier, _0, e), h[:e], h[1:], up[1, :e], by[1, :e])
+    for c in range(size):
+        by[2, c] = 0.0
+    _other_speed(p[:e], p[1:], by_metric[1, :e], part(g_v, _0, e), by[2, :e])
+    by[1, e] = 0.0

@@ -38,16 +38,16 @@ class GapSlopes(NamedTuple):
     Attributes
     ----------
     H_P, D_P : of H and D to the unknown pressure
-    H_r, D_r, E_r : of H, D and E to the undeformed gap at fixed unknown
+    D_r, E_r, H_r : of D, E and H to the undeformed gap at fixed unknown
     link : of HF to the true gap on the link
     rate_P, rate_r, rate_t : of dH/dt to the unknown, the undeformed gap and the undeformed rate
     """
 
     H_P: np.ndarray
     D_P: np.ndarray
-    H_r: np.ndarray
     D_r: np.ndarray
     E_r: np.ndarray
+    H_r: np.ndarray
     link: np.ndarray
     rate_P: np.ndarray
     rate_r: np.ndarray
@@ -147,32 +147,18 @@ def press_elements(rigid, load_fields, beta, G_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _moved_rate(rate, D, old, inverse, out):
-    for c in range(out.size):
-        out[c] = rate[c] + (D[c] - old[c]) * inverse
-
-
-@njit(cache=True, fastmath=_FAST)
-def _mean_gap(link, D_a, D_b, out):
-    for c in range(out.size):
-        out[c] = link[c] + 0.5 * (D_a[c] + D_b[c])
-
-
-@njit(cache=True, fastmath=_FAST)
 def move_elements(rigid, G, delta_old, inverse, gap_fields):
     """Set deflections, gaps and rate of the deformed surfaces, before a limiter changes them; returns the smallest gap
     on a link."""
-    m = G.shape[1]
-    gaps = gaps_of(gap_fields)
-    g, gap, D, H, HF = G.reshape(-1), rigid[0].reshape(-1), gaps.D.reshape(-1), gaps.H.reshape(-1), gaps.HF.reshape(-1)
+    m, gaps, bare = G.shape[1], gaps_of(gap_fields), rigid.reshape(3, G.size)
+    gap, link, rate = bare[0], bare[1], bare[2]
+    g, old = G.reshape(-1), delta_old.reshape(-1)
+    D, H, HF, moved = gaps.D.reshape(-1), gaps.H.reshape(-1), gaps.HF.reshape(-1), gaps.rate.reshape(-1)
     for c in range(D.size):
-        D[c] = g[c] - gap[c]
-    for c in range(H.size):
-        H[c] = g[c]
-    _moved_rate(rigid[2].reshape(-1), D, delta_old.reshape(-1), inverse, gaps.rate.reshape(-1))
-    last, link = g.size - m, rigid[1].reshape(-1)
-    _mean_gap(link[:last], D[:last], D[m:], HF[:last])
-    _mean_gap(link[last:], D[last:], D[:m], HF[last:])
+        D[c], H[c] = g[c] - gap[c], g[c]
+        moved[c] = rate[c] + (D[c] - old[c]) * inverse
+    for c in range(D.size):
+        HF[c] = link[c] + 0.5 * (D[c] + D[c + m if c + m < D.size else c + m - D.size])
     return _smallest(HF)
 
 
@@ -209,7 +195,7 @@ def set_storage(gaps, load, P, fills, known, rates, beta, film):
         kept[c] = -old[c] * rates.mass - slow[c] * rates.pseudo
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
     """Set `GapSlopes`, but ``rate_t`` (slope of the film gap) and ``link``, which are inputs.
 
@@ -217,49 +203,16 @@ def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
     gap's rate.
     """
     load, out = load_of(load_fields), slopes_of(slope_fields)
-    size = P.size
-    follow = np.empty(size)
-    stiff, turned, s = contact_G.reshape(-1), bend.reshape(-1), out.rate_t.reshape(-1)
-    _follow(stiff, beta, follow)
-    D_P, H_P, D_r, H_r = out.D_P.reshape(-1), out.H_P.reshape(-1), out.D_r.reshape(-1), out.H_r.reshape(-1)
-    _yield(P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1), follow, beta, D_P)
-    for c in range(size):
-        D_r[c] = follow[c] - 1.0
-    for c in range(size):
-        H_P[c] = s[c] * D_P[c]
-    for c in range(size):
-        H_r[c] = s[c] * follow[c]
-    combine(H_r, 1.0, rigid_slope.reshape(-1), -1.0, out.E_r.reshape(-1))
-    _turn(turned, s, inverse, D_P, 0.0, out.rate_P.reshape(-1))
-    _turn(turned, s, inverse, D_r, 1.0, out.rate_r.reshape(-1))
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _follow(stiff, beta, out):
-    for c in range(out.size):
-        out[c] = 1.0 / (1.0 - beta * stiff[c])
-
-
-@njit(cache=True, fastmath=_FAST)
-def _yield(x, drive, steep, follow, beta, out):
-    for c in range(out.size):
-        d = beta * follow[c] * steep[c]
-        out[c] = d if x[c] == drive[c] else 0.0
-
-
-@njit(cache=True, fastmath=_FAST)
-def combine(a, by_a, b, by_b, out):
-    """Set ``out = by_a a + by_b b`` for fields (k,)."""
-    for c in range(out.size):
-        out[c] = by_a * a[c] + by_b * b[c]
-
-
-@njit(cache=True, fastmath=_FAST)
-def _turn(turned, s, inverse, yields, own, out):
-    """Set the derivative of dH/dt to a quantity with the derivative ``yields`` of D; ``own``: 1 for the undeformed gap,
-    else 0."""
-    for c in range(out.size):
-        out[c] = (turned[c] + s[c] * inverse) * yields[c] + own * turned[c]
+    stiff, turned, s, rigid = contact_G.reshape(-1), bend.reshape(-1), out.rate_t.reshape(-1), rigid_slope.reshape(-1)
+    x, drive, steep = P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)
+    D_P, H_P, rate_P = out.D_P.reshape(-1), out.H_P.reshape(-1), out.rate_P.reshape(-1)
+    D_r, H_r, E_r, rate_r = out.D_r.reshape(-1), out.H_r.reshape(-1), out.E_r.reshape(-1), out.rate_r.reshape(-1)
+    for c in range(x.size):
+        follow, moved = 1.0 / (1.0 - beta * stiff[c]), turned[c] + s[c] * inverse
+        D_P[c] = beta * follow * steep[c] if x[c] == drive[c] else 0.0
+        H_P[c], rate_P[c] = s[c] * D_P[c], moved * D_P[c]
+        D_r[c], H_r[c] = follow - 1.0, s[c] * follow
+        E_r[c], rate_r[c] = H_r[c] - rigid[c], moved * D_r[c] + turned[c]
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -230,8 +230,8 @@ class LinerFilm(WinklerElements):
 
     def follows(self) -> np.ndarray:
         """Derivatives (4, n m) of deflection, E, gap and gap on links, see `exudyn_ehd.film.gradients.link_rows`."""
-        a = self.gap_slopes
-        return np.stack((a.D_r, a.E_r, a.H_r, a.link)).reshape(4, -1)
+        follows: np.ndarray = self.slope_fields[2:6].reshape(4, -1)
+        return follows
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
