@@ -100,16 +100,42 @@ def carried_fill(fill, film):
     return out
 
 
+@njit(cache=True)
+def both(x, start, stop, there, end):
+    """Parts of a field at both ends of links; None of None."""
+    return part(x, start, stop), part(x, there, end)
+
+
 @njit(cache=True, fastmath=_FAST)
-def _link_flows(k, f, P_a, P_b, fill_a, fill_b, rho_a, rho_b, out):
-    for c in range(out.size):
-        couette = f[c]
+def _upstream(f, fill_a, fill_b, rho_a, rho_b, up):
+    for c in range(up.size):
         if fill_a is not None:
             a, b = fill_a[c], fill_b[c]
-            couette *= a if couette >= 0.0 else b
+            up[c] = a if f[c] >= 0.0 else b
         if rho_a is not None:
-            couette *= 0.5 * (rho_a[c] + rho_b[c])
-        out[c] = k[c] * (P_a[c] - P_b[c]) + couette
+            up[c] *= 0.5 * (rho_a[c] + rho_b[c])
+
+
+@njit(cache=True)
+def upstream(fx, fz, fill, rho):
+    """Return the fill (2, n m) that the Couette flows fx, fz take along from upstream, in theta and z, times the mean
+    density.
+
+    ``fill`` is what flows carry; it and the density ratio ``rho`` are (n, m), or None where they are one everywhere.
+    """
+    m, size = fx.shape[1], fx.size
+    last, e, up = size - m, size - 1, np.ones((2, size))
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        fills, densities = both(fill, start, stop, there, end), both(rho, start, stop, there, end)
+        _upstream(part(fx, start, stop), *fills, *densities, up[0, start:stop])
+    _upstream(part(fz, _0, e), *both(fill, _0, e, _1, size), *both(rho, _0, e, _1, size), up[1, :e])
+    return up
+
+
+@njit(cache=True, fastmath=_FAST)
+def _link_flows(k, f, P_a, P_b, up, out):
+    for c in range(out.size):
+        out[c] = k[c] * (P_a[c] - P_b[c]) + f[c] * up[c]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -131,49 +157,16 @@ def film_balance(P, fill, rho, film, out):
     is solved; None for a fill or density of one everywhere."""
     n, m = P.shape
     size = n * m
-    last = size - m
-    p, q = P.reshape(-1), out.reshape(-1)
+    last, e, p, q = size - m, size - 1, P.reshape(-1), out.reshape(-1)
     kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
-    carried = carried_fill(fill, film)
-    along = np.empty(size + m)
-    across = np.empty(size + 1)
-    _link_flows(
-        kx[:last],
-        fx[:last],
-        p[:last],
-        p[m:],
-        part(carried, _0, last),
-        part(carried, m, size),
-        part(rho, _0, last),
-        part(rho, m, size),
-        along[m:size],
-    )
-    _link_flows(
-        kx[last:],
-        fx[last:],
-        p[last:],
-        p[:m],
-        part(carried, last, size),
-        part(carried, _0, m),
-        part(rho, last, size),
-        part(rho, _0, m),
-        along[size:],
-    )
+    up = upstream(film.fx, film.fz, carried_fill(fill, film), rho)
+    along, across = np.empty(size + m), np.empty(size + 1)
+    _link_flows(kx[:last], fx[:last], p[:last], p[m:], up[0, :last], along[m:size])
+    _link_flows(kx[last:], fx[last:], p[last:], p[:m], up[0, last:], along[size:])
     for j in range(m):
         along[j] = along[size + j]
     # nothing flows over the last row's links in z
-    e = size - 1
-    _link_flows(
-        kz[:e],
-        fz[:e],
-        p[:e],
-        p[1:],
-        part(carried, _0, e),
-        part(carried, _1, size),
-        part(rho, _0, e),
-        part(rho, _1, size),
-        across[1:size],
-    )
+    _link_flows(kz[:e], fz[:e], p[:e], p[1:], up[1, :e], across[1:size])
     across[0] = across[size] = 0.0
     _gather_flows(
         film.area.reshape(-1),
@@ -244,6 +237,17 @@ def _storage_slopes(area, full, fill, rho, by, grow, known, out):
 
 
 @njit(cache=True)
+def _link_slopes(k, f, full, fill, rho, rho_P, prompt, start, stop, there, end, by_a, by_b):
+    """Derivatives of the flows over links, from ``start`` and ``there`` on, to the unknowns at their ends a and b."""
+    k, f, at = part(k, start, stop), part(f, start, stop), (start, stop, there, end)
+    around = *both(fill, *at), *both(rho, *at)
+    here, out = (part(rho_P, start, stop), part(prompt, start, stop)), by_a[start:stop]
+    _end_slopes(k, f, -1.0, part(full, start, stop), *around, *here, out)
+    beyond, out = (part(rho_P, there, end), part(prompt, there, end)), by_b[start:stop]
+    _end_slopes(k, f, 1.0, part(full, there, end), *around, *beyond, out)
+
+
+@njit(cache=True)
 def film_slopes(fill, full, rho, rho_P, film, slopes):
     """Derivatives (5, n m) as `banded.assemble` takes them, at fixed gaps;
     unknowns are pressures where ``full``, else fills.
@@ -253,48 +257,11 @@ def film_slopes(fill, full, rho, rho_P, film, slopes):
     """
     n, m = film.kx.shape
     size = n * m
-    last, e = size - m, size - 1
-    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
-    carried, prompt = carried_fill(fill, film), film.prompt.reshape(-1)
+    last, e, carried = size - m, size - 1, carried_fill(fill, film)
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        k, f = kx[start:stop], fx[start:stop]
-        fill_a, fill_b = part(carried, start, stop), part(carried, there, end)
-        rho_a, rho_b = part(rho, start, stop), part(rho, there, end)
-        full_a, full_b = part(full, start, stop), part(full, there, end)
-        _end_slopes(
-            k,
-            f,
-            -1.0,
-            full_a,
-            fill_a,
-            fill_b,
-            rho_a,
-            rho_b,
-            part(rho_P, start, stop),
-            prompt[start:stop],
-            slopes[0, start:stop],
-        )
-        _end_slopes(
-            k,
-            f,
-            1.0,
-            full_b,
-            fill_a,
-            fill_b,
-            rho_a,
-            rho_b,
-            part(rho_P, there, end),
-            prompt[there:end],
-            slopes[1, start:stop],
-        )
-    k, f = kz[:e], fz[:e]
-    fill_a, fill_b, rho_a, rho_b = part(carried, _0, e), part(carried, _1, size), part(rho, _0, e), part(rho, _1, size)
-    _end_slopes(
-        k, f, -1.0, part(full, _0, e), fill_a, fill_b, rho_a, rho_b, part(rho_P, _0, e), prompt[:e], slopes[2, :e]
-    )
-    _end_slopes(
-        k, f, 1.0, part(full, _1, size), fill_a, fill_b, rho_a, rho_b, part(rho_P, _1, size), prompt[1:], slopes[3, :e]
-    )
+        at = start, stop, there, end
+        _link_slopes(film.kx, film.fx, full, carried, rho, rho_P, film.prompt, *at, slopes[0], slopes[1])
+    _link_slopes(film.kz, film.fz, full, carried, rho, rho_P, film.prompt, _0, e, _1, size, slopes[2], slopes[3])
     slopes[2:4, e] = 0.0
     _storage_slopes(
         film.area.reshape(-1), part(full, _0, size), part(fill, _0, size), part(rho, _0, size), part(rho_P, _0, size),

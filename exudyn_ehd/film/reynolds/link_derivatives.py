@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.balance import part
+from exudyn_ehd.film.reynolds.balance import both, part
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 # numpy's integers, since numba compiles kernels anew for each plain one
@@ -51,37 +51,6 @@ def _pressure_flow(P_a, P_b, metric, h_a, h_b, E_a, E_b, g, g_h, by_h, by_d):
             if g is not None:
                 base = g[c] / (h * h)
             by_d[c] = -metric[c] * (P_b[c] - P_a[c]) * base * (E_b[c] - E_a[c])
-
-
-@njit(cache=True)
-def _both(x, start, stop, there, end):
-    """Parts of a field at both ends of links; None of None."""
-    return part(x, start, stop), part(x, there, end)
-
-
-@njit(cache=True, fastmath=_FAST)
-def _upstream(f, fill_a, fill_b, rho_a, rho_b, up):
-    for c in range(up.size):
-        if fill_a is not None:
-            a, b = fill_a[c], fill_b[c]
-            up[c] = a if f[c] >= 0.0 else b
-        if rho_a is not None:
-            up[c] *= 0.5 * (rho_a[c] + rho_b[c])
-
-
-@njit(cache=True)
-def upstream(fx, fz, fill, rho):
-    """Return ``up`` (2, n m) of the links in theta and z, with the Couette flows fx, fz of full films.
-
-    ``fill`` is what flows carry; it and the density ratio ``rho`` are (n, m), or None where they are one everywhere.
-    """
-    m, size = fx.shape[1], fx.size
-    last, e, up = size - m, size - 1, np.ones((2, size))
-    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        fills, densities = _both(fill, start, stop, there, end), _both(rho, start, stop, there, end)
-        _upstream(part(fx, start, stop), *fills, *densities, up[0, start:stop])
-    _upstream(part(fz, _0, e), *_both(fill, _0, e, _1, size), *_both(rho, _0, e, _1, size), up[1, :e])
-    return up
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -123,7 +92,7 @@ def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
     E : (n, m) array or None
         None: without a liner; the derivatives to d are not set.
     up : (2, n m) array
-        Of `upstream`.
+        Of `exudyn_ehd.film.reynolds.balance.upstream`.
     flux : LinkFlux or None
     metric : (4, n, m) array
         `exudyn_ehd.film.reynolds.links.link_metric`.
@@ -135,11 +104,11 @@ def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
     g, g_h, _, _, c_h = _of_axis(flux, 0)
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
         at, law = h_x[start:stop], (part(g, start, stop), part(g_h, start, stop))
-        leans, out = _both(E, start, stop, there, end), (by[0, start:stop], by[1, start:stop])
+        leans, out = both(E, start, stop, there, end), (by[0, start:stop], by[1, start:stop])
         _pressure_flow(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, *law, *out)
     _add_couette_flow(vx, by_metric[2], part(c_h, _0, size), up[0], by[0])
     g, g_h, _, _, c_h = _of_axis(flux, 1)
-    law, leans = (part(g, _0, e), part(g_h, _0, e)), _both(E, _0, e, _1, size)
+    law, leans = (part(g, _0, e), part(g_h, _0, e)), both(E, _0, e, _1, size)
     _pressure_flow(p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
     _add_couette_flow(vz, by_metric[3], part(c_h, _0, size), up[1], by[2])
     # there are no links behind the last row

@@ -10,8 +10,8 @@ from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_
 from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.gradients import Gradients, join, link_rows
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives, upstream
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, upstream
+from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
 from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm

@@ -15,8 +15,8 @@ from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
 from exudyn_ehd.film.cavitation.solve import BENDS, EVEN, EVEN_DENSE, GOES_ON, LOST, MOST_STEPS, look, take_step
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE, add_sink, place_states, set_states
-from exudyn_ehd.film.reynolds.balance import carried_fill, film_slopes, oil_links, terms_of
-from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, upstream
+from exudyn_ehd.film.reynolds.balance import carried_fill, film_slopes, oil_links, terms_of, upstream
+from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives
 from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes, element_slopes, gaps_of, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.winkler import plain_residual
 
