@@ -1202,6 +1202,9 @@ ehd.equilibrium(pads, speed=-300.0, load=30e3)
 
 ehd.equilibrium(bearing, speed=300.0, load=(0.0, -1e9))
 
+halves = ehd.JournalBearing(**plain, arcs=ehd.offset_halves(preload=0.6))
+ehd.equilibrium(halves, speed=-300.0, load=(-500.0, -500.0))
+
 starved = ehd.Pocket(angle=2.0, width_angle=0.8, length=0.01, supply=ehd.GivenFlow(flow=1e-10))
 ehd.steady(ehd.JournalBearing(**plain, supply=(starved,)), speed=300.0, eccentricity_ratio=0.5, direction=1.5)
 
@@ -1390,6 +1393,9 @@ mass = ehd.TiltingPads(**rocking, cavitation=ehd.ElrodAdams())
 ehd.equilibrium(mass, speed=300.0, load=(0.0, -1000.0))
 
 ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, -0.1))
+
+springy = ehd.TiltingPads(**plain, pad_thickness=0.01, preload=0.2, pivot_stiffness=1e5)
+ehd.equilibrium(springy, speed=300.0, load=(0.0, -5.0))
 
 ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, 0.0))
 

@@ -211,9 +211,15 @@ class PadSearch:
                 here = min(found, key=lambda place: place.left)
                 self.tipped[np.argmin(np.where(self.tipped, math.inf, here.carried))] = True
         off = min((here.left for here in found), default=math.inf) / self.size
+        yields, soft = self.size / (self.bearing.pivot_stiffness or math.inf), ""
+        if yields > self.bearing.radial_clearance:
+            soft = (
+                f"Under this load a pivot yields by {shown('length', yields)}, more than the clearance, which "
+                "leaves the pads beside the load without any: give them a larger pivot_stiffness. "
+            )
         raise FilmError(
             f"{WHERE}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
-            f"{off:.2g} of the load. Pads that hardly carry are tipped over by friction: give them more preload, "
+            f"{off:.2g} of the load. {soft}Pads that hardly carry are tipped over by friction: give them more preload, "
             "contact=RegularisedWall(onset=...) to rest on, or more load; where films are thin, less load or a finer "
             "film grid."
         )
