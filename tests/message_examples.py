@@ -172,11 +172,11 @@ pads = ehd.TiltingPads(**rocking)
 rest = ehd.equilibrium(pads, speed=300.0, load=(0.0, -1000.0))
 
 
-def padded(**options):
+def padded(bearing=pads, **options):
     spin = {"initialAngularVelocity": [0, 0, 200.0]} | options
     mbs = exu.SystemContainer().AddSystem()
     items = [mbs.CreateGround(), mbs.CreateRigidBody(inertia=cube, **spin)]
-    joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], pads)
+    joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], bearing, axial=ehd.Held())
     mbs.Assemble()
     return mbs, joint
 """,
@@ -1413,7 +1413,8 @@ joint.place_in_equilibrium(load=(0.0, -1000.0))
 
 padded(initialAngularVelocity=[0, 0, 0])[1].place_in_equilibrium(load=(0.0, -1000.0))
 
-ehd.SolveEquilibrium(padded()[0], 300.0)
+plainer = dataclasses.replace(pads, preload=0.0)
+ehd.SolveEquilibrium(padded(plainer, gravity=[0, -1e3, 0])[0], 300.0)
 """,
     ),
     Group(

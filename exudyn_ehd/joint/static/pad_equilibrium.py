@@ -169,10 +169,12 @@ class PadSearch:
         Force on the journal, N.
     size : float
         Force that the unbalance is divided by, N.
+    where : str
+        Name of the caller, for error messages.
     """
 
-    def __init__(self, bearing: TiltingPads, speed: float, load: np.ndarray, size: float) -> None:
-        self.bearing, self.load, self.size, self.count = bearing, load, size, 0
+    def __init__(self, bearing: TiltingPads, speed: float, load: np.ndarray, size: float, where: str = WHERE) -> None:
+        self.bearing, self.load, self.size, self.where, self.count = bearing, load, size, where, 0
         self.pads = [Pad(bearing, k, speed) for k in range(bearing.pads)]
         self.moves, self.tipped = bearing.pivot_stiffness is not None, np.zeros(bearing.pads, dtype=bool)
 
@@ -218,7 +220,7 @@ class PadSearch:
                 "leaves the pads beside the load without any: give them a larger pivot_stiffness. "
             )
         raise FilmError(
-            f"{WHERE}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
+            f"{self.where}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
             f"{off:.2g} of the load. {soft}Pads that hardly carry are tipped over by friction: give them more preload, "
             "contact=RegularisedWall(onset=...) to rest on, or more load; where films are thin, less load or a finer "
             "film grid."

@@ -225,8 +225,9 @@ class PadModel(BearingModel):
 
     Parameters
     ----------
-    bearing : JournalBearing
-        With an ``arc``.
+    pads : TiltingPads
+    number : int
+        Number of the pad, from 0.
 
     Attributes
     ----------
@@ -234,7 +235,8 @@ class PadModel(BearingModel):
         Map from the wrench of the film without the resultant of its shear.
     """
 
-    def __init__(self, bearing: JournalBearing) -> None:
+    def __init__(self, pads: TiltingPads, number: int) -> None:
+        bearing, self.pads, self.number = pads.pad(number), pads, number
         super().__init__(bearing, effects=collect_effects(bearing))
         assert bearing.arc is not None
         first, last = bearing.arc.start, bearing.arc.start + bearing.arc.extent
@@ -259,8 +261,8 @@ class PadLoads(NamedTuple):
     ----------
     tilt : float
         delta, rad.
-    motion : (10,) array
-        Motion of the journal in the pad's frame.
+    motion, wrench : (10,), (6,) arrays
+        Motion of the journal and loads on it in the pad's frame.
     forces : (4,) array
         Generalized forces, N and Nm.
     stiffness, damping : (4, 4) arrays
@@ -271,6 +273,7 @@ class PadLoads(NamedTuple):
 
     tilt: float
     motion: np.ndarray
+    wrench: np.ndarray
     forces: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
@@ -295,7 +298,7 @@ class Pad:
     """
 
     def __init__(self, bearing: TiltingPads, number: int, speed: float) -> None:
-        self.model, self.speed = PadModel(bearing.pad(number)), speed
+        self.model, self.speed = PadModel(bearing, number), speed
         angle, self.arm = float(bearing.pivots[number]), bearing.arm
         self.radial = np.array([math.cos(angle), math.sin(angle)])
         self.across = np.array([-self.radial[1], self.radial[0]])
@@ -332,4 +335,4 @@ class Pad:
         stiffness[3, 3] += self.stiffness
         forces = to_forces @ found.wrench
         forces[3] -= self.stiffness * shift
-        return PadLoads(tilt, motion, forces, stiffness, -changes @ by_rate)
+        return PadLoads(tilt, motion, found.wrench, forces, stiffness, -changes @ by_rate)
