@@ -1389,9 +1389,6 @@ ehd.TiltingPads(**rocking, film=ehd.ShortBearing())
 
 ehd.equilibrium(pads, speed=300.0, load=(0.0, -1000.0), tilt=(1e-4, 0.0))
 
-mass = ehd.TiltingPads(**rocking, cavitation=ehd.ElrodAdams())
-ehd.equilibrium(mass, speed=300.0, load=(0.0, -1000.0))
-
 ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, -0.1))
 
 springy = ehd.TiltingPads(**plain, pad_thickness=0.01, preload=0.2, pivot_stiffness=1e5)

@@ -114,13 +114,21 @@ def test_free_vibration_is_that_of_the_whole_matrices(change):
         assert np.abs(found - values[k]).min() < 0.01 * abs(values[k])
 
 
-@pytest.mark.parametrize("stiffness", [None, 1e9])
-def test_a_damped_run_ends_in_the_equilibrium(stiffness):
-    pads = dataclasses.replace(PADS, pivot_stiffness=stiffness)
+RUNS = {
+    "rigid pivots": {},
+    "flexible pivots": {"pivot_stiffness": 1e9},
+    "heat": {"lubricant": ehd.oil("ISO VG 46"), "thermal": ehd.LumpedThermal(supply_temperature=313.0)},
+}
+
+
+@pytest.mark.parametrize("change", RUNS)
+def test_a_damped_run_ends_in_the_equilibrium(change):
+    pads = dataclasses.replace(PADS, **RUNS[change])
     mbs, joint = scene(pads)
     # a larger jump tips the upper pad over
     joint.place_in_equilibrium(load=0.85 * LOAD)
-    run(mbs, 0.1, 250)
+    # the oil is as cold as its supply at the start
+    run(mbs, *((0.4, 400) if pads.thermal else (0.1, 250)))
     history = joint.history
     rest = ehd.equilibrium(pads, speed=float(joint.pads[0].history.motion[-1, 8]), load=tuple(LOAD))
     assert np.hypot(*(history.position[0] - rest.position)) > 2e-6
@@ -303,6 +311,27 @@ def test_rotor_between_a_round_bearing_and_pads_stays_in_its_equilibrium():
     now = np.array(mbs.GetNodeOutput(node, exu.OutputVariableType.Displacement))
     was = mbs.GetNodeOutput(node, exu.OutputVariableType.Displacement, configuration=INITIAL)
     assert np.abs(now - was)[:2].max() < 1e-9
+
+
+def test_pads_with_cavities_follow_at_the_frequency_of_the_motion():
+    """Stiffness and damping of `reduced` against those of the rotor's equations, from the kinematics of its bodies."""
+    # a trailing edge under pressure reforms the film behind a cavity
+    cavities = {"cavitation": ehd.ElrodAdams(), "pads": 3, "extent": 1.9, "edge_pressures": (0.0, 2e5)}
+    pads = dataclasses.replace(PADS, **cavities, preload=0.7, load_between_pads=False)
+    rest = ehd.equilibrium(pads, speed=SPEED, load=tuple(LOAD))
+    mbs, joint = scene(pads)
+    found = ehd.SolveEquilibrium(mbs, SPEED)
+    first = found.layout.nodes[int(joint.pads[0].element.sides[1].nodes[0])]
+    rows = found.directions[0, first : first + 2]
+    parts = found.stiffness_matrix[0], found.damping_matrix[0], found.mass_matrix[0]
+    for nu in (50.0, 300.0, 900.0):
+        delayed = sum(memory.beyond(1j * nu) for memory in found.memories[0])
+        Z = parts[0] + 1j * nu * parts[1] - nu**2 * parts[2] + delayed
+        own = np.linalg.inv(rows @ np.linalg.solve(Z, rows.T)) + nu**2 * MASS * np.eye(2)
+        K, C = rest.reduced(nu)
+        assert np.abs(K + 1j * nu * C - own).max() < 2e-6 * np.abs(own).max()
+        slow = dataclasses.replace(rest, memories=()).reduced(nu)
+        assert nu < 100.0 or np.abs(slow[0] + 1j * nu * slow[1] - own).max() > 1e-4 * np.abs(own).max()
 
 
 @pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.ElrodAdams()])

@@ -30,7 +30,7 @@ from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmResponse, response_of, slow_motions
+from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmMemory, response_of, slow_motions
 from exudyn_ehd.joint.static.equilibrium import NO_LOAD
 from exudyn_ehd.joint.static.pad_equilibrium import PadSearch
 from exudyn_ehd.joint.static.pads import PadModel
@@ -91,29 +91,6 @@ class FilmLoads(NamedTuple):
     force: np.ndarray
     by_place: np.ndarray
     by_rate: np.ndarray
-
-
-class FilmMemory(NamedTuple):
-    """A film whose stiffness and damping depend on the frequency, in n directions y that constraints leave.
-
-    Attributes
-    ----------
-    response : FilmResponse
-    slow : two (4, 4) arrays
-        K and C of slow motions, which the matrices of the system contain.
-    loads, places : (n, 4), (4, n) arrays
-        Forces on y of the loads of `slow_motions`, and their places by y.
-    """
-
-    response: FilmResponse
-    slow: tuple[np.ndarray, np.ndarray]
-    loads: np.ndarray
-    places: np.ndarray
-
-    def beyond(self, s: complex) -> np.ndarray:
-        """Dynamic stiffness (n, n) of motions exp(s t) beyond K + s C of slow ones."""
-        stiffness, damping = self.slow
-        return self.loads @ (self.response.at(-1j * s) - stiffness - s * damping) @ self.places
 
 
 class RotorFilm:

@@ -21,11 +21,12 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.kinematics.relative import skew
-from exudyn_ehd.coupling.rotor.films import FilmLoads, FilmMemory, RotorFilm, film_model
+from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
 # Unbalance over the loads of the films that counts as none, steps of Newton's method that may pass, and rounding of
