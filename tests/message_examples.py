@@ -376,6 +376,8 @@ ehd.JournalBearing(**plain, arcs=(ehd.Arc(start=0.0, extent=2.0), ehd.Arc(start=
 
 ehd.JournalBearing(**plain, arcs=ehd.pressure_dam(depth=50e-6, step_angle=2.5, length=0.025))
 
+ehd.JournalBearing(**plain, arcs=ehd.two_lobe(preload=0.5), supply=(ehd.Hole(angle=0.0, diameter=0.003),))
+
 ehd.pressure_dam(depth=50e-6, step_angle=3.0, length=0.018)
 
 hard = ehd.Lubricant(viscosity=0.02, pressure_law=ehd.BarusPressure(coefficient=2e-8))

@@ -195,8 +195,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         Total oil flow: fresh oil that passes through the film, m3/s. It replaces what leaves through ends and supply
         areas; without end pressures and supply areas it is the leakage. With an arc: oil that enters at its edges.
     supply_flows : (k,) array
-        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs: oil that enters at the
-        leading and at the trailing edge of every arc in turn, 0 where it leaves.
+        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs, before it: oil that enters at
+        the leading and at the trailing edge of every arc in turn, 0 where it leaves.
     contact_torque, contact_power_loss, peak_contact_pressure : float
         Boundary friction of the contacts on the journal about its own axis, N m, part of ``friction_torque``; its
         loss, W, part of ``power_loss``; largest contact pressure, Pa.
