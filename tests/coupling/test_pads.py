@@ -247,6 +247,7 @@ CHANGES = {
     "rigid pivots": {},
     "flexible pivots": {"pivot_stiffness": 3e8, "pivot_offset": 0.55, "first_pivot": 0.3},
     "four pads": {"pads": 4, "extent": 1.2, "load_between_pads": False},
+    "heat": RUNS["heat"] | {"preload": 0.5},
 }
 
 
@@ -259,7 +260,7 @@ def test_rotor_on_pads_against_the_matrices_of_the_bearing(change, sense):
         pads = dataclasses.replace(pads, pivot_offset=1.0 - pads.pivot_offset)
     A = scenes.rotation(np.array([0.4, -0.7, 0.2]))
     mbs, joint = scene(pads, attitude=A, place=(0.3, -0.2, 0.1))
-    speeds = sense * np.array([250.0, 300.0, 600.0])
+    speeds = sense * np.array([300.0] if pads.thermal else [250.0, 300.0, 600.0])
     found = ehd.SolveEquilibrium(mbs, speeds)
     assert found.joints == tuple(pad.name for pad in joint.pads)
     for k, speed in enumerate(speeds):

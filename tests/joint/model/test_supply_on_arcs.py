@@ -64,6 +64,16 @@ def test_the_force_of_both_grids_tends_to_one(name):
     assert away[1] < 0.35 * away[0]
 
 
+@pytest.mark.parametrize("arcs", [ehd.two_lobe(preload=0.5, pressure=2e5), (ehd.Arc(start=3.6, extent=2.1),)])
+def test_what_areas_and_edges_feed_leaves_at_the_ends(arcs):
+    arcs = tuple(dataclasses.replace(arc, leading_pressure=2e5, trailing_pressure=1e5) for arc in arcs)
+    hole = ehd.Hole(angle=4.7, diameter=0.003, pressure=3e5)
+    bearing = ehd.JournalBearing(**SIZE, lubricant=OIL, arcs=arcs, supply=(hole,))
+    film = ehd.steady(bearing, speed=0.0, eccentricity_ratio=0.5, direction=4.7)
+    assert film.supply_flows.min() > 0.0
+    assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-10)
+
+
 LOBES = ehd.two_lobe(preload=0.4, offset=0.6, pressure=1e5)
 SUPPLY = (
     ehd.Pocket(angle=-math.pi / 2, width_angle=0.6, length=0.012, supply=ORIFICE),
