@@ -37,7 +37,8 @@ class LoadSearch(Balance):
 
     Newton's method; where it fails, and the film has a temperature and none is known yet, for loads that grow from a
     quarter of the whole, `climb`; where this finds none either, damped steps, first from the same place, then from
-    inside the bearing.
+    inside the bearing; in a lobed one also from where the film is as strong as the load, on the way on which the load
+    presses the journal onto the bore.
     """
 
     def find(self, motion: np.ndarray, near: Place | None = None) -> Place:
