@@ -6,6 +6,8 @@ from dataclasses import dataclass, fields
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar, get_args
 
+import numpy as np
+
 from exudyn_ehd.film.arcs import Arc, check_arcs
 from exudyn_ehd.film.cavitation.closures import Closure, ElrodAdams, FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.combinations import check_combinations
@@ -26,7 +28,7 @@ from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas, source_pressure
 from exudyn_ehd.film.supply.restrictors import EndSeal, require_seals
-from exudyn_ehd.film.supply.rows import check_depths, check_supply
+from exudyn_ehd.film.supply.rows import check_depths, check_on_arcs, check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -263,6 +265,9 @@ class JournalBearing(Checked):
             return
         film, ends = self.film, None if isinstance(self.film, LongBearing) else self.end_pressures
         around = film.circumferential_pressure_flow
+        if self.bore_arcs:
+            spans = np.array([(arc.start, arc.extent) for arc in self.bore_arcs])
+            check_on_arcs(self.supply, spans, self.journal_radius, self.columns)
         check_supply(self.supply, self.journal_radius, self.length, self.columns, around, ends)
         if isinstance(self.inlet, MaximumGap):
             raise InputError(

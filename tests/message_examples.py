@@ -172,11 +172,11 @@ pads = ehd.TiltingPads(**rocking)
 rest = ehd.equilibrium(pads, speed=300.0, load=(0.0, -1000.0))
 
 
-def padded(**options):
+def padded(bearing=pads, **options):
     spin = {"initialAngularVelocity": [0, 0, 200.0]} | options
     mbs = exu.SystemContainer().AddSystem()
     items = [mbs.CreateGround(), mbs.CreateRigidBody(inertia=cube, **spin)]
-    joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], pads)
+    joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], bearing, axial=ehd.Held())
     mbs.Assemble()
     return mbs, joint
 """,
@@ -375,6 +375,8 @@ ehd.JournalBearing(**plain, arc=ehd.Arc(start=-1.0, extent=2.0), arcs=ehd.two_lo
 ehd.JournalBearing(**plain, arcs=(ehd.Arc(start=0.0, extent=2.0), ehd.Arc(start=1.5, extent=2.0)))
 
 ehd.JournalBearing(**plain, arcs=ehd.pressure_dam(depth=50e-6, step_angle=2.5, length=0.025))
+
+ehd.JournalBearing(**plain, arcs=ehd.two_lobe(preload=0.5), supply=(ehd.Hole(angle=0.0, diameter=0.003),))
 
 ehd.pressure_dam(depth=50e-6, step_angle=3.0, length=0.018)
 
@@ -1202,6 +1204,9 @@ ehd.equilibrium(pads, speed=-300.0, load=30e3)
 
 ehd.equilibrium(bearing, speed=300.0, load=(0.0, -1e9))
 
+halves = ehd.JournalBearing(**plain, arcs=ehd.offset_halves(preload=0.6))
+ehd.equilibrium(halves, speed=-300.0, load=(-500.0, -500.0))
+
 starved = ehd.Pocket(angle=2.0, width_angle=0.8, length=0.01, supply=ehd.GivenFlow(flow=1e-10))
 ehd.steady(ehd.JournalBearing(**plain, supply=(starved,)), speed=300.0, eccentricity_ratio=0.5, direction=1.5)
 
@@ -1386,10 +1391,10 @@ ehd.TiltingPads(**rocking, film=ehd.ShortBearing())
 
 ehd.equilibrium(pads, speed=300.0, load=(0.0, -1000.0), tilt=(1e-4, 0.0))
 
-mass = ehd.TiltingPads(**rocking, cavitation=ehd.ElrodAdams())
-ehd.equilibrium(mass, speed=300.0, load=(0.0, -1000.0))
-
 ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, -0.1))
+
+springy = ehd.TiltingPads(**plain, pad_thickness=0.01, preload=0.2, pivot_stiffness=1e5)
+ehd.equilibrium(springy, speed=300.0, load=(0.0, -5.0))
 
 ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, 0.0))
 
@@ -1407,7 +1412,8 @@ joint.place_in_equilibrium(load=(0.0, -1000.0))
 
 padded(initialAngularVelocity=[0, 0, 0])[1].place_in_equilibrium(load=(0.0, -1000.0))
 
-ehd.SolveEquilibrium(padded()[0], 300.0)
+plainer = dataclasses.replace(pads, preload=0.0)
+ehd.SolveEquilibrium(padded(plainer, gravity=[0, -1e3, 0])[0], 300.0)
 """,
     ),
     Group(

@@ -337,7 +337,7 @@ def CreateTiltingPadBearing(
         body, *joints = _add_pad(mbs, own, bearing, (housing, pivot), (rotation, radial), weight)
         joint = attach(
             mbs,
-            PadModel(bearing.pad(k)),
+            PadModel(bearing, k),
             body_item(mbs, _WHERE, body),
             journal,
             (centre, points[1]),

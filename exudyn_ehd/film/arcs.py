@@ -76,8 +76,9 @@ class Arc(Checked):
 
     The film begins at the leading edge, where oil enters if the spin is positive, and ends at the trailing edge.
     Between arcs there is no bore: these are the drain and feed grooves. Only with ``film=FiniteLength(...)`` and
-    ``inlet=Periodic()``; not with ``supply``, ``journal``, a ``bush`` other than `ElasticLiner`, and a bush that
-    conducts (`FilmEnergy.bush`). Each arc gets its share of the columns of the whole circle.
+    ``inlet=Periodic()``; not with ``journal``, a ``bush`` other than `ElasticLiner`, and a bush that conducts
+    (`FilmEnergy.bush`). Each arc gets its share of the columns of the whole circle. Areas of ``supply`` lie in the
+    bore of one arc, off its edges, on arcs without a dam.
 
     ``radial_clearance`` of the bearing is the assembled clearance c_b, the smallest gap of a concentric journal. With
     the preload m the clearance of the machined arc is ``c_p = c_b / (1 - m)``, and around a concentric journal
@@ -340,11 +341,22 @@ def check_arcs(arc: Arc | None, arcs: tuple[Arc, ...], length: float) -> None:
             )
 
 
-def arc_grid(radius: float, length: float, arcs: tuple[Arc, ...], n_theta: int, n_z: int, stretch: float) -> FilmGrid:
+def arc_grid(
+    radius: float,
+    length: float,
+    arcs: tuple[Arc, ...],
+    n_theta: int,
+    n_z: int,
+    stretch: float,
+    rows: tuple[np.ndarray, np.ndarray] | None,
+) -> FilmGrid:
     """Film grid of arcs side by side, each with its share of ``n_theta`` columns and one on either edge; the rest as
     `bearing_grid`."""
-    z, weight_z = _rows([arc.dam.length / length for arc in arcs if arc.dam is not None], n_z, stretch)
-    z, weight_z = 0.5 * length / radius * z, 0.5 * length / radius * weight_z
+    if rows is None:
+        dams = [arc.dam.length / length for arc in arcs if arc.dam is not None]
+        z, weight_z = (0.5 * length / radius * part for part in _rows(dams, n_z, stretch))
+    else:
+        z, weight_z = rows
     x, face, width, links, weight = (np.concatenate(f) for f in zip(*(_columns(arc, n_theta) for arc in arcs)))
     fixed = np.zeros((x.size, z.size), dtype=np.bool_)
     fixed[:, [0, -1]] = True

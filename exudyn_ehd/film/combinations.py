@@ -67,11 +67,11 @@ def _check_film(bearing: BearingOptions) -> None:
         )
 
 
-# Options that need the whole ring, and the reason.
+# Options that need the whole ring, or supply that needs arcs without a dam, and the reason.
 RING_ALONE = {
     "film": "films of arcs are two-dimensional; use film=FiniteLength(...)",
     "inlet": "an arc has its inlet at its leading edge; leave inlet out",
-    "supply": "oil enters between the arcs; give arcs a leading_pressure and a trailing_pressure",
+    "supply": "rows of the grid lie beside the sides of dams, or on the edges of areas; leave one of the two out",
     "journal": "modes of a journal need a film all around; leave journal out",
     "bush": "of flexible bores only an ElasticLiner can be parted; use ElasticLiner(...), or leave bush out",
     "thermal": "a wall conducts heat around the whole bore; give the bush a coefficient and a temperature instead",
@@ -83,7 +83,7 @@ def _check_arcs(bearing: BearingOptions) -> None:
     goes = {
         "film": isinstance(bearing["film"], FiniteLength),
         "inlet": type(bearing["inlet"]).__name__ == "Periodic",
-        "supply": not bearing["supply"],
+        "supply": not (bearing["supply"] and any(arc.dam for arc in bearing["arcs"])),
         "journal": bearing["journal"] is None,
         "bush": isinstance(bearing["bush"], ElasticLiner | None),
         "thermal": getattr(bearing["thermal"], "bush", None) is None,

@@ -313,9 +313,10 @@ def film_grid(
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
     columns = columns_of(film, 0.5 * length / radius)
+    sizes = placed(supply, length), radius, length, film.n_z, film.stretch
+    rows = meeting_rows(*sizes, columns) if conserves_mass else supply_rows(*sizes)
     if arcs:
-        return arc_grid(radius, length, arcs, columns, film.n_z, film.stretch)
-    rows = placed(supply, length), radius, length, film.n_z, film.stretch
+        return arc_grid(radius, length, arcs, columns, film.n_z, film.stretch, rows)
     grid = bearing_grid(
         radius,
         length,
@@ -324,7 +325,7 @@ def film_grid(
         stretch=film.stretch,
         start_angle=start_angle + column_of_hole(supply, columns),
         open_ring=open_ring,
-        rows=meeting_rows(*rows, columns) if conserves_mass else supply_rows(*rows),
+        rows=rows,
     )
     return grid if seals is None else sealed_grid(grid, seals)
 

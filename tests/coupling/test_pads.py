@@ -68,10 +68,10 @@ def run(mbs, end_time, steps, **options):
     ehd.SolveDynamic(mbs, settings)
 
 
-def system(rest):
+def system(rest, mass=MASS):
     """State matrix of the coordinates of a result, and their rates, with the shaft's mass."""
     M = rest.mass.copy()
-    M[0, 0] = M[1, 1] = MASS
+    M[0, 0] = M[1, 1] = mass
     k = len(M)
     lower = -np.linalg.solve(M, np.hstack((rest.stiffness, rest.damping)))
     return np.vstack((np.hstack((np.zeros((k, k)), np.eye(k))), lower))
@@ -114,13 +114,21 @@ def test_free_vibration_is_that_of_the_whole_matrices(change):
         assert np.abs(found - values[k]).min() < 0.01 * abs(values[k])
 
 
-@pytest.mark.parametrize("stiffness", [None, 1e9])
-def test_a_damped_run_ends_in_the_equilibrium(stiffness):
-    pads = dataclasses.replace(PADS, pivot_stiffness=stiffness)
+RUNS = {
+    "rigid pivots": {},
+    "flexible pivots": {"pivot_stiffness": 1e9},
+    "heat": {"lubricant": ehd.oil("ISO VG 46"), "thermal": ehd.LumpedThermal(supply_temperature=313.0)},
+}
+
+
+@pytest.mark.parametrize("change", RUNS)
+def test_a_damped_run_ends_in_the_equilibrium(change):
+    pads = dataclasses.replace(PADS, **RUNS[change])
     mbs, joint = scene(pads)
     # a larger jump tips the upper pad over
     joint.place_in_equilibrium(load=0.85 * LOAD)
-    run(mbs, 0.1, 250)
+    # the oil is as cold as its supply at the start
+    run(mbs, *((0.4, 400) if pads.thermal else (0.1, 250)))
     history = joint.history
     rest = ehd.equilibrium(pads, speed=float(joint.pads[0].history.motion[-1, 8]), load=tuple(LOAD))
     assert np.hypot(*(history.position[0] - rest.position)) > 2e-6
@@ -233,5 +241,125 @@ def test_bad_input_by_name():
     mbs.Assemble()
     with pytest.raises(ehd.InputError, match="'a' does not turn in the initial state"):
         joint.place_in_equilibrium(load=(0.0, -1.0))
-    with pytest.raises(ehd.InputError, match="has a tilting pad"):
+
+
+CHANGES = {
+    "rigid pivots": {},
+    "flexible pivots": {"pivot_stiffness": 3e8, "pivot_offset": 0.55, "first_pivot": 0.3},
+    "four pads": {"pads": 4, "extent": 1.2, "load_between_pads": False},
+    "heat": RUNS["heat"] | {"preload": 0.5},
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_rotor_on_pads_against_the_matrices_of_the_bearing(change, sense):
+    """Places, K and C of films, and all eigenvalues, of speeds that follow each other in a frame of any attitude."""
+    pads = dataclasses.replace(PADS, **CHANGES[change])
+    if sense < 0.0:
+        pads = dataclasses.replace(pads, pivot_offset=1.0 - pads.pivot_offset)
+    A = scenes.rotation(np.array([0.4, -0.7, 0.2]))
+    mbs, joint = scene(pads, attitude=A, place=(0.3, -0.2, 0.1))
+    speeds = sense * np.array([300.0] if pads.thermal else [250.0, 300.0, 600.0])
+    found = ehd.SolveEquilibrium(mbs, speeds)
+    assert found.joints == tuple(pad.name for pad in joint.pads)
+    for k, speed in enumerate(speeds):
+        rest = ehd.equilibrium(pads, speed=speed, load=tuple(LOAD))
+        films = [film.motion[:2] for film in rest.films]
+        np.testing.assert_allclose(found.motion[k, :, :2], films, rtol=0, atol=1e-11)
+        np.testing.assert_allclose(found.minimum_gap[k], rest.minimum_gaps, rtol=1e-7)
+        own = np.linalg.eigvals(system(rest))
+        assert own.size == found.eigenvalues.shape[1]
+        away = np.abs(found.eigenvalues[k][:, None] - own) / np.abs(own)
+        assert max(away.min(axis=0).max(), away.min(axis=1).max()) < 1e-6
+
+
+def two_bearings(first, second, mass=200.0):
+    """A free rigid shaft across its weight in two bearings, tilting pads or round ones, at +-0.3 m."""
+    mbs = scenes.new_system()
+    inertia = RigidBodyInertia(mass, np.diag([8.0, 8.0, 100.0]))
+    shaft = mbs.CreateRigidBody(inertia=inertia, initialAngularVelocity=[0.0, 0.0, SPEED], gravity=[0.0, -9.81, 0.0])
+    ground = mbs.CreateGround()
+    for k, bearing in enumerate((first, second)):
+        create = ehd.CreateTiltingPadBearing if isinstance(bearing, ehd.TiltingPads) else ehd.CreateLubricatedJoint
+        axial = ehd.Held() if k == 0 else ehd.Free()
+        create(mbs, f"end {k}", [ground, shaft], [0.0, 0.0, 0.6 * k - 0.3], [0.0, 0.0, 1.0], bearing, axial=axial)
+    mbs.Assemble()
+    return mbs, shaft
+
+
+def test_symmetric_rotor_on_two_pad_bearings_is_two_single_ones():
+    """Its vibrations without tilt are those of half its mass on one bearing."""
+    mbs, _ = two_bearings(PADS, PADS)
+    found = ehd.SolveEquilibrium(mbs, SPEED)
+    rest = ehd.equilibrium(PADS, speed=SPEED, load=(0.0, -100.0 * 9.81))
+    np.testing.assert_allclose(found.motion[0, :5, :2], [film.motion[:2] for film in rest.films], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(found.motion[0, 5:, :2], [film.motion[:2] for film in rest.films], rtol=0, atol=1e-11)
+    for value in np.linalg.eigvals(system(rest, mass=100.0)):
+        assert np.abs(found.eigenvalues[0] - value).min() < 1e-6 * abs(value)
+
+
+def test_rotor_between_a_round_bearing_and_pads_stays_in_its_equilibrium():
+    round_bearing = ehd.JournalBearing(
+        journal_radius=0.05, length=0.05, radial_clearance=60e-6, lubricant=PADS.lubricant, film=PADS.film
+    )
+    mbs, shaft = two_bearings(PADS, round_bearing)
+    found = ehd.SolveEquilibrium(mbs, SPEED)
+    np.testing.assert_allclose(found.wrench[0, 5, :2], [0.0, 981.0], rtol=0, atol=1.0)
+    found.place(mbs, SPEED)
+    run(mbs, 0.01, 50)
+    node = mbs.GetObject(shaft)["nodeNumber"]
+    now = np.array(mbs.GetNodeOutput(node, exu.OutputVariableType.Displacement))
+    was = mbs.GetNodeOutput(node, exu.OutputVariableType.Displacement, configuration=INITIAL)
+    assert np.abs(now - was)[:2].max() < 1e-9
+
+
+def test_pads_with_cavities_follow_at_the_frequency_of_the_motion():
+    """Stiffness and damping of `reduced` against those of the rotor's equations, from the kinematics of its bodies."""
+    # a trailing edge under pressure reforms the film behind a cavity
+    cavities = {"cavitation": ehd.ElrodAdams(), "pads": 3, "extent": 1.9, "edge_pressures": (0.0, 2e5)}
+    pads = dataclasses.replace(PADS, **cavities, preload=0.7, load_between_pads=False)
+    rest = ehd.equilibrium(pads, speed=SPEED, load=tuple(LOAD))
+    mbs, joint = scene(pads)
+    found = ehd.SolveEquilibrium(mbs, SPEED)
+    first = found.layout.nodes[int(joint.pads[0].element.sides[1].nodes[0])]
+    rows = found.directions[0, first : first + 2]
+    parts = found.stiffness_matrix[0], found.damping_matrix[0], found.mass_matrix[0]
+    for nu in (50.0, 300.0, 900.0):
+        delayed = sum(memory.beyond(1j * nu) for memory in found.memories[0])
+        Z = parts[0] + 1j * nu * parts[1] - nu**2 * parts[2] + delayed
+        own = np.linalg.inv(rows @ np.linalg.solve(Z, rows.T)) + nu**2 * MASS * np.eye(2)
+        K, C = rest.reduced(nu)
+        assert np.abs(K + 1j * nu * C - own).max() < 2e-6 * np.abs(own).max()
+        slow = dataclasses.replace(rest, memories=()).reduced(nu)
+        assert nu < 100.0 or np.abs(slow[0] + 1j * nu * slow[1] - own).max() > 1e-4 * np.abs(own).max()
+
+
+@pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.ElrodAdams()])
+def test_free_vibration_of_a_rotor_on_pads_is_that_of_its_eigenvalues(closure):
+    """Within a hundredth of the motion."""
+    mbs, joint = scene(dataclasses.replace(PADS, cavitation=closure))
+    found = ehd.SolveEquilibrium(mbs, SPEED)
+    found.place(mbs, SPEED)
+    shift = np.array([2e-7, 1e-7])
+    move_journal(mbs, joint, [*shift, 0.0])
+    end_time, steps = 0.015, 450
+    run(mbs, end_time, steps)
+    values, modes = found.eigenvalues[0], found.modes[0]
+    first = found.layout.nodes[int(joint.pads[0].element.sides[1].nodes[0])]
+    # all directions at rest but the journal's, as in the run
+    start = np.zeros(len(modes))
+    start[first : first + 2] = shift
+    parts = np.linalg.lstsq(np.vstack((modes, modes * values)), np.append(start, np.zeros_like(start)).astype(complex))[
+        0
+    ]
+    history = joint.history
+    linear = (modes[first : first + 2] @ (parts[:, None] * np.exp(np.outer(values, history.time)))).real.T
+    moved = history.position - history.position[-1] + linear[-1]
+    assert np.abs(moved - linear)[5:].max() < 0.01 * np.abs(linear[5:]).max()
+
+
+def test_rotor_whose_pad_is_not_loaded_is_refused():
+    mbs, _ = scene(dataclasses.replace(PADS, preload=0.0), load=np.array([0.0, -20e3]))
+    with pytest.raises(ehd.FilmError, match=r"pad \d of the bearing is not loaded.*preload"):
         ehd.SolveEquilibrium(mbs, SPEED)

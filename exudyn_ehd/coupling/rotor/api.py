@@ -39,6 +39,8 @@ def SolveEquilibrium(
       ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes;
       unbalance comes in by `RotorResult.unbalance_response`.
     - Loads with user functions have their value at the start time.
+    - Tilting pads: every pad is a film of the result, called "... pad 1" and so on, in the frame of the pad; its tilt,
+      its shift on a flexible pivot and their inertia take part in all vibrations.
     - Bearings: rigid surfaces and liners, no flexible bushes or journals. With `ElrodAdams` and on liners the film
       follows a motion with a delay: every vibration and every whirl sees it at its own frequency
       (`exudyn_ehd.joint.static.dynamic_stiffness`). Films with heat have the temperature of the equilibrium, which

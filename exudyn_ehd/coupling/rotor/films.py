@@ -30,7 +30,10 @@ from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmResponse, response_of, slow_motions
+from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmMemory, response_of, slow_motions
+from exudyn_ehd.joint.static.equilibrium import NO_LOAD
+from exudyn_ehd.joint.static.pad_equilibrium import PadSearch
+from exudyn_ehd.joint.static.pads import PadModel
 from exudyn_ehd.joint.static.steady import require_rest
 from exudyn_ehd.status import FilmError, InputError, Status
 
@@ -88,29 +91,6 @@ class FilmLoads(NamedTuple):
     force: np.ndarray
     by_place: np.ndarray
     by_rate: np.ndarray
-
-
-class FilmMemory(NamedTuple):
-    """A film whose stiffness and damping depend on the frequency, in n directions y that constraints leave.
-
-    Attributes
-    ----------
-    response : FilmResponse
-    slow : two (4, 4) arrays
-        K and C of slow motions, which the matrices of the system contain.
-    loads, places : (n, 4), (4, n) arrays
-        Forces on y of the loads of `slow_motions`, and their places by y.
-    """
-
-    response: FilmResponse
-    slow: tuple[np.ndarray, np.ndarray]
-    loads: np.ndarray
-    places: np.ndarray
-
-    def beyond(self, s: complex) -> np.ndarray:
-        """Dynamic stiffness (n, n) of motions exp(s t) beyond K + s C of slow ones."""
-        stiffness, damping = self.slow
-        return self.loads @ (self.response.at(-1j * s) - stiffness - s * damping) @ self.places
 
 
 class RotorFilm:
@@ -201,16 +181,37 @@ class RotorFilm:
         """N/m, of the size of the film's own where it carries much."""
         return 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
 
-    def support(self, force: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, with a force (2,) at ``middle``."""
+    def support(self, wrench: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, with a wrench at ``middle`` (2,)."""
         tangent = np.zeros((6, 10))
         tangent[LOADS, range(4)] = -self.support_stiffness * SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
         away = np.concatenate((self.motion[:2] - middle, self.motion[2:]))
-        return np.concatenate((force, np.zeros(4))) + tangent @ away, tangent
+        return wrench + tangent @ away, tangent
 
-    def guess(self, load: np.ndarray) -> np.ndarray:
-        """Eccentricity (2,) in which the film may carry a load (2,)."""
-        return first_guess(self.bearing, float(self.motion[8]), load, self.motion[2:4])
+    def guess(self, forces: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Wrench (6,) and place (2,) of the journal where this film may carry the load of its spring.
+
+        The first pad of a bearing answers for all, the others with nothing.
+
+        Parameters
+        ----------
+        forces : (k, 2) array
+            Forces of the springs in place of this film and of those after it.
+        """
+        speed, model = float(self.motion[8]), self.model
+        if not isinstance(model, PadModel):
+            return [(np.append(forces[0], np.zeros(4)), first_guess(self.bearing, speed, -forces[0], self.motion[2:4]))]
+        if model.number > 0:
+            return []
+        load, where = -forces[: model.pads.pads].sum(axis=0), f"{WHERE}: joint '{self.name}'"
+        size = max(float(np.hypot(*load)), NO_LOAD * self.bearing.reference_force(speed))
+        loads = PadSearch(model.pads, speed, load, size, where).find().loads
+        if idle := [k + 1 for k, own in enumerate(loads) if not own.loaded]:
+            raise FilmError(
+                f"{where}: pad {idle[0]} of the bearing is not loaded and has no definite tilt about which it would "
+                "vibrate; give the pads more preload, or contact=RegularisedWall(onset=...) to rest on."
+            )
+        return [(own.wrench, own.motion[:2]) for own in loads]
 
     def room(self, x: np.ndarray) -> float:
         """Largest part of a step x (size,) that leaves half of the gaps; `update` has run."""
@@ -218,7 +219,7 @@ class RotorFilm:
         c, part = self.bearing.radial_clearance, self.room_of_faces(x)
         if self.model.effects.contacts:
             return min(part, FREE_STEP * c / max(float(np.hypot(*change[:2])), 1e-300))
-        if self.bearing.is_lobed:
+        if self.bearing.bore_arcs:
             return min(part, room_between_lobes(self.model, self.motion, change[:4]))
         return min(part, part_that_closes(SHARE, self.motion, self.motion + change, c, self.bearing.length))
 
@@ -280,11 +281,6 @@ def film_model(joint: Joint) -> BearingModel:
         raise InputError(
             f"{where} has a ball, a flexible bush or journal, or a film of your own, whose coordinates or response it "
             "does not know; take a rigid bearing or an ElasticLiner, or single bearings by ehd.equilibrium(...)."
-        )
-    if type(model) is not BearingModel:
-        raise InputError(
-            f"{where} has a tilting pad, which has an unstable position of its own besides the stable one; take the "
-            "matrices of ehd.equilibrium(...), or run it in time."
         )
     if not model.bearing.squeeze:
         raise InputError(f"{where} has squeeze=False and so no damping; take squeeze=True.")

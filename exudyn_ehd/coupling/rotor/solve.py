@@ -21,11 +21,12 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.kinematics.relative import skew
-from exudyn_ehd.coupling.rotor.films import FilmLoads, FilmMemory, RotorFilm, film_model
+from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
 # Unbalance over the loads of the films that counts as none, steps of Newton's method that may pass, and rounding of
@@ -151,7 +152,7 @@ class EquilibriumSearch:
     def _start(self) -> None:
         """Move all bodies to a first place near the equilibrium, and check what the theory asks of them."""
         self.rest = self.system.derivatives()
-        supports = [(np.zeros(2), np.zeros(2)) for _ in self.films]
+        supports = [(np.zeros(6), np.zeros(2)) for _ in self.films]
         for _ in range(3):
             self._update()
             springs = [film.support(*part) for film, part in zip(self.films, supports, strict=True)]
@@ -160,8 +161,8 @@ class EquilibriumSearch:
             step = self._step(balance)
             self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
             self._update()
-            forces = [f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)]
-            supports = [(force, film.guess(-force)) for film, force in zip(self.films, forces, strict=True)]
+            forces = np.array([f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)])
+            supports = [place for k, film in enumerate(self.films) for place in film.guess(forces[k:])]
         if self.slope is None:
             require_mass(self.system, self.weights, self.system.mass(), balance.free)
             require_axis(self.mbs, self.system)

@@ -156,7 +156,8 @@ def _end_films(links, b, active, fixed, cuts, widths, length_z, balance_out):
                         continue
                     received = max(0.0, 2.0 * (1.0 + balance_out[u, v] / b[u, v]))
                     width = widths[0][u] if axis == 0 else widths[1][v]
-                    length = widths[0][0] if axis == 0 else length_z[at[1]]
+                    # the columns on the edges of arcs have half a width
+                    length = max(widths[0][i], widths[0][u]) if axis == 0 else length_z[at[1]]
                     d = length * min(1.0, 1.0 / cuts[axis][at])
                     if received < 1.0:
                         balance_out[i, j] += b[u, v] / width * (d - 0.5 * length) * (1.0 - np.sqrt(received)) ** 2

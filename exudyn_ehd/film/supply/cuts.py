@@ -122,10 +122,22 @@ def vertex_parts(places: np.ndarray, low: float | np.ndarray, high: float | np.n
     return out
 
 
+def column_of(grid: FilmGrid, angle: float) -> tuple[float, float]:
+    """Place of an angle, rad, among the columns of a ring or of the arc that it lies on, and their distance, rad."""
+    if not grid.edges.size:
+        step = float(grid.width_x[0])
+        return (angle - float(grid.x[0])) / step, step
+    first, last = grid.edges.T
+    turned, extent = (angle - grid.x[first]) % (2.0 * math.pi), grid.x[last] - grid.x[first]
+    k = int(np.argmin(np.where(turned <= extent, turned, math.inf)))
+    step = float(extent[k] / (last[k] - first[k]))
+    return float(first[k] + turned[k] / step), step
+
+
 def _columns(grid: FilmGrid, center: float, half: float | np.ndarray) -> np.ndarray:
     """Shares (..., n) of the columns' widths within ``half`` of an angle, rad."""
-    step, n = grid.width_x[0], grid.x.size
-    low, high = (center - half - grid.x[0]) / step, (center + half - grid.x[0]) / step
+    (place, step), n = column_of(grid, center), grid.x.size
+    low, high = place - half / step, place + half / step
     columns = np.arange(math.floor(np.min(low)), math.ceil(np.max(high)) + 1)
     parts = vertex_parts(columns.astype(float), low, high)
     out = np.zeros((*parts.shape[:-1], n))
@@ -224,8 +236,7 @@ class SupplyMap:
 
     def _hole(self, area: Hole) -> tuple[Circle, int, float]:
         """A hole on the grid at the present spin, the column next to its centre, and the factor of its links."""
-        g, step = self.grid, float(self.grid.width_x[0])
-        center = (area.angle + (self.spin if area.rotating else 0.0) - g.x[0]) / step
+        g, (center, step) = self.grid, column_of(self.grid, area.angle + (self.spin if area.rotating else 0.0))
         radius, z = 0.5 * area.diameter / (step * g.reference_length), g.z - area.z / g.reference_length
         rows = tuple(((z - z[np.argmin(np.abs(z))]) / step).tolist())
         column = round(center)
@@ -244,7 +255,7 @@ class SupplyMap:
         """
         g, n = self.grid, self.grid.x.size
         assert g.cuts is not None
-        x, z = g.link_x[0] * g.width_z, np.append(g.link_z, 0.0) * g.width_x[0]
+        x, z = g.link_x[column % n] * g.width_z, np.append(g.link_z, 0.0) * g.width_x[column % n]
         total = 2.0 * x + z + np.append(0.0, z[:-1])
         for (axis, i, j), conducts in zip(hole.links.tolist(), hole.factors(factor).tolist(), strict=True):
             first = (i + column) % n, j
@@ -285,8 +296,8 @@ def cover(
     if isinstance(area, CircumferentialGroove):
         mask[:, rows] = True
         return
-    n, step = grid.x.size, grid.width_x[0]
-    center, half = (area.angle + spin - grid.x[0]) / step, 0.5 * area.width_angle / step
+    n, (center, step) = grid.x.size, column_of(grid, area.angle + spin)
+    half = 0.5 * area.width_angle / step
     first, last = math.ceil(center - half - EDGE), math.floor(center + half + EDGE)
     inside = np.arange(first, last + 1) % n
     mask[inside[:, None], rows] = True

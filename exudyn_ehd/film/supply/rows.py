@@ -230,6 +230,21 @@ def check_supply(
             _check_pair(i, areas[i], k, area, radius, step)
 
 
+def check_on_arcs(supply: Sequence[SupplyArea], arcs: np.ndarray, radius: float, n_theta: int) -> None:
+    """Raise `InputError` for areas that do not lie on one arc of the bore; ``arcs`` (k, 2): start and extent, rad."""
+    step = 2.0 * math.pi / n_theta
+    for k, area in enumerate(supply):
+        angle, _, half, _, reach = outline(area, radius)
+        away = (half + reach) / radius + LEAST_BETWEEN * step
+        on = np.any((angle - away - arcs[:, 0]) % (2.0 * math.pi) <= arcs[:, 1] - 2.0 * away)
+        if not on or area.rotating or (reach == 0.0 and 2.0 * half < step * radius):
+            raise InputError(
+                f"JournalBearing.supply[{k}]: on arcs an area must lie in the bore of one arc, "
+                f"{LEAST_BETWEEN * step:.3g} rad off its edges, and be at least {step:.3g} rad wide if it is no hole, "
+                f"got {area!r}; oil between arcs has leading_pressure and trailing_pressure."
+            )
+
+
 def check_depths(supply: Sequence[SupplyArea], clearance: float) -> None:
     """Raise `InputError` for areas too shallow for a uniform pressure, which shear their oil as much as lands."""
     least = RECIRCULATION * clearance

@@ -333,11 +333,15 @@ def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, cleara
 def room_between_lobes(model: BearingModel, motion: np.ndarray, change: np.ndarray) -> float:
     """Largest part of a change (4,) of the pose that uses up at most 60 % of any gap; between lobes a journal may be
     farther off than the clearance."""
+    gaps = gaps_of_arcs(model, motion)
+    return min(1.0, ROOM / max(float((1.0 - gaps_of_arcs(model, motion[:4] + change) / gaps).max()), 1e-300))
+
+
+def gaps_of_arcs(model: BearingModel, motion: np.ndarray) -> np.ndarray:
+    """Gaps (n, m) between rigid surfaces at the pose that a motion begins with, m."""
     g, lobes = model.grid, model.effects.lobes
-    normals, z = np.array(g.directions[:2]).T, g.z * g.reference_length
-    away, closes = (normals @ (pose[:2, None] + pose[2:4, None] * z) for pose in (motion, change))
-    gap = model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - away
-    return min(1.0, ROOM / max(float((closes / gap).max()), 1e-300))
+    away = np.array(g.directions[:2]).T @ (motion[:2, None] + motion[2:4, None] * g.z * g.reference_length)
+    return np.asarray(model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - away)
 
 
 def limited_shift(faces: ThrustEvaluation, step: float) -> float:

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
 from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
-from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, PATIENCE, ROUNDS, Balance, Place
+from exudyn_ehd.joint.balance.newton import (
+    HALVINGS,
+    LOAD_TOLERANCE,
+    PATIENCE,
+    ROUNDS,
+    Balance,
+    Place,
+    gaps_of_arcs,
+)
 from exudyn_ehd.status import FilmError, InputError, warn_user
 
 # Eccentricity ratio in the direction of the load of the second start of damped steps: inside, where neither a gap is
@@ -18,6 +27,8 @@ from exudyn_ehd.status import FilmError, InputError, warn_user
 INSIDE = 0.3
 # Continuation from small loads: first and smallest step, shares of the load.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
+# Smallest gap over the clearance below which a journal lies on the edge of an arc.
+CLOSED = 0.01
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
@@ -26,7 +37,8 @@ class LoadSearch(Balance):
 
     Newton's method; where it fails, and the film has a temperature and none is known yet, for loads that grow from a
     quarter of the whole, `climb`; where this finds none either, damped steps, first from the same place, then from
-    inside the bearing.
+    inside the bearing; in a lobed one also from where the film is as strong as the load, on the way on which the load
+    presses the journal onto the bore.
     """
 
     def find(self, motion: np.ndarray, near: Place | None = None) -> Place:
@@ -45,9 +57,10 @@ class LoadSearch(Balance):
         found = self.attempt(motion, start)
         if found is None and near is None and self.thermal is not None:
             carried, found = self.climb(motion)
-        for place in (motion, self.loaded(motion, INSIDE)) if carried == 0.0 else ():
+        places = (lambda: motion, partial(self.loaded, motion, INSIDE), partial(self.opposed, motion, start))
+        for place in places[: 2 + self.model.bearing.is_lobed] if carried == 0.0 else ():
             if found is None:
-                found = self.attempt(place, start, self.held_back)
+                found = self.attempt(place(), start, self.held_back)
         if found is None:
             raise self._not_found(carried * self.size)
         return found
@@ -77,11 +90,32 @@ class LoadSearch(Balance):
         return found if self.is_balanced(found, tolerance) and not hot else None
 
     def loaded(self, motion: np.ndarray, ratio: float) -> np.ndarray:
-        """A motion with the journal moved along the load, by a share of the gap that its tilt leaves."""
-        b, motion = self.model.bearing, motion.copy()
+        """A motion with the journal moved to a share of the way on which the load presses it onto the bore."""
+        b, motion, direction = self.model.bearing, motion.copy(), self.load[:2] / self.size
         room = max(1.0 - 0.5 * b.length * float(np.hypot(*motion[2:4])) / b.radial_clearance, 0.0)
-        motion[:2] = ratio * room * b.radial_clearance * self.load[:2] / self.size
+        motion[:2] = ratio * room * b.radial_clearance * direction
+        if b.is_lobed and np.any(direction):
+            # imported here: few searches need it. The journal without a film: farthest along the load, on no bore
+            from scipy.optimize import linprog
+
+            gaps = gaps_of_arcs(self.model, motion * (np.arange(motion.size) > 1)).min(axis=1) / b.radial_clearance
+            found = linprog(-direction, np.transpose(self.model.grid.directions[:2]), gaps, bounds=(None, None))
+            if found.success:
+                motion[:2] = ratio * b.radial_clearance * found.x
         return motion
+
+    def opposed(self, motion: np.ndarray, temperature: np.ndarray) -> np.ndarray:
+        """A motion with the journal on this way, by bisection where its film is as strong as the load."""
+        lower, upper = 0.0, 1.0
+        for _ in range(2 * HALVINGS):
+            ratio = 0.5 * (lower + upper)
+            try:
+                wrench = self.at(self.loaded(motion, ratio), temperature).evaluation.wrench
+                weak = math.hypot(*wrench[:2]) < self.size
+            except FilmError:
+                weak = False
+            lower, upper = (ratio, upper) if weak else (lower, ratio)
+        return self.loaded(motion, lower)
 
     def climb(self, motion: np.ndarray) -> tuple[float, Place | None]:
         """Largest share of the load to which films follow from smaller loads, and the film there if it is the whole."""
@@ -121,11 +155,28 @@ class LoadSearch(Balance):
         if self.strongest[0] > self.size:
             most, where = self.strongest
             remedy = f"On the way a film has carried more, {most:.4g} N at eccentricity ratio {where:.4f}."
+        reason = self._on_an_edge(place) or (
+            f"{remedy} A supply area in the loaded zone, a starved film or an arc beside the load may carry no such "
+            "load at any position: look at ehd.steady(...) around there."
+        )
         return FilmError(
             f"{self.where}: no position found that carries {self.size:.4g} N in {self.count} steps; the nearest is off "
-            f"by {self.residual(place):.2g} of the load, at eccentricity ratio {ratio:.4f}. {remedy} A supply area in "
-            "the loaded zone, a starved film or an arc beside the load may carry no such load at any position: look at "
-            f"ehd.steady(...) around there.{too_hot(place.film.temperature, carried)}"
+            f"by {self.residual(place):.2g} of the load, at eccentricity ratio {ratio:.4f}. {reason}"
+            f"{too_hot(place.film.temperature, carried)}"
+        )
+
+    def _on_an_edge(self, place: Place) -> str:
+        """Reason why a journal on the edge of an arc finds no place; empty if it is elsewhere."""
+        grid, gaps = self.model.grid, gaps_of_arcs(self.model, place.motion).min(axis=1)
+        edges = np.argwhere(grid.edges == gaps.argmin())
+        if not edges.size or gaps.min() > CLOSED * self.model.bearing.radial_clearance:
+            return ""
+        number, end = edges[0]
+        return (
+            f"The load presses the journal onto the {('leading', 'trailing')[end]} edge of arcs[{number}] at theta = "
+            f"{grid.x[gaps.argmin()]:.4g} rad, where the film ends and carries no such load in this sense of rotation. "
+            "Let the load point into an arc behind a film that narrows: turn the arcs (angle=...), the spin or the "
+            "load, or take contact=RegularisedWall(...)."
         )
 
 

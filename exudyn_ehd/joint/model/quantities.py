@@ -130,22 +130,22 @@ def _unbroken_couette(film: SolvedFilm) -> float:
 def supply_flows(film: SolvedFilm) -> np.ndarray:
     """Return the inflow of every area of ``bearing.supply``, m3/s; empty without.
 
-    Of every arc what enters at its leading and at its trailing edge, 0 where oil leaves.
+    Before them stands of every arc what enters at its leading and at its trailing edge, 0 where oil leaves.
     """
-    p, flow_scale = film.parts, film.parts.flow_scale
+    p, flow_scale, edges = film.parts, film.parts.flow_scale, np.zeros(0)
     if p.grid.edges.size:
         k, P, (first, last) = p.solver.system.kx, p.solver.system.pressure, p.grid.edges.T
         # less the flows from its corners along the ends, where pressures jump
         jumps = np.array((k[first] * (P[first] - P[first + 1]), k[last - 1] * (P[last] - P[last - 1])))
         fed = p.solver.inflow()[p.grid.edges.T].sum(axis=-1) - jumps[..., [0, -1]].sum(axis=-1)
-        return fed.T.ravel().clip(0.0) * flow_scale
+        edges = fed.T.ravel().clip(0.0)
     if p.supply is None:
-        return np.zeros(0)
+        return edges * flow_scale
     # that of a turning area would change at once where an edge passes a column
     flows = p.supply.flows(p.solver.inflow(ended=not p.supply.rotating))
     if p.solver.reservoirs is not None:  # what their balances count
         flows = np.where(p.supply.fed, p.supply.flows(p.solver.inflow()), flows)
-    return flows * flow_scale
+    return np.append(edges, flows) * flow_scale
 
 
 def pocket_pressures(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:

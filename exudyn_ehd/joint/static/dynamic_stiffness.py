@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -194,6 +194,29 @@ class FilmOnBoreResponse(FilmResponse):
         self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
         self.stiffness = V[PLACES:, PLACES:].T @ self.stiffness @ V[PLACES:, PLACES:]
+
+
+class FilmMemory(NamedTuple):
+    """A film whose stiffness and damping depend on the frequency, in n directions y.
+
+    Attributes
+    ----------
+    response : FilmResponse
+    slow : two (4, 4) arrays
+        K and C of slow motions, which the matrices of the directions contain.
+    loads, places : (n, 4), (4, n) arrays
+        Forces on y of the loads of `slow_motions`, and their places by y.
+    """
+
+    response: FilmResponse
+    slow: tuple[np.ndarray, np.ndarray]
+    loads: np.ndarray
+    places: np.ndarray
+
+    def beyond(self, s: complex) -> np.ndarray:
+        """Dynamic stiffness (n, n) of motions exp(s t) beyond K + s C of slow ones."""
+        stiffness, damping = self.slow
+        return self.loads @ (self.response.at(-1j * s) - stiffness - s * damping) @ self.places
 
 
 def response_of(evaluation: Evaluation) -> tuple[tuple[np.ndarray, np.ndarray], FilmResponse | None]:

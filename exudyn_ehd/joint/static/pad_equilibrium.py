@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads
 from exudyn_ehd.joint.static.steady import SteadyResult, result_at
 from exudyn_ehd.pictures.records import shown
@@ -169,10 +170,12 @@ class PadSearch:
         Force on the journal, N.
     size : float
         Force that the unbalance is divided by, N.
+    where : str
+        Name of the caller, for error messages.
     """
 
-    def __init__(self, bearing: TiltingPads, speed: float, load: np.ndarray, size: float) -> None:
-        self.bearing, self.load, self.size, self.count = bearing, load, size, 0
+    def __init__(self, bearing: TiltingPads, speed: float, load: np.ndarray, size: float, where: str = WHERE) -> None:
+        self.bearing, self.load, self.size, self.where, self.count = bearing, load, size, where, 0
         self.pads = [Pad(bearing, k, speed) for k in range(bearing.pads)]
         self.moves, self.tipped = bearing.pivot_stiffness is not None, np.zeros(bearing.pads, dtype=bool)
 
@@ -211,9 +214,15 @@ class PadSearch:
                 here = min(found, key=lambda place: place.left)
                 self.tipped[np.argmin(np.where(self.tipped, math.inf, here.carried))] = True
         off = min((here.left for here in found), default=math.inf) / self.size
+        yields, soft = self.size / (self.bearing.pivot_stiffness or math.inf), ""
+        if yields > self.bearing.radial_clearance:
+            soft = (
+                f"Under this load a pivot yields by {shown('length', yields)}, more than the clearance, which "
+                "leaves the pads beside the load without any: give them a larger pivot_stiffness. "
+            )
         raise FilmError(
-            f"{WHERE}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
-            f"{off:.2g} of the load. Pads that hardly carry are tipped over by friction: give them more preload, "
+            f"{self.where}: no position found in which the tilting pads carry {self.size:.4g} N; the nearest is off by "
+            f"{off:.2g} of the load. {soft}Pads that hardly carry are tipped over by friction: give them more preload, "
             "contact=RegularisedWall(onset=...) to rest on, or more load; where films are thin, less load or a finer "
             "film grid."
         )
@@ -274,6 +283,10 @@ class TiltingPadResult:
         Film of every pad in the pad's frame, with its pictures.
     speed : float
         Spin, rad/s.
+    memories : tuple of FilmMemory
+        Dynamic stiffness of the films with `ElrodAdams`, which follow motions with a delay, beyond that of slow
+        motions, to which ``stiffness`` and ``damping`` belong; `reduced` contains it, and `SolveEquilibrium` finds
+        vibrations with it.
 
     Examples
     --------
@@ -306,6 +319,7 @@ class TiltingPadResult:
     iterations: int
     films: tuple[SteadyResult, ...] = field(repr=False)
     speed: float
+    memories: tuple[FilmMemory, ...] = field(repr=False)
 
     def __repr__(self) -> str:
         idle = ", ".join(str(k + 1) for k in np.flatnonzero(~self.loaded))
@@ -340,6 +354,7 @@ class TiltingPadResult:
         count = self.loaded.size
         follows = 2 + np.flatnonzero(np.append(self.loaded, np.ones(self.stiffness.shape[0] - 2 - count, dtype=bool)))
         Z = self.stiffness + 1j * nu * self.damping - nu**2 * self.mass
+        Z = Z + sum(memory.beyond(1j * nu) for memory in self.memories)
         answer = np.linalg.solve(Z[np.ix_(follows, follows)], Z[follows, :2])
         own = Z[:2, :2] - Z[:2, follows] @ answer
         return own.real, own.imag / nu
@@ -358,23 +373,23 @@ def pad_equilibrium(
             f"{WHERE}: tilt, axial_position and axial_load are not for TiltingPads(...), whose pads follow a parallel "
             "journal only and hold nothing along the axis; leave them out."
         )
-    if bearing.cavitation.conserves_mass:
-        raise InputError(
-            f"{WHERE}: TiltingPads.cavitation={type(bearing.cavitation).__name__}(...) makes stiffness and damping "
-            "depend on the frequency, which tilting pads leave out here; take SwiftStieber(), or run them in time."
-        )
     search = PadSearch(bearing, speed, load, size)
     found = search.find()
     n, loads = bearing.pads, found.loads
     names = ("x", "y", *(f"tilt {k + 1}" for k in range(n)), *(f"shift {k + 1}" for k in range(n * search.moves)))
-    K, C, M = np.zeros((3, len(names), len(names)))
+    (K, C, M), memories = np.zeros((3, len(names), len(names))), list[FilmMemory]()
     for k, own in enumerate(loads):
         places = [0, 1, 2 + k, 2 + n + k][: 3 + search.moves]
         part = np.ix_(places, places)
         K[part] += own.stiffness[: len(places), : len(places)]
         C[part] += own.damping[: len(places), : len(places)]
         M[places[2:], places[2:]] = (bearing.pad_inertia, bearing.pad_mass)[: len(places) - 2]
-    films = tuple(result_at(pad.model, own.motion, WHERE) for pad, own in zip(search.pads, loads, strict=True))
+        if (memory := search.pads[k].memory(own)) is not None:
+            unit, count = np.eye(len(names))[places], len(places)
+            maps = {"loads": unit.T @ memory.loads[:count], "places": memory.places[:, :count] @ unit}
+            memories.append(memory._replace(**maps))
+    pairs = zip(search.pads, loads, strict=True)
+    films = tuple(result_at(pad.model, own.motion, WHERE, own.history) for pad, own in pairs)
     loaded, position = np.array([own.loaded for own in loads]), found.unknowns[:2]
     if not loaded.any():
         warn_user(
@@ -403,4 +418,5 @@ def pad_equilibrium(
         iterations=search.count,
         films=films,
         speed=speed,
+        memories=tuple(memories),
     )

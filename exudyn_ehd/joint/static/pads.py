@@ -32,18 +32,22 @@ import numpy as np
 from exudyn_ehd.bearing import Cavitation, JournalBearing
 from exudyn_ehd.film.arcs import SMALLEST_ARC, Arc
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
+from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.build import compile_kernels
 from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
+from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmMemory, response_of
 from exudyn_ehd.status import (
     NOT_NEGATIVE,
     POSITIVE,
     Checked,
+    FilmError,
     InputError,
     Status,
     require_bool,
@@ -94,11 +98,14 @@ class TiltingPads(Checked):
     film : FiniteLength, default FiniteLength()
         Film model and grid; a pad gets its share of the columns of the whole circle.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure, default SwiftStieber()
-        Cavitation model; `equilibrium` takes those that do not conserve mass.
+        Cavitation model. With `ElrodAdams` K and C of `equilibrium` are those of slow motions, see `TiltingPadResult`.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before the gap vanishes, as for `JournalBearing`.
     turbulence : NgPan, Hirs or None, default None
         Turbulent films; None: laminar.
+    thermal : LumpedThermal, FilmEnergy or None, default None
+        Temperature of the films, as for a `JournalBearing` with an ``arc``: oil that leaves a pad heats what enters it.
+        `equilibrium` takes the temperature in balance with every film; K and C hold at constant temperature.
     end_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at both ends of the pads along the axis, Pa.
     edge_pressures : (float, float), default (0.0, 0.0)
@@ -139,6 +146,7 @@ class TiltingPads(Checked):
     cavitation: Cavitation = SwiftStieber()
     contact: RegularisedWall | None = None
     turbulence: NgPan | Hirs | None = None
+    thermal: LumpedThermal | FilmEnergy | None = None
     end_pressures: tuple[float, float] = (0.0, 0.0)
     edge_pressures: tuple[float, float] = (0.0, 0.0)
 
@@ -200,6 +208,7 @@ class TiltingPads(Checked):
             cavitation=self.cavitation,
             contact=self.contact,
             turbulence=self.turbulence,
+            thermal=self.thermal,
             end_pressures=self.end_pressures,
             arc=Arc(
                 start=float(self.pivots[number]) - self.pivot_offset * self.extent,
@@ -225,8 +234,9 @@ class PadModel(BearingModel):
 
     Parameters
     ----------
-    bearing : JournalBearing
-        With an ``arc``.
+    pads : TiltingPads
+    number : int
+        Number of the pad, from 0.
 
     Attributes
     ----------
@@ -234,7 +244,8 @@ class PadModel(BearingModel):
         Map from the wrench of the film without the resultant of its shear.
     """
 
-    def __init__(self, bearing: JournalBearing) -> None:
+    def __init__(self, pads: TiltingPads, number: int) -> None:
+        bearing, self.pads, self.number = pads.pad(number), pads, number
         super().__init__(bearing, effects=collect_effects(bearing))
         assert bearing.arc is not None
         first, last = bearing.arc.start, bearing.arc.start + bearing.arc.extent
@@ -259,21 +270,25 @@ class PadLoads(NamedTuple):
     ----------
     tilt : float
         delta, rad.
-    motion : (10,) array
-        Motion of the journal in the pad's frame.
+    motion, wrench : (10,), (6,) arrays
+        Motion of the journal and loads on it in the pad's frame.
     forces : (4,) array
         Generalized forces, N and Nm.
     stiffness, damping : (4, 4) arrays
         Minus their derivatives to the coordinates and to the rates.
+    history : History or None
+        Memory of the film, with its temperature; None without.
     loaded : bool
         Whether the film holds the pad at this tilt.
     """
 
     tilt: float
     motion: np.ndarray
+    wrench: np.ndarray
     forces: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
+    history: History | None
     loaded: bool = True
 
 
@@ -295,13 +310,14 @@ class Pad:
     """
 
     def __init__(self, bearing: TiltingPads, number: int, speed: float) -> None:
-        self.model, self.speed = PadModel(bearing.pad(number)), speed
+        self.model, self.speed = PadModel(bearing, number), speed
         angle, self.arm = float(bearing.pivots[number]), bearing.arm
         self.radial = np.array([math.cos(angle), math.sin(angle)])
         self.across = np.array([-self.radial[1], self.radial[0]])
         self.pivot = (self.arm - bearing.preload * bearing.machined_clearance) * self.radial
         self.stiffness = bearing.pivot_stiffness or 0.0
         self.columns = self.model.grid.x - angle
+        self.near: History | None = None
 
     def place(self, journal: np.ndarray, shift: float, tilt: float) -> np.ndarray:
         """Place p (2,) of the journal in the pad's frame, m."""
@@ -311,25 +327,43 @@ class Pad:
 
     def at(self, journal: np.ndarray, shift: float, tilt: float) -> PadLoads | None:
         """Loads of the steady film at a place of the journal (2,), a shift and a tilt of the pad; None without one."""
-        p, motion = self.place(journal, shift, tilt), np.zeros(MOTION_SIZE)
-        motion[:2], motion[8] = p, self.speed
-        found = self.model.evaluate(motion)
+        motion = np.zeros(MOTION_SIZE)
+        motion[:2], motion[8] = self.place(journal, shift, tilt), self.speed
+        if self.model.effects.thermal is not None:
+            try:
+                self.near = settled_history(self.model, motion, self.near, "equilibrium")
+            except FilmError:
+                return None
+        found = self.model.evaluate_steady(motion, self.near)
         if found.status is not Status.CONVERGED:
             return None
-        c, s = math.cos(tilt), math.sin(tilt)
-        turn, F, lever = np.array([[c, -s], [s, c]]), found.wrench[:2], p - self.arm * self.radial
-        to_forces = np.zeros((4, 6))
-        to_forces[:2, :2], to_forces[3, :2] = turn, -self.radial @ turn
-        to_forces[2, 5], to_forces[2, :2] = -1.0, self.arm * self.across
-        by_place, by_rate = np.zeros((2, MOTION_SIZE, 4))
-        by_place[:2] = np.column_stack((turn.T, [lever[1], -lever[0]], -turn.T @ self.radial))
-        by_rate[4:6], by_rate[8, 2] = by_place[:2], -1.0
-        changes = to_forces @ found.tangent()
-        stiffness, (fx, fy) = -changes @ by_place, turn @ F
+        to_forces, by_place = self._maps(tilt, motion)
+        by_rate = np.roll(by_place, 4, axis=0)
+        by_rate[8, 2] = -1.0
+        changes = to_forces @ found.steady_tangent(exact=True)
+        stiffness, (fx, fy) = -changes @ by_place, to_forces[:2, :2] @ found.wrench[:2]
         # the forces turn with the pad
         turned = np.array([-fy, fx])
         stiffness[:, 2] -= [*turned, 0.0, -self.radial @ turned]
         stiffness[3, 3] += self.stiffness
         forces = to_forces @ found.wrench
         forces[3] -= self.stiffness * shift
-        return PadLoads(tilt, motion, forces, stiffness, -changes @ by_rate)
+        return PadLoads(tilt, motion, found.wrench, forces, stiffness, -changes @ by_rate, self.near)
+
+    def _maps(self, tilt: float, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Generalized forces (4, 6) of a wrench, and derivatives (10, 4) of a motion to the coordinates."""
+        c, s = math.cos(tilt), math.sin(tilt)
+        turn, lever = np.array([[c, -s], [s, c]]), motion[:2] - self.arm * self.radial
+        to_forces, by_place = np.zeros((4, 6)), np.zeros((MOTION_SIZE, 4))
+        to_forces[:2, :2], to_forces[3, :2] = turn, -self.radial @ turn
+        to_forces[2, 5], to_forces[2, :2] = -1.0, self.arm * self.across
+        by_place[:2] = np.column_stack((turn.T, [lever[1], -lever[0]], -turn.T @ self.radial))
+        return to_forces, by_place
+
+    def memory(self, own: PadLoads) -> FilmMemory | None:
+        """Response of the film of a position to motions of all coordinates at any frequency; None without a memory."""
+        slow, response = response_of(self.model.evaluate_steady(own.motion, own.history))
+        if response is None:
+            return None
+        to_forces, by_place = self._maps(own.tilt, own.motion)
+        return FilmMemory(response, slow, to_forces[:, LOADS] * SIGNS, by_place[:PLACES])

@@ -193,10 +193,10 @@ class SteadyResult(FilmRecord, FilmPictures):
         and the flow variable Q / (R c N L) = inlet_flow / (R c N L), N = omega / (2 pi).
     oil_flow : float
         Total oil flow: fresh oil that passes through the film, m3/s. It replaces what leaves through ends and supply
-        areas; without end pressures and supply areas it is the leakage. With an arc: oil that enters at its edges.
+        areas; without end pressures and supply areas it is the leakage. With an arc: the sum of ``supply_flows``.
     supply_flows : (k,) array
-        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs: oil that enters at the
-        leading and at the trailing edge of every arc in turn, 0 where it leaves.
+        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs, before it: oil that enters at
+        the leading and at the trailing edge of every arc in turn, 0 where it leaves.
     contact_torque, contact_power_loss, peak_contact_pressure : float
         Boundary friction of the contacts on the journal about its own axis, N m, part of ``friction_torque``; its
         loss, W, part of ``power_loss``; largest contact pressure, Pa.

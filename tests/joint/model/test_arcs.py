@@ -194,7 +194,6 @@ REFUSED = {
     },
     "bush": {"bush": ehd.ModalBush(mesh=MESH, material=STEEL)},
     "journal": {"journal": ehd.ElasticJournal(material=STEEL, span=(-0.04, 0.05), held=None)},
-    "supply": {"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.2, pressure=1e5),)},
     "film": {"film": ehd.ShortBearing()},
     "inlet": {"inlet": ehd.MaximumGap()},
 }

@@ -220,9 +220,31 @@ def test_bad_questions_by_name():
         ehd.equilibrium(PADS, speed=SPEED, load=(0.0, -LOAD), tilt=(1e-4, 0.0))
     with pytest.raises(ehd.InputError, match="speed must not be zero"):
         ehd.equilibrium(PADS, speed=0.0, load=(0.0, -LOAD))
-    with pytest.raises(ehd.InputError, match=r"TiltingPads\.cavitation=ElrodAdams"):
-        ehd.equilibrium(dataclasses.replace(PADS, cavitation=ehd.ElrodAdams()), speed=SPEED, load=(0.0, -LOAD))
     rest = ehd.equilibrium(PADS, speed=SPEED, load=(0.0, -LOAD))
     for frequency in (0.0, np.nan):
         with pytest.raises(ehd.InputError, match="frequency"):
             rest.reduced(frequency)
+
+
+HEAT = {"lumped": ehd.LumpedThermal(supply_temperature=313.0), "field": ehd.FilmEnergy(supply_temperature=313.0)}
+
+
+@pytest.mark.parametrize("name", ["lumped", pytest.param("field", marks=pytest.mark.slow)])
+def test_heat_of_every_pad_is_that_of_its_film(name):
+    """Every film has the temperature and the force of a fixed pad in its place, and colder oil carries more."""
+    pads = dataclasses.replace(PADS, lubricant=ehd.oil("ISO VG 46"), film=ehd.FiniteLength(n_theta=64, n_z=6))
+    hot = dataclasses.replace(pads, thermal=HEAT[name])
+    cold, rest = (ehd.equilibrium(p, speed=SPEED, load=(0.0, -LOAD)) for p in (pads, hot))
+    assert rest.minimum_gap < 0.9 * cold.minimum_gap
+    assert rest.residual < 1e-9
+    for k, film in enumerate(rest.films):
+        x, y = film.motion[:2]
+        alone = ehd.steady(
+            hot.pad(k),
+            speed=SPEED,
+            eccentricity_ratio=np.hypot(x, y) / hot.machined_clearance,
+            direction=float(np.arctan2(y, x)),
+        )
+        assert film.peak_temperature == pytest.approx(alone.peak_temperature, abs=1e-4)
+        np.testing.assert_allclose(film.force, alone.force, rtol=0, atol=1e-6 * LOAD)
+    assert np.ptp([film.peak_temperature for film in rest.films]) > 1.0
