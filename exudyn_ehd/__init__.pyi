@@ -18,11 +18,11 @@ from exudyn_ehd.coupling.pads import TiltingPadHistory as TiltingPadHistory
 from exudyn_ehd.coupling.pads import TiltingPadJoint as TiltingPadJoint
 from exudyn_ehd.coupling.record.history import JointHistory as JointHistory
 from exudyn_ehd.coupling.record.history import Quantity as Quantity
-from exudyn_ehd.coupling.record.on_disk import File as File
 from exudyn_ehd.coupling.record.record import load_history as load_history
 from exudyn_ehd.coupling.record.revolutions import Revolutions as Revolutions
-from exudyn_ehd.coupling.record.thinning import Every as Every
-from exudyn_ehd.coupling.record.thinning import Period as Period
+from exudyn_ehd.coupling.record.rows import Every as Every
+from exudyn_ehd.coupling.record.rows import File as File
+from exudyn_ehd.coupling.record.rows import Period as Period
 from exudyn_ehd.coupling.replace import ReplaceJoint as ReplaceJoint
 from exudyn_ehd.coupling.replace import ReplaceJoints as ReplaceJoints
 from exudyn_ehd.coupling.replace import ReplaceReducedBody as ReplaceReducedBody
@@ -45,7 +45,7 @@ from exudyn_ehd.coupling.spherical import LubricatedSphericalJoint as Lubricated
 from exudyn_ehd.coupling.spherical import SphericalHistory as SphericalHistory
 from exudyn_ehd.coupling.thrust_pads import CreateTiltingPadThrustBearing as CreateTiltingPadThrustBearing
 from exudyn_ehd.coupling.thrust_pads import TiltingPadThrustBearing as TiltingPadThrustBearing
-from exudyn_ehd.coupling.watch.step_control import StepControl as StepControl
+from exudyn_ehd.coupling.watch.solver_state import StepControl as StepControl
 from exudyn_ehd.film.arcs import Arc as Arc
 from exudyn_ehd.film.arcs import Dam as Dam
 from exudyn_ehd.film.arcs import offset_halves as offset_halves

@@ -15,18 +15,17 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
-from exudyn_ehd.coupling.element.display import FilmDisplay
-from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.element.outputs import FilmDisplay
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, hold, joint_points, joint_rotation, resolve_pair
+from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.on_disk import File
-from exudyn_ehd.coupling.record.thinning import Every, Period
+from exudyn_ehd.coupling.record.rows import Every, File, Period
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
-from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model, compile_together
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 

@@ -12,9 +12,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.element.display import FilmDisplay
+from exudyn_ehd.coupling.element.outputs import FilmDisplay, reader
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.coupling.record.revolutions import Revolutions

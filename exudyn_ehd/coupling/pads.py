@@ -30,7 +30,7 @@ from exudyn_ehd.coupling.items.joint_frame import add_body_on, joint_points, joi
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.run.solve import require_new
-from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult
 from exudyn_ehd.joint.static.pads import PadModel, TiltingPads

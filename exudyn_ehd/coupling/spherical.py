@@ -15,21 +15,20 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
 from exudyn_ehd.coupling.element import outer_load
-from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.failures import Failures
-from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.element.outputs import FilmDisplay, pressure_colours, reader, ring_triangles
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import reader
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import in_the_name_of, joint_points, joint_rotation, resolve_pair
+from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.kinematics import spherical
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.history import PACK, JointHistory, make_row
 from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.record.thinning import errors_of_ball_in
+from exudyn_ehd.coupling.record.rows import errors_of_ball_in
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
-from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel

@@ -27,7 +27,7 @@ from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Side
-from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
+from exudyn_ehd.coupling.items.objects import warn_if_indefinite
 from exudyn_ehd.coupling.items.reduced_bodies import Carrier
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.solid.loads import BushLoad, FollowerPressure, dead_forces, factor

@@ -22,12 +22,11 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
-from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder, Record
 from exudyn_ehd.coupling.watch import poor_films, solver_state
 from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, warn_of_radius
-from exudyn_ehd.coupling.watch.step_control import GapWatch
+from exudyn_ehd.coupling.watch.solver_state import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.limits import HOT
 from exudyn_ehd.joint.balance.newton import lacks_oil
@@ -374,9 +373,9 @@ class AcceptedSteps:
         failures, bearing, history = self.film.failures, self.film.model.bearing, self.history(mbs)
         self._grid.tell(failures.name)
         poor_films.warn_of_tiny_forces(failures.name, self.solver, self.tolerance, bearing, history)
-        if summary.is_on() and history.time.size > 1:
+        if poor_films.is_on() and history.time.size > 1:
             why = () if self.chosen or solver_state.is_explicit(self.solver) else failures.refused.values()
-            summary.LOGGER.info("%s", summary.line(failures.name, bearing, history, why))
+            poor_films.LOGGER.info("%s", poor_films.line(failures.name, bearing, history, why))
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the end of the run or the current state if that is later than the last step.

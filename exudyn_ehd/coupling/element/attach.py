@@ -19,7 +19,7 @@ from exudyn_ehd.coupling.contract import Index, JointModel, NodeIndex, Side
 from exudyn_ehd.coupling.element.nodal import BoreFilmElement, ModalFilmElement, NodalFilmElement, TurningFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.object_mass import own_equations, require_heavy_housing
+from exudyn_ehd.coupling.items.objects import own_equations, require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide, initial_frame
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import centre_of, motion_of

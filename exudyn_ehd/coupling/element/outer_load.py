@@ -41,9 +41,8 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Side, Trial
-from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.items.bodies import body_of_node
-from exudyn_ehd.coupling.items.object_mass import object_mass
+from exudyn_ehd.coupling.items.objects import force_owner, object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.watch import solver_state

@@ -24,7 +24,7 @@ from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
-from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between

@@ -25,8 +25,17 @@ from exudyn_ehd.coupling.record.history import (
     JointHistory,
     has_gaps,
 )
-from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_head, require_own
-from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
+from exudyn_ehd.coupling.record.rows import (
+    Every,
+    Period,
+    RowsOnDisk,
+    Thinner,
+    between,
+    errors_of,
+    open_rows,
+    read_head,
+    require_own,
+)
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.step_error import NO_ERROR
 from exudyn_ehd.status import ROUNDING, InputError, RunError, require_integer, require_number

@@ -16,7 +16,7 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import SHARE
+from exudyn_ehd.coupling.run.newton import SHARE
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.newton import (
     FREE_STEP,

@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
 from exudyn_ehd.coupling.rotor.films import FilmMemory
-from exudyn_ehd.coupling.rotor.vibrations import delayed_vibrations, vibrations
+from exudyn_ehd.coupling.rotor.system import delayed_vibrations, vibrations
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number
 

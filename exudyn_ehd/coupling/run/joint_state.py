@@ -12,8 +12,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, require_system
 from exudyn_ehd.coupling.element.nodal import ModalFilmElement
+from exudyn_ehd.coupling.element.outputs import add_sensor
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import add_sensor
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK

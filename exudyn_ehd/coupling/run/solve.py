@@ -13,14 +13,12 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import free_bushes
+from exudyn_ehd.coupling.run.newton import StartGuess, free_bushes, refuse
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
 from exudyn_ehd.coupling.run.restart import SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time, warn_of_misfit
-from exudyn_ehd.coupling.run.start_guess import StartGuess, refuse
 from exudyn_ehd.coupling.run.step_size import steps_by_error
-from exudyn_ehd.coupling.watch.solver_state import hooked
-from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.coupling.watch.solver_state import StepControl, hooked
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
 JOINTS = "lubricatedJoints"

@@ -12,8 +12,7 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
-from exudyn_ehd.coupling.element.presence import force_owner
-from exudyn_ehd.coupling.items.object_mass import as_sparse, hidden_mass, is_hidden
+from exudyn_ehd.coupling.items.objects import as_sparse, force_owner, hidden_mass, is_hidden
 from exudyn_ehd.status import InputError
 
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
