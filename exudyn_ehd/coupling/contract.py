@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol, SupportsInt, TypeAlias
+from typing import Any, Protocol, SupportsInt, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -12,10 +12,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
+from exudyn_ehd.joint.thrust import ThrustEvaluation
 from exudyn_ehd.status import InputError, Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.thrust import ThrustEvaluation
 
 # Exudyn's index types exist at run time, but not in its type stubs.
 _indices: Any = exu

@@ -12,7 +12,6 @@ import math
 from collections.abc import Sequence
 
 import exudyn as exu
-import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import (
     AngularVelocity2EulerParameters_t,
@@ -22,19 +21,19 @@ from exudyn.rigidBodyUtilities import (
 )
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.api import Free, Held, attach, hold_axis
+from exudyn_ehd.coupling.api import Free, Held, attach, equip, require_arguments
 from exudyn_ehd.coupling.contract import INITIAL, Index, Side, require_system
 from exudyn_ehd.coupling.handle import LubricatedJoint
-from exudyn_ehd.coupling.items.bodies import Item, body_item
-from exudyn_ehd.coupling.items.joint_frame import add_body_on, joint_points, joint_rotation, resolve_pair, rigid_marker
+from exudyn_ehd.coupling.items.bodies import body_item
+from exudyn_ehd.coupling.items.joint_frame import add_body_on, hold, hold_at_pivot, place_joint
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
-from exudyn_ehd.coupling.run.solve import require_new
-from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.coupling.run.restart import equilibrium_task, shift_journal
+from exudyn_ehd.coupling.watch.solver_state import StepControl
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult
 from exudyn_ehd.joint.static.pads import PadModel, TiltingPads
-from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
+from exudyn_ehd.status import InputError, require_type, require_vector
 
 _WHERE = "CreateTiltingPadBearing"
 
@@ -199,9 +198,6 @@ class TiltingPadJoint:
         where, mbs = "TiltingPadJoint.place_in_equilibrium", self.mbs
         require_system(where, mbs, assembled=True, of=f" of bearing '{self.name}'")
         journal = self.pads[0].element.sides[1]
-        if not isinstance(journal, NodeSide) or not journal.nodes:
-            raise InputError(f"{where}: the journal of '{self.name}' must be a rigid body or node that moves.")
-        force = require_vector(f"{where}: load", load, 2, "N")
         # brings the journal's frame to the initial state
         self.pads[0].element.motion(mbs, INITIAL)
         data, housing = mbs.systemData, self._housing
@@ -209,17 +205,10 @@ class TiltingPadJoint:
         own = [place for node in housing.nodes for place in data.GetNodeLTGODE2(int(node))]
         housing.update(mbs, q[own], q_t[own], INITIAL)
         motion = relative.motion_of(housing.frame, journal.frame)
-        spin = float(motion[8]) if speed is None else require_number(f"{where}: speed", speed, "rad/s")
-        if spin == 0.0:
-            raise InputError(
-                f"{where}: '{self.name}' does not turn in the initial state, and films without speed carry no steady "
-                "load; give speed=..., or the bodies an initial angular velocity."
-            )
-        result = equilibrium(self.bearing, speed=spin, load=(force[0], force[1]))
+        journal, force, spin = equilibrium_task(where, journal, f"bearing '{self.name}'", motion, load, speed)
+        result = equilibrium(self.bearing, speed=spin, load=force)
         A, place, velocity, turning = np.split(housing.frame, (3, 4, 5), axis=1)
-        own = data.GetNodeLTGODE2(int(journal.nodes[0]))[: rigid_nodes.translations(journal.kind)]
-        q[own] += (A[:, :2] @ (result.position - motion[:2]))[: len(own)]
-        q_t[own] -= (A[:, :2] @ motion[4:6])[: len(own)]
+        shift_journal(mbs, journal, (q, q_t), A, result.position, motion)
         pivots = self.bearing.arm - self.bearing.preload * self.bearing.machined_clearance + result.pivot_displacements
         for k, pad in enumerate(self.pads):
             node, lever = pad.element.sides[0], A[:, :2] @ (pivots[k] * self._directions[0, :, k])
@@ -308,83 +297,46 @@ def CreateTiltingPadBearing(
     >>> joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], pads, tilt=ehd.Held())
     >>> mbs.Assemble()
     """
-    require_system(_WHERE, mbs, assembled=False)
+    name = name or f"tilting pads {mbs.systemData.NumberOfObjects()}"
+    flags = {"useGlobalFrame": useGlobalFrame, "show": show}
+    require_arguments(_WHERE, mbs, f"{name} pad 1", stepControl, {"axial": axial, "tilt": tilt}, flags)
     require_type(f"{_WHERE}.bearing", bearing, TiltingPads)
     assert bearing is not None
-    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):
-        require_bool(f"{_WHERE}.{argument}", value)
-    for argument, motion in (("axial", axial), ("tilt", tilt)):
-        require_type(f"{_WHERE}.{argument}", motion, Free, Held)
-    require_of_joint(f"{_WHERE}.stepControl", stepControl)
     weight = require_vector(f"{_WHERE}.gravity", gravity, 3, "m/s^2")
     if not min(bearing.pad_mass, bearing.pad_inertia) > 0.0:
         raise InputError(
             f"{_WHERE}.bearing: pads are bodies and need TiltingPads.pad_mass and pad_inertia above 0, got "
             f"{bearing.pad_mass!r} kg and {bearing.pad_inertia!r} kg m2."
         )
-    name = name or f"tilting pads {mbs.systemData.NumberOfObjects()}"
-    require_new(_WHERE, mbs, f"{name} pad 1")
-    housing, journal = resolve_pair(mbs, itemNumbers)
+    housing, journal, points, rotation = place_joint(
+        _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame
+    )
     if housing.kind is None or housing.kind in rigid_nodes.POINTS:
         raise InputError(f"{_WHERE}.itemNumbers[0] must be a rigid body, a rigid node or marker, or ground.")
-    rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
-    points = joint_points(housing, journal, position, useGlobalFrame)
-    pads, objects = [], []
+    pads, objects, inertia = [], [], RigidBodyInertia(bearing.pad_mass, bearing.pad_inertia * np.eye(3))
+    rigid, spring = bearing.pivot_stiffness is None, ([1.0, 0.0, 0.0], bearing.pivot_stiffness, 0.0)
     for k, angle in enumerate(bearing.pivots):
         radial = rotation @ [math.cos(angle), math.sin(angle), 0.0]
         centre = points[0] - bearing.preload * bearing.machined_clearance * radial
         own, pivot = f"{name} pad {k + 1}", centre + bearing.arm * radial
-        body, *joints = _add_pad(mbs, own, bearing, (housing, pivot), (rotation, radial), weight)
+        body = add_body_on(mbs, f"{own} body", housing, pivot, rotation, inertia, weight, show=False)
+        pad = body_item(mbs, _WHERE, body)
+        held = np.column_stack((radial, np.cross(rotation[:, 2], radial), rotation[:, 2]))
+        joints = hold_at_pivot(mbs, own, (housing, pad), pivot, held, [int(rigid), 1, 1, 1, 1, 0], spring)
         joint = attach(
             mbs,
             PadModel(bearing.pad(k)),
-            body_item(mbs, _WHERE, body),
+            pad,
             journal,
             (centre, points[1]),
             rotation,
             name=own,
             show=show,
         )
-        if stepControl is not None:
-            joint.element.steps.control = GapWatch(stepControl, joint.bearing)
+        equip(joint, stepControl)
         pads.append(joint)
         objects.append((body, *joints))
-    constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
+    kept = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
+    constraint = hold(mbs, name, (housing, journal), points, rotation, **kept)
     numbers = [*zip(*objects, strict=True), ()][:3]
     return TiltingPadJoint(mbs, name, bearing, pads, numbers, constraint, housing.side(points[0], rotation))
-
-
-def _add_pad(
-    mbs: exu.MainSystem,
-    name: str,
-    bearing: TiltingPads,
-    place: tuple[Item, np.ndarray],
-    axes: tuple[np.ndarray, np.ndarray],
-    gravity: np.ndarray,
-) -> list[Index]:
-    """Add a pad with its centre of mass in the pivot, its constraint to the housing, and the spring of its pivot.
-
-    ``place``: the housing and the pivot; ``axes``: the bearing's frame and the direction from its axis to the pivot.
-    """
-    (housing, pivot), (rotation, radial) = place, axes
-    inertia = RigidBodyInertia(bearing.pad_mass, bearing.pad_inertia * np.eye(3))
-    body = add_body_on(mbs, f"{name} body", housing, pivot, rotation, inertia, gravity, show=False)
-    held = np.column_stack((radial, np.cross(rotation[:, 2], radial), rotation[:, 2]))
-    markers = []
-    for label, item in (("housing", housing), ("pad", body_item(mbs, _WHERE, body))):
-        markers.append(rigid_marker(mbs, f"{name} pivot on {label}", item, pivot, held, "a pad"))
-    flexible = bearing.pivot_stiffness is not None
-    pivot_joint = eii.ObjectJointGeneric(
-        name=f"{name} pivot",
-        markerNumbers=markers,
-        constrainedAxes=[int(not flexible), 1, 1, 1, 1, 0],
-        visualization=eii.VObjectJointGeneric(show=False),
-    )
-    spring = eii.ObjectConnectorLinearSpringDamper(
-        name=f"{name} spring",
-        markerNumbers=markers,
-        stiffness=bearing.pivot_stiffness or 0.0,
-        axisMarker0=[1.0, 0.0, 0.0],
-        visualization=eii.VObjectConnectorLinearSpringDamper(show=False),
-    )
-    return [body, *map(mbs.AddObject, (pivot_joint, spring)[: 1 + flexible])]

@@ -13,30 +13,20 @@ from typing import cast
 
 import exudyn as exu
 import exudyn.graphics
-import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import RigidBodyInertia
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.api import attach
-from exudyn_ehd.coupling.contract import Data, Index, JointModel, require_system
+from exudyn_ehd.coupling.api import attach, require_arguments
+from exudyn_ehd.coupling.contract import Data, Index, JointModel
 from exudyn_ehd.coupling.handle import LubricatedJoint
-from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.joint_frame import (
-    add_body_on,
-    in_the_name_of,
-    joint_points,
-    joint_rotation,
-    resolve_pair,
-    rigid_marker,
-)
-from exudyn_ehd.coupling.items.markers import resolve
+from exudyn_ehd.coupling.items.bodies import body_item
+from exudyn_ehd.coupling.items.joint_frame import add_body_on, hold_at_pivot, in_the_name_of, place_joint
 from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
-from exudyn_ehd.coupling.run.solve import require_new
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import InputError, Status, require_bool, require_type, require_vector
+from exudyn_ehd.status import InputError, Status, require_type, require_vector
 
 _WHERE = "CreateTiltingPadThrustBearing"
 # Thickness of a pad as drawn over the width of the pads, and points along its edges.
@@ -191,18 +181,15 @@ def CreateTiltingPadThrustBearing(
     >>> items = [mbs.CreateGround(), shaft]
     >>> thrust = ehd.CreateTiltingPadThrustBearing(mbs, "thrust", items, [0, 0, 0], [0, 0, 1], pads)
     """
-    require_system(_WHERE, mbs, assembled=False)
-    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):
-        require_bool(f"{_WHERE}.{argument}", value)
+    flags = {"useGlobalFrame": useGlobalFrame, "show": show}
+    require_arguments(_WHERE, mbs, f"{name} pad 1" if name else "", None, {}, flags)
     require_type(f"{_WHERE}.bearing", bearing, TiltingThrustPads)
     assert bearing is not None
     weight = require_vector(f"{_WHERE}.gravity", gravity, 3, "m/s^2").tolist()
-    require_new(_WHERE, mbs, f"{name} pad 1" if name else "")
     name = name or f"thrust bearing {mbs.systemData.NumberOfObjects()}"
-    with in_the_name_of(_WHERE, "housing", "shaft"):
-        housing, shaft = resolve_pair(mbs, itemNumbers)
-        rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
-        points = joint_points(housing, shaft, position, useGlobalFrame)
+    housing, shaft, points, rotation = place_joint(
+        _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame, ("housing", "shaft")
+    )
     if housing.kind is None or housing.kind in POINTS or housing.planar or shaft.planar:
         raise InputError(
             f"{_WHERE}.itemNumbers: pivots need a 3D rigid body, its node or ground as housing, and the collar a shaft "
@@ -212,14 +199,17 @@ def CreateTiltingPadThrustBearing(
     pads, bodies, height = [], [], 0.5 * bearing.length * rotation[:, 2]
     # a marker stays where it is
     points = points[0], points[1] if shaft.is_marker else points[1] - height
+    inertia = RigidBodyInertia(bearing.pad_mass, np.diag([*bearing.pad_inertia, sum(bearing.pad_inertia)]))
+    shape = {"graphicsDataList": [_shape(bearing)], "show": show}
+    rigid, spring = bearing.pivot_stiffness is None, ([0.0, 0.0, 1.0], bearing.pivot_stiffness, bearing.pivot_damping)
     for k in range(bearing.pads):
         angle, title = 2.0 * math.pi * k / bearing.pads, f"{name} pad {k + 1}"
         c, s = math.cos(angle), math.sin(angle)
         frame = rotation @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         pivot = points[0] + bearing.pivot_radius * frame[:, 0]
-        bodies.append(_add_body(mbs, title, bearing, housing, pivot, frame, weight, show))
-        pad = resolve(mbs, f"{_WHERE}: {title}", bodies[-1])
-        _hold(mbs, title, bearing, {"seat": housing, "pivot": pad}, pivot, frame)
+        bodies.append(add_body_on(mbs, f"{title} body", housing, pivot, frame, inertia, weight, **shape))
+        pad = body_item(mbs, f"{_WHERE}: {title}", bodies[-1])
+        hold_at_pivot(mbs, title, (housing, pad), pivot, frame, [1, 1, int(rigid), 0, 0, 1], spring)
         with in_the_name_of(_WHERE, "pad", "shaft"):
             ends, model = (points[0] - height, points[1]), cast(JointModel, NoFilm(bearing))
             pads.append(attach(mbs, model, pad, shaft, ends, frame, name=title))
@@ -234,50 +224,3 @@ def _shape(bearing: TiltingThrustPads) -> Data:
     corners = np.column_stack([radii * np.cos(theta) - bearing.pivot_radius, radii * np.sin(theta)])
     sides = [[k, (k + 1) % len(corners)] for k in range(len(corners))]
     return cast(Data, exudyn.graphics.SolidExtrusion(corners.tolist(), sides, height, pOff=[0.0, 0.0, -height]))
-
-
-def _add_body(
-    mbs: exu.MainSystem,
-    title: str,
-    bearing: TiltingThrustPads,
-    housing: Item,
-    pivot: np.ndarray,
-    frame: np.ndarray,
-    weight: list[float],
-    show: bool,
-) -> Index:
-    """Add the body of a pad, which moves with the housing at the start."""
-    inertia = RigidBodyInertia(bearing.pad_mass, np.diag([*bearing.pad_inertia, sum(bearing.pad_inertia)]))
-    shape = {"graphicsDataList": [_shape(bearing)], "show": show}
-    return add_body_on(mbs, f"{title} body", housing, pivot, frame, inertia, weight, **shape)
-
-
-def _hold(
-    mbs: exu.MainSystem,
-    title: str,
-    bearing: TiltingThrustPads,
-    items: dict[str, Item],
-    pivot: np.ndarray,
-    frame: np.ndarray,
-) -> None:
-    """Hold a pad on its housing at the pivot."""
-    markers = [rigid_marker(mbs, f"{title} {part}", item, pivot, frame, "a pivot") for part, item in items.items()]
-    k, along = bearing.pivot_stiffness, np.diag([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    mbs.AddObject(
-        eii.ObjectJointGeneric(
-            name=f"{title} pivot",
-            markerNumbers=markers,
-            constrainedAxes=[1, 1, int(k is None), 0, 0, 1],
-            visualization=eii.VObjectJointGeneric(show=False),
-        )
-    )
-    if k is not None:
-        mbs.AddObject(
-            eii.ObjectConnectorRigidBodySpringDamper(
-                name=f"{title} support",
-                markerNumbers=markers,
-                stiffness=k * along,
-                damping=bearing.pivot_damping * along,
-                visualization=eii.VObjectConnectorRigidBodySpringDamper(show=False),
-            )
-        )

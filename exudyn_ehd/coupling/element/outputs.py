@@ -33,6 +33,7 @@ from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data, Index, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.record.history import COLUMNS, WIDTH, Quantity
 from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.status import InputError, Status
@@ -155,6 +156,24 @@ class FilmDisplay:
         q, q_t = (np.array(values[: self._housing.size]) for values in self.element.read(mbs, _VISUALIZATION))
         self._housing.update(mbs, q, q_t, _VISUALIZATION)
         return self._housing.frame
+
+
+def add_element(mbs: exu.MainSystem, display: FilmDisplay, show: bool, color: Sequence[float], **more: object) -> Index:
+    """Add the object of a display's element to a system; ``more``: further arguments of ObjectGenericODE2."""
+    element = display.element
+    name, shown = element.failures.name, {"show": show, "color": list(color)}
+    number = mbs.AddObject(
+        eii.ObjectGenericODE2(
+            name=name,
+            nodeNumbers=element.nodes,
+            forceUserFunction=element.force,
+            jacobianUserFunction=element.jacobian,
+            visualization=eii.VObjectGenericODE2(graphicsDataUserFunction=display.graphics, **shown),
+            **more,
+        )
+    )
+    element.presence = Presence(mbs, name, element, number, element.sides)
+    return number
 
 
 def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from types import ModuleType
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -32,10 +31,8 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.thrust import ThrustModel
 from exudyn_ehd.status import InputError, Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.thrust import ThrustModel
 
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
@@ -71,11 +68,11 @@ class FilmElement:
         Number of film evaluations.
     last : Trial or None
         The state evaluated last, if it is still known.
-    kinematics : module
+    kinematics : Kinematics
         Of the motion that the film knows.
     """
 
-    kinematics: ModuleType = relative
+    kinematics = relative.JOURNAL
 
     def __init__(
         self, model: JointModel, housing: Side, journal: Side, name: str, bore_nodes: Sequence[Index] = ()

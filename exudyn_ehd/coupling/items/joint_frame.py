@@ -27,11 +27,28 @@ from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE, POINTS, SPIN, VELOCITY
+from exudyn_ehd.coupling.kinematics.rigid_nodes import GROUND, PLACE, POINTS, SPIN, VELOCITY
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.status import InputError, require_vector
 
 _WHERE = "CreateLubricatedJoint"
+
+
+def place_joint(
+    where: str,
+    mbs: exu.MainSystem,
+    itemNumbers: Sequence[object],
+    position: Sequence[float] | np.ndarray,
+    axis: Sequence[float] | np.ndarray,
+    matrix: ArrayLike | None,
+    use_global: bool,
+    names: tuple[str, str] = ("housing", "journal"),
+) -> tuple[Item, Item, tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Both items, their joint points (3,) and the joint frame (3, 3), global, checked in the name of ``where``."""
+    with in_the_name_of(where, *names):
+        housing, journal = resolve_pair(mbs, itemNumbers)
+        rotation = joint_rotation(housing, axis, matrix, use_global)
+        return housing, journal, joint_points(housing, journal, position, use_global), rotation
 
 
 def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[object]) -> tuple[Item, Item]:
@@ -153,16 +170,21 @@ def check_start(
 def hold(
     mbs: exu.MainSystem,
     name: str,
-    housing: Item,
-    journal: Item,
+    items: tuple[Item, Item],
     points: tuple[np.ndarray, np.ndarray],
     rotation: np.ndarray,
     *,
     axial: bool,
     tilt: bool,
-) -> Index:
+) -> Index | None:
     """Constrain the relative displacement along the joint axis, and the axes' angles to each other, to their values in
-    the reference configuration."""
+    the reference configuration; None where nothing is to be held."""
+    # planar bodies can't move axially or tilt, nor points turn: the constraint would be empty, and singular
+    moves = not all(item.planar or item.kind == GROUND for item in items)
+    axial, tilt = axial and moves, tilt and moves and not all(item.kind in (GROUND, *POINTS) for item in items)
+    if not (axial or tilt):
+        return None
+    housing, journal = items
     asked, turns = ("tilt" if tilt else "axial"), []
     axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
     markers = []
@@ -254,6 +276,42 @@ def add_body_on(
     )
     mbs.SetNodeParameter(body["nodeNumber"], "initialVelocities", [*side.frame[:, VELOCITY], *turning])
     return cast(Index, body["bodyNumber"])
+
+
+def hold_at_pivot(
+    mbs: exu.MainSystem,
+    name: str,
+    items: tuple[Item, Item],
+    pivot: np.ndarray,
+    frame: np.ndarray,
+    held: Sequence[int],
+    spring: tuple[list[float], float | None, float],
+) -> list[Index]:
+    """Hold a pad on its housing at a pivot (3,) with a frame (3, 3), global, in the axes ``held`` (6,) of the frame.
+
+    ``spring`` is an axis (3,) of the frame, along which the pivot has a stiffness, N/m, and a damping, N s/m; a
+    stiffness of None adds no spring.
+    """
+    markers = [
+        rigid_marker(mbs, f"{name} {part}", item, pivot, frame, "a pad")
+        for part, item in zip(("seat", "pivot"), items, strict=True)
+    ]
+    axis, stiffness, damping = spring
+    joint = eii.ObjectJointGeneric(
+        name=f"{name} pivot",
+        markerNumbers=markers,
+        constrainedAxes=list(held),
+        visualization=eii.VObjectJointGeneric(show=False),
+    )
+    support = eii.ObjectConnectorLinearSpringDamper(
+        name=f"{name} spring",
+        markerNumbers=markers,
+        stiffness=stiffness or 0.0,
+        damping=damping,
+        axisMarker0=axis,
+        visualization=eii.VObjectConnectorLinearSpringDamper(show=False),
+    )
+    return [mbs.AddObject(item) for item in (joint, support)[: 1 if stiffness is None else 2]]
 
 
 @contextmanager

@@ -12,15 +12,20 @@ jac) of `rigid_nodes`, the housing's first; q and q_t (n,) hold both sides' coor
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import exudyn as exu
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import global_loads, motion_of, tangent_matrices, variation_of
+from exudyn_ehd.coupling.kinematics.relative import (
+    JOURNAL,
+    Kinematics,
+    global_loads,
+    motion_of,
+    tangent_matrices,
+    variation_of,
+)
 from exudyn_ehd.coupling.kinematics.rigid_nodes import node_change, node_frame, vary
 
 NODE_KINDS = {
@@ -240,11 +245,11 @@ def motion_between(
     q: np.ndarray,
     q_t: np.ndarray,
     configuration: exu.ConfigurationType,
-    kinematics: ModuleType = relative,
+    kinematics: Kinematics = JOURNAL,
 ) -> np.ndarray:
-    """Bring two sides to q and q_t (n,), housing's first; the motion as `relative`, or another one, has it."""
+    """Bring two sides to q and q_t (n,), housing's first; return the motion."""
     housing, journal = sides
-    if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
+    if kinematics is JOURNAL and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
         return np.asarray(move_nodes(housing.arrays, journal.arrays, q, q_t))
     n = housing.size
     housing.update(mbs, q[:n], q_t[:n], configuration)
@@ -258,7 +263,7 @@ def derivatives_between(
     state: tuple[np.ndarray, np.ndarray],
     wrench: np.ndarray,
     tangent: np.ndarray,
-    kinematics: ModuleType = relative,
+    kinematics: Kinematics = JOURNAL,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Derivatives of what a wrench between housing and journal makes of a state (q, q_t), to which both are brought.
 
@@ -266,20 +271,19 @@ def derivatives_between(
     ----------
     wrench : (6,) array
         On the journal, joint frame.
-    tangent : (6, 10) array
+    tangent : (6, m) array
         Its derivatives to the motion.
-    kinematics : module
-        `relative`, or another one with its ``variation_of``.
+    kinematics : Kinematics
 
     Returns
     -------
     stiffness, damping : (n, n) arrays
         dQ/dq and dQ/dq_t.
-    motion_q, motion_qt : (10, n) arrays
+    motion_q, motion_qt : (m, n) arrays
         Derivatives of the motion.
     """
     (housing, journal), (q, q_t), n_h, loads = sides, state, sides[0].size, np.empty((4, 3))
-    if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
+    if kinematics is JOURNAL and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
         found: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
         found = derive_nodes(housing.arrays, journal.arrays, q, q_t, wrench, tangent)
         return found

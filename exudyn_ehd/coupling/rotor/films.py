@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import exudyn as exu
 import numpy as np
@@ -32,10 +32,8 @@ from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmResponse, response_of, slow_motions
 from exudyn_ehd.joint.static.steady import require_rest
+from exudyn_ehd.joint.thrust import ThrustEvaluation
 from exudyn_ehd.status import FilmError, InputError, Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.thrust import ThrustEvaluation
 
 
 class SpinningSide:
