@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import warnings
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, cast, overload
 
@@ -28,7 +27,7 @@ from exudyn_ehd.coupling.run.solve import register_joint, require_new
 from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model, compile_together
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
-from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
+from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector, warn_user
 
 RecordOption: TypeAlias = File | Every | Period
 
@@ -317,7 +316,7 @@ def _items_of_older_calls(
 ) -> Sequence[Index | None]:
     if any(item is not None for item in itemNumbers):
         raise InputError(f"{_WHERE}: give itemNumbers or bodyNumbers, its older name, not both.")
-    warnings.warn(f"{_WHERE}.bodyNumbers is now called itemNumbers.", DeprecationWarning, stacklevel=3)
+    warn_user(f"{_WHERE}.bodyNumbers is now called itemNumbers.", DeprecationWarning)
     return bodyNumbers
 
 

@@ -130,29 +130,33 @@ class JointModel(Protocol):
         """
 
 
-class Side(Protocol):
+class Side:
     """Frame of one side of a joint as a function of the coordinates of its nodes.
 
     Work arrays of its own for other states than the solver's come by `copy.deepcopy`.
 
-    Attributes
+    Parameters
     ----------
     nodes : list
         Nodes it depends on.
     size : int
         Number n of their coordinates.
+
+    Attributes
+    ----------
     frame : ndarray (3, 6)
     jac : ndarray (4, 3, n)
         Work arrays of `exudyn_ehd.coupling.kinematics.rigid_nodes`.
     """
 
-    nodes: list[Index]
-    size: int
-    frame: np.ndarray
-    jac: np.ndarray
+    def __init__(self, nodes: list[Index], size: int) -> None:
+        self.nodes, self.size = nodes, size
+        self.frame, self.jac = np.zeros((3, 6)), np.zeros((4, 3, size))
 
     def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+        raise NotImplementedError
 
     def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        raise NotImplementedError

@@ -357,7 +357,7 @@ def add_bush(
     elif mount is not None:
         slaved[mesh.outer.nodes] = True
         local = mesh.nodes + rotation.T @ (position - mount.point)
-        carrier = Carrier(mbs, mount.side, mount.initial, local[slaved])
+        carrier = Carrier(mbs, mount.side, local[slaved])
         if held[slaved].any():
             raise InputError(
                 "CreateFlexibleBush.supports must leave the outer surface to its carrier, got supported outer nodes; "

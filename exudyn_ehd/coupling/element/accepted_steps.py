@@ -11,7 +11,6 @@ solves in between, in which films are steady, change nothing of it.
 
 from __future__ import annotations
 
-import warnings
 import weakref
 from collections.abc import Callable
 from typing import Protocol
@@ -33,7 +32,7 @@ from exudyn_ehd.joint.balance.newton import lacks_oil
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
-from exudyn_ehd.status import OverloadWarning, Status
+from exudyn_ehd.status import OverloadWarning, Status, warn_user
 
 # A run goes on with the last step of the run before if it starts at its end, share of that step.
 SAME_TIME = 1e-3
@@ -318,7 +317,7 @@ class AcceptedSteps:
             poor_films.warn_of_thin_film(failures.name, start, gap, failures.tilting(trial.motion))
         if not self._overloaded and failures.overload(row) > 1.0:
             self._overloaded = True
-            warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)
+            warn_user(failures.overloaded(start, row, trial.motion), OverloadWarning)
 
     @property
     def film_memory(self) -> History | None:

@@ -12,7 +12,6 @@ Check that the items of a joint still exist in its system, under the same number
 
 from __future__ import annotations
 
-import warnings
 import weakref
 from collections.abc import Sequence
 from typing import Any
@@ -26,7 +25,7 @@ from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, node_side
-from exudyn_ehd.status import ROUNDING, SMALL, InputError
+from exudyn_ehd.status import ROUNDING, SMALL, InputError, warn_user
 
 
 def own_equations(mbs: exu.MainSystem, body: Index) -> Index:
@@ -222,11 +221,11 @@ def warn_if_indefinite(
     moved = size > ROUNDING * size.max()
     scaled = (whole + change)[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
     if np.linalg.eigvalsh(scaled)[0] < -SMALL:
-        warnings.warn(
+        warn_user(
             f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the {kind} of "
             f"{own:.4g} kg is lighter than it there, or has less rotary inertia, but must contain the bush's: add them "
             f"to the housing, or {remedy}.",
-            stacklevel=2,
+            UserWarning,
         )
 
 

@@ -146,7 +146,7 @@ def _find_surface(
     return reduced, dataclasses.replace(item, build=build)
 
 
-class FloatingBoreSide:
+class FloatingBoreSide(Side):
     """Frame that follows a body's floating frame and the rigid part P q, Theta q of its bore's motion in the modes q.
 
     Position ``r + A (x0 + P q)``, rotation ``A exp(Theta q) R``.
@@ -166,13 +166,10 @@ class FloatingBoreSide:
     def __init__(
         self, frame: NodeSide, modal_node: Index, origin: np.ndarray, rotation: np.ndarray, rigid: np.ndarray
     ) -> None:
+        super().__init__([*frame.nodes, modal_node], frame.size + rigid.shape[1])
         self.floating = frame
-        self.nodes = [*frame.nodes, modal_node]
         self.origin, self.rotation = origin, rotation
         self.shift, self.turn = rotation @ rigid[:3], rotation @ rigid[3:]
-        self.size = frame.size + rigid.shape[1]
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, self.size))
         rest = np.zeros(self.size)
         self.update(None, rest, rest, None)
 
@@ -229,17 +226,14 @@ class Carrier:
     mbs : exudyn.MainSystem
     side : Side
         Carries the bush's frame; the carrier keeps a copy with arrays of its own.
-    initial : ndarray (3, 6)
-        Its frame (A, p, v, omega) in the initial configuration.
     local : ndarray (s, 3)
         X [m].
     """
 
-    def __init__(self, mbs: exu.MainSystem, side: Side, initial: np.ndarray, local: np.ndarray) -> None:
+    def __init__(self, mbs: exu.MainSystem, side: Side, local: np.ndarray) -> None:
         # held by the system's own functions: what they refer to must not keep it alive
         self.mbs: exu.MainSystem = weakref.proxy(mbs)
         self.side: Side = copy.deepcopy(side)
-        self.initial = initial
         self.local = local
         self._bound = False
 
@@ -249,14 +243,6 @@ class Carrier:
             bind(self.mbs, self.side)
             self._bound = True
         self.side.update(self.mbs, q, q_t, configuration)
-
-    def positions(self) -> np.ndarray:
-        """Return x, shape (s, 3) [m]."""
-        return positions(self.side.frame, self.local)
-
-    def velocities(self) -> np.ndarray:
-        """Return dx/dt, shape (s, 3) [m/s]."""
-        return velocities(self.side.frame, self.local)
 
     def frame_accelerations(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Acceleration and angular acceleration (6,) of the frame at q_tt = 0; `move` has run at the same state."""

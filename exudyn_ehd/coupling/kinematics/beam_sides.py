@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 from scipy.spatial.transform import Rotation
 
-from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever, column, combined, cross, dot
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
@@ -101,7 +101,7 @@ def slope_change(Sx, q, d0, rho, jac, change_out):
     add_lever(jac[1], slope_rotation(s, d0) @ rho, change_out)
 
 
-class BeamSide:
+class BeamSide(Side):
     """Frame at a place along a geometrically exact beam element with two rigid-body nodes.
 
     Position, velocity and angular velocity are interpolated linearly between the nodes, as the element's own virtual
@@ -123,12 +123,8 @@ class BeamSide:
     """
 
     def __init__(self, ends: tuple[NodeSide, NodeSide], share: float, point: np.ndarray, rotation: np.ndarray) -> None:
-        self.ends = ends
-        self.weights = (1.0 - share, share)
-        self.nodes = [node for end in ends for node in end.nodes]
-        self.size = sum(end.size for end in ends)
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, self.size))
+        super().__init__([node for end in ends for node in end.nodes], sum(end.size for end in ends))
+        self.ends, self.weights = ends, (1.0 - share, share)
         rest = np.zeros(self.size)
         self._update_ends(rest, rest)
         section = self.section()
@@ -183,7 +179,7 @@ class BeamSide:
         return out
 
 
-class SlopeSide:
+class SlopeSide(Side):
     """Frame on a cable, whose nodes hold positions and slopes; see the module's text.
 
     The roll about the cable is no coordinate: a moment about the cable's axis finds no resistance and no motion there.
@@ -212,16 +208,13 @@ class SlopeSide:
         point: np.ndarray,
         rotation: np.ndarray,
     ) -> None:
-        self.nodes = nodes
+        super().__init__(nodes, reference.size)
         self.reference = reference
-        self.size = reference.size
         self.place, self.slope = np.ascontiguousarray(place), np.ascontiguousarray(slope)
         self.director = np.ascontiguousarray(director)
         own = slope_rotation(self.slope @ reference, self.director)
         self.rho = own.T @ (point - self.place @ reference)
         self.rotation = own.T @ rotation
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, self.size))
 
     def update(
         self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None

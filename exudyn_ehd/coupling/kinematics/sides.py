@@ -37,7 +37,7 @@ NODE_KINDS = {
 """Kinds of rotation coordinates of rigid-body nodes, by Exudyn's names of the nodes."""
 
 
-class NodeSide:
+class NodeSide(Side):
     """Marker frame fixed to one rigid-body node, or to ground.
 
     Parameters
@@ -57,16 +57,12 @@ class NodeSide:
     def __init__(
         self, kind: int, node: Index | None, reference: np.ndarray, rho: np.ndarray, rotation: np.ndarray
     ) -> None:
+        super().__init__([] if node is None else [node], rigid_nodes.COORDINATES[kind])
         self.kind = kind
-        self.nodes = [] if node is None else [node]
-        self.size = rigid_nodes.COORDINATES[kind]
         self.reference = np.ascontiguousarray(reference, dtype=float)
         self.rho = np.ascontiguousarray(rho, dtype=float)
         self.rotation = np.ascontiguousarray(rotation, dtype=float)
-        self.frame = np.zeros((3, 6))
-        self.frame[:, :3] = self.rotation
-        self.frame[:, 3] = self.rho
-        self.jac = np.zeros((4, 3, self.size))
+        self.frame[:, :3], self.frame[:, 3] = self.rotation, self.rho
 
     @property
     def arrays(self) -> tuple[int | np.ndarray, ...]:
@@ -96,7 +92,7 @@ def node_side(mbs: exu.MainSystem, node: Index) -> NodeSide:
     return side
 
 
-class MarkerSide:
+class MarkerSide(Side):
     """Marker frame of any rigid marker, through Exudyn's marker Jacobians.
 
     The change of the Jacobians with the coordinates, which velocities and the geometric stiffness need, comes from
@@ -114,12 +110,9 @@ class MarkerSide:
     """
 
     def __init__(self, marker: Index, nodes: list[Index], rotation: np.ndarray) -> None:
+        super().__init__(nodes, 0)
         self.marker = marker
-        self.nodes = nodes
         self.rotation = np.ascontiguousarray(rotation, dtype=float)
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, 0))
-        self.size = -1
         self._offers_change = True
 
     def bind(self, mbs: exu.MainSystem) -> None:

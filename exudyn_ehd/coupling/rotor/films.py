@@ -8,7 +8,7 @@ from typing import NamedTuple
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.contract import NodeIndex, Side
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
@@ -36,7 +36,7 @@ from exudyn_ehd.joint.thrust import ThrustEvaluation
 from exudyn_ehd.status import FilmError, InputError, Status
 
 
-class SpinningSide:
+class SpinningSide(Side):
     """One side of a joint: its node in the system, None for ground, its frame and its Jacobians.
 
     Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t: dp = Jp dx and
@@ -45,8 +45,8 @@ class SpinningSide:
 
     def __init__(self, side: NodeSide, node: TurningNode | None) -> None:
         self.side, self.node = side, node
-        self.size, self.nodes = (0 if node is None else 6), side.nodes
-        self.frame, self.jac = side.frame.copy(), np.zeros((4, 3, self.size))
+        super().__init__(side.nodes, 0 if node is None else 6)
+        self.frame[:] = side.frame
         self.places = np.arange(self.size) + (0 if node is None else node.own.start)
         self._arm = np.zeros(3)
 

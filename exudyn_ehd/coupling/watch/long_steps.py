@@ -45,7 +45,6 @@ has the radius 1.
 from __future__ import annotations
 
 import math
-import warnings
 
 import exudyn as exu
 import numpy as np
@@ -56,7 +55,7 @@ from exudyn_ehd.coupling.kinematics.relative import levers_of
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.audit.ringing import FADING
-from exudyn_ehd.status import SMALL, RingingWarning
+from exudyn_ehd.status import SMALL, RingingWarning, warn_user
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
 UNRESOLVED = 0.25
@@ -183,24 +182,22 @@ def warn(name: str, time: float, turn: float, radius: float) -> None:
     if turn > GROWING * (1.0 - radius):
         fate += ", and the vibrations of its elements grow until results are useless"
     wanted, usual = (math.ceil(2.0 * math.pi / largest_turn(each)) for each in (radius, USUAL_RADIUS))
-    warnings.warn(
+    warn_user(
         f"LubricatedJoint '{name}': in the step to t = {time:.9g} s the finite elements that it holds turn by "
         f"{turn:.3g} rad, {2.0 * math.pi / turn:.3g} steps a turn: on absolute coordinates Exudyn's integrator with a "
         f"spectral radius of {radius:g} {fate}; take {wanted} steps a turn or more ({usual} at a "
         f"spectral radius of {USUAL_RADIUS:g}), or a body with a floating frame (ObjectFFRFreducedOrder).",
         RingingWarning,
-        stacklevel=2,
     )
 
 
 def warn_of_radius(solver: solver_state.Solver | None) -> None:
     """Warn of an integrator that keeps alternating velocities."""
     if isinstance(solver, exu.MainSolverImplicitSecondOrder) and solver.spectralRadius > LARGEST_RADIUS:
-        warnings.warn(
+        warn_user(
             f"The time integration has a spectral radius of {solver.spectralRadius:g} (Newmark and TrapezoidalIndex2 "
             "have 1): journal velocities that alternate from step to step hardly fade, steps are halved, and growth "
             f"rates of whirl may be wrong. Use GeneralizedAlpha with a spectral radius of {LARGEST_RADIUS:g} or less: "
             f"ehd.ConfigureSolver(simulationSettings, spectralRadius={LARGEST_RADIUS:g}) for whirl.",
             RingingWarning,
-            stacklevel=2,
         )

@@ -23,7 +23,6 @@ from __future__ import annotations
 
 import logging
 import math
-import warnings
 from collections import Counter
 from collections.abc import Iterable
 
@@ -46,7 +45,7 @@ from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judg
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
 from exudyn_ehd.joint.step_error import enough_steps
-from exudyn_ehd.status import ROUNDING, SMALL, GridWarning, StarvationWarning, ThinFilmWarning
+from exudyn_ehd.status import ROUNDING, SMALL, GridWarning, StarvationWarning, ThinFilmWarning, warn_user
 
 LOGGER = logging.getLogger("exudyn_ehd")
 # Rise from which on oil of constant viscosity describes no film, K; with hardly any outflow it grows without bound.
@@ -157,12 +156,11 @@ def lost_share(history: History) -> float:
 
 def warn_of_starvation(name: str, time: float, lost: float) -> None:
     """Warn that the film of the joint ``name`` is starved."""
-    warnings.warn(
+    warn_user(
         f"LubricatedJoint '{name}': at t = {time:.9g} s {100.0 * lost:.0f} % of the film's oil has left through the "
         "ends: with ElrodAdams and neither a supply nor ends above the cavity pressure none comes back, and the film "
         f"carries less and less; {MORE_OIL[:-1]}, or SwiftStieber() for a bearing that stays flooded.",
         StarvationWarning,
-        stacklevel=2,
     )
 
 
@@ -175,13 +173,12 @@ def smooth_limit(bearing: JournalBearing) -> float:
 
 def warn_of_thin_film(name: str, time: float, gap: float, tilting: str) -> None:
     """Warn that the film of the joint ``name`` is thinner than its surfaces are rough; ``tilting`` is advised first."""
-    warnings.warn(
+    warn_user(
         f"LubricatedJoint '{name}': at t = {time:.9g} s the minimum film thickness is {1e6 * gap:.3g} um, less than "
         "the roughness of a good surface: real surfaces touch there, and pressure, friction and film are those of "
         f"perfectly smooth ones; {tilting}give the bearing asperity=GreenwoodTripp(...) and roughness=PatirCheng(...), "
         "contact=RegularisedWall(onset=...) if surfaces only just touch, or check load, clearance and viscosity.",
         ThinFilmWarning,
-        stacklevel=2,
     )
 
 
@@ -205,7 +202,7 @@ class GridWatch:
         if self._coarse is not None:
             (time, found), self._coarse = self._coarse, None
             where = f"LubricatedJoint '{name}': at t = {time:.9g} s, at its highest pressure"
-            warnings.warn(coarse_film(found, where), GridWarning, stacklevel=2)
+            warn_user(coarse_film(found, where), GridWarning)
 
 
 def warn_of_tiny_forces(
@@ -225,9 +222,9 @@ def warn_of_tiny_forces(
     left = (newton.absoluteTolerance if given is None else given) / solver.conv.errorCoordinateFactor
     unit = reference_force(float(spins(bearing, history).max()))
     if newton.residualMode == 0 and ROUNDING * unit < force < left / LOOSE:
-        warnings.warn(
+        warn_user(
             f"LubricatedJoint '{name}': Newton's absolute tolerance of {left:.2g} N is {100.0 * left / force:.2g} % of "
             f"the film's mean load of {force:.2g} N, so that its forces may be off by as much; use "
             f"ConfigureSolver(simulationSettings, absoluteTolerance={SMALL * force:.0e}).",
-            stacklevel=2,
+            UserWarning,
         )

@@ -7,7 +7,6 @@ User options for the steps, and the rejection of steps too coarse for a film, th
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,7 +20,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, Trial
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import InputError, require_number, require_type
+from exudyn_ehd.status import InputError, require_number, require_type, warn_user
 
 Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | exu.MainSolverExplicit
 Stored: TypeAlias = tuple[Solver | None, Solver | None]
@@ -49,12 +48,12 @@ def running_solver(before: Stored, now: Stored) -> Solver | None:
 
 def warn_unknown(name: str) -> None:
     """Warn that steps of the joint ``name`` are taken by a solver that is none of the stored ones."""
-    warnings.warn(
+    warn_user(
         f"LubricatedJoint '{name}': the solver at work is not in mbs.sys: its films take velocities as they are, which "
         "lets journals drift at coarse steps, and a step without a film ends the run where a smaller one might do. Use "
         "ehd.SolveDynamic, mbs.SolveDynamic without storeSolver=False, or mbs.sys['dynamicSolver'] = solver before a "
         "run of a solver of your own.",
-        stacklevel=2,
+        UserWarning,
     )
 
 
