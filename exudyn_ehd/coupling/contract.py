@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Protocol, SupportsInt, TypeAlias
 
 import exudyn as exu
@@ -61,6 +62,7 @@ class JointEvaluation(Protocol):
         """Return the film's memory after this state, for the case that it is accepted."""
 
 
+@dataclass(slots=True, eq=False)
 class Trial:
     """One state and the films' evaluation there; ``evaluation`` is None if the film was not evaluated.
 
@@ -68,29 +70,21 @@ class Trial:
     is the evaluation of films on end faces, whose motion is that of the bodies; None without them.
     """
 
-    __slots__ = ("begin", "bodies", "evaluation", "faces", "memory", "motion", "q", "q_t", "status", "step")
+    q: list[float]
+    q_t: list[float]
+    memory: History | None
+    step: float
+    begin: StepStart | None
+    bodies: np.ndarray
+    motion: np.ndarray
+    evaluation: JointEvaluation | None = None
+    faces: ThrustEvaluation | None = None
+    status: Status = Status.NO_FILM
 
-    def __init__(
-        self,
-        q: list[float],
-        q_t: list[float],
-        memory: History | None,
-        step: float,
-        begin: StepStart | None,
-        bodies: np.ndarray,
-        motion: np.ndarray,
-    ) -> None:
-        self.q = q
-        self.q_t = q_t
-        self.memory = memory
-        self.step = step
-        self.begin = begin
-        self.bodies = bodies
-        self.motion = motion
-        self.evaluation: JointEvaluation | None = None
-        self.faces: ThrustEvaluation | None = None
+    def __post_init__(self) -> None:
         # a sum is finite only if all its terms are
-        self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
+        if not math.isfinite(sum(self.q)):
+            self.status = Status.NOT_FINITE
 
     def take(self, evaluation: JointEvaluation, faces: ThrustEvaluation | None = None) -> None:
         """Store the evaluations of the journal's film and of the end faces."""

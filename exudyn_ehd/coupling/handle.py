@@ -12,9 +12,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.element.outputs import FilmDisplay, reader
+from exudyn_ehd.coupling.element.outputs import FilmDisplay
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record.history import JointHistory, Quantity
+from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -129,7 +129,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         """
         from exudyn_ehd.coupling.run.restart import place
 
-        self.element.require_items(self.mbs)
+        self.element.presence.require(self.mbs)
         return place(self.mbs, self.element, self.name, load, speed)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
@@ -163,40 +163,6 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         require_type("LubricatedJoint.audit: bearing", self.bearing, JournalBearing, hint="no other one is audited.")
 
         return audit_record(self.bearing, self._audited(), liner=liner, measure_time=measure_time)
-
-    def AddSensor(
-        self,
-        quantity: Quantity | exu.OutputVariableType | str,
-        *,
-        fileName: str = "",
-        name: str = "",
-        writeToFile: bool | None = None,
-    ) -> Index:
-        """Add an Exudyn sensor of one quantity, e.g. for ``mbs.PlotSensor`` and ``mbs.GetSensorStoredData``.
-
-        Parameters
-        ----------
-        quantity : Quantity, exudyn.OutputVariableType or str
-            A quantity of the film, by its name in `JointHistory` or as a `Quantity`: vectors are in the joint frame,
-            loads act on the journal. Or an output of Exudyn's joints, as of one with the markers [housing, journal],
-            film, end faces and constraint together: in the housing's joint frame ForceLocal, TorqueLocal,
-            DisplacementLocal, VelocityLocal, Rotation (Tait-Bryan angles), AngularVelocityLocal,
-            HomogeneousTransformationLocal; global Force, Torque, Displacement, AngularVelocity, and Position, Velocity,
-            HomogeneousTransformation of the housing's joint point. Forces and torques of these outputs act from the
-            journal on the housing, torques about the bearing's centre.
-        fileName : str, default ""
-            File to write to, as in Exudyn's sensors.
-        name : str, default ""
-            Name of the sensor; by default joint and quantity.
-        writeToFile : bool or None, default None
-            Write the file; None: if a file name is given. The sensor stores its values in any case.
-
-        Returns
-        -------
-        exudyn.SensorIndex
-        """
-        title, read = reader(self.element, self.constraintNumber, quantity)
-        return self._add_sensor(title, read, fileName, name, writeToFile)
 
     def film(self) -> FilmFields:
         """The film at the last accepted state: pressure, gap, fill and temperature on the grid.

@@ -16,7 +16,7 @@ from exudyn_ehd.coupling.api import equip, require_arguments
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.failures import Failures
-from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element, pressure_colours, reader, ring_triangles
+from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import place_joint
@@ -208,6 +208,7 @@ class LubricatedSphericalJoint(Joint):
     """
 
     bearing: SphericalBearing  # type: ignore[assignment]
+    _quantities = _QUANTITIES
 
     def __init__(self, mbs: exu.MainSystem, name: str, element: SphericalFilmElement, number: Index) -> None:
         self.mbs, self.name, self.element, self.objectNumber = mbs, name, element, number
@@ -257,34 +258,6 @@ class LubricatedSphericalJoint(Joint):
 
         record = self._audited()
         return audit_ball(self.bearing, record.motion, record)
-
-    def AddSensor(
-        self,
-        quantity: str | exu.OutputVariableType,
-        *,
-        fileName: str = "",
-        name: str = "",
-        writeToFile: bool | None = None,
-    ) -> Index:
-        """Add an Exudyn sensor of one quantity; it is stored, and written if it has a file's name.
-
-        Parameters
-        ----------
-        quantity : str or exudyn.OutputVariableType
-            ``eccentricity_ratio``, ``force`` (on the ball, socket's frame), ``minimum_gap``, ``peak_pressure``,
-            ``power_loss``, ``contact_load``; or what Exudyn's joints give, as for `LubricatedJoint.AddSensor`.
-        fileName, name : str, default ""
-            As for `LubricatedJoint.AddSensor`.
-        writeToFile : bool or None, default None
-            As for `LubricatedJoint.AddSensor`.
-
-        Returns
-        -------
-        exudyn.SensorIndex
-        """
-        where = "LubricatedSphericalJoint.AddSensor"
-        title, read = reader(self.element, None, quantity, _QUANTITIES, where)
-        return self._add_sensor(title, read, fileName, name, writeToFile)
 
 
 def CreateLubricatedSphericalJoint(

@@ -21,6 +21,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
+from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder, Record
 from exudyn_ehd.coupling.watch import poor_films, solver_state
@@ -48,6 +49,7 @@ class SteppedElement(Protocol):
         Carriers of the joint frame and of the journal's frame.
     failures : Failures
     outer : OuterLoad
+    presence : Presence
     is_massless : bool
         True if it has coordinates of its own without mass, which explicit solvers do not support.
     """
@@ -57,9 +59,7 @@ class SteppedElement(Protocol):
     failures: Failures
     outer: OuterLoad
     is_massless: bool
-
-    def require_items(self, mbs: exu.MainSystem) -> None:
-        """Refuse a system of which items were deleted that the joint was made on."""
+    presence: Presence
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element."""
@@ -204,7 +204,7 @@ class AcceptedSteps:
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
-        self.film.require_items(mbs)
+        self.film.presence.require(mbs)
         film, place, before = self.film, self.film.read(mbs, START_OF_STEP)[0], self._first
         # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
         # nothing has moved either run starts where the other ended

@@ -252,8 +252,8 @@ def reader(
     element: FilmElement,
     constraint: Index | None,
     quantity: Quantity | exu.OutputVariableType | str,
-    known: Sequence[str] = QUANTITIES,
-    where: str = "LubricatedJoint.AddSensor",
+    known: Sequence[str],
+    where: str,
 ) -> tuple[str, Callable[[exu.MainSystem], np.ndarray]]:
     """Name of a quantity, and the function that reads it at a system's current state; nan without a film.
 
@@ -315,7 +315,7 @@ def add_sensor(
         factors: list[float],
         configuration: exu.ConfigurationType,
     ) -> list[float]:
-        element.require_items(mbs)
+        element.presence.require(mbs)
         return read(mbs).tolist()
 
     return mbs.AddSensor(

@@ -200,7 +200,7 @@ class FilmElement:
 
     def _find_places(self, mbs: exu.MainSystem) -> np.ndarray:
         """Bind the sides to a system, once it is assembled; the places of the element's coordinates."""
-        self.require_items(mbs)
+        self.presence.require(mbs)
         bind(mbs, *self.sides)
         places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
         self._places = np.array(places, dtype=int)
@@ -209,10 +209,6 @@ class FilmElement:
     def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
         return q, q_t
-
-    def require_items(self, mbs: exu.MainSystem) -> None:
-        """Refuse a system of which items were deleted that the joint was made on."""
-        self.presence.require(mbs)
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
