@@ -7,10 +7,11 @@ import math
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide, slope_rotation
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, node_side
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
 from exudyn_ehd.status import SMALL, InputError
 
 SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
@@ -58,24 +59,12 @@ def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarr
     x : float
         Place along the element [m], from its first node.
     """
-    if length is None:
-        values, slopes = [1.0, 0.0], [0.0, 1.0]
-    else:
-        s = x / length
-        values = [
-            1.0 - 3.0 * s**2 + 2.0 * s**3,
-            length * (s - 2.0 * s**2 + s**3),
-            3.0 * s**2 - 2.0 * s**3,
-            length * (s**3 - s**2),
-        ]
-        slopes = [
-            (6.0 * s**2 - 6.0 * s) / length,
-            1.0 - 4.0 * s + 3.0 * s**2,
-            (6.0 * s - 6.0 * s**2) / length,
-            3.0 * s**2 - 2.0 * s,
-        ]
+    rows = np.eye(2)
+    if length is not None:
+        curve = CubicHermiteSpline([0.0, length], np.eye(4)[::2], np.eye(4)[1::2])
+        rows = np.array([curve(x), curve(x, 1)])
     part = np.eye(3)[:, :dimension]
-    return tuple(np.hstack([value * part for value in row]) for row in (values, slopes))  # type: ignore[return-value]
+    return np.kron(rows[0], part), np.kron(rows[1], part)
 
 
 def cable_side(
@@ -137,12 +126,6 @@ def _within(where: str, x: float, low: float, high: float) -> float:
             f"along its axis, got {x:.6g} m; give the element of the beam that carries the joint, or move the joint."
         )
     return min(max(x, low), high)
-
-
-def beam_ends(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[NodeSide, NodeSide]:
-    """The nodes' own frames of a geometrically exact beam element."""
-    first, second = (node_side(mbs, node) for node in nodes)
-    return first, second
 
 
 def beam_side(
