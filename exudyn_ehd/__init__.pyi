@@ -14,8 +14,10 @@ from exudyn_ehd.coupling.bush.object import FreeOuter as FreeOuter
 from exudyn_ehd.coupling.bush.object import Support as Support
 from exudyn_ehd.coupling.handle import LubricatedJoint as LubricatedJoint
 from exudyn_ehd.coupling.pads import CreateTiltingPadBearing as CreateTiltingPadBearing
+from exudyn_ehd.coupling.pads import CreateTiltingPadThrustBearing as CreateTiltingPadThrustBearing
 from exudyn_ehd.coupling.pads import TiltingPadHistory as TiltingPadHistory
 from exudyn_ehd.coupling.pads import TiltingPadJoint as TiltingPadJoint
+from exudyn_ehd.coupling.pads import TiltingPadThrustBearing as TiltingPadThrustBearing
 from exudyn_ehd.coupling.record.history import JointHistory as JointHistory
 from exudyn_ehd.coupling.record.history import Quantity as Quantity
 from exudyn_ehd.coupling.record.record import load_history as load_history
@@ -43,8 +45,6 @@ from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse as SolveDynamicSpa
 from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint as CreateLubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import LubricatedSphericalJoint as LubricatedSphericalJoint
 from exudyn_ehd.coupling.spherical import SphericalHistory as SphericalHistory
-from exudyn_ehd.coupling.thrust_pads import CreateTiltingPadThrustBearing as CreateTiltingPadThrustBearing
-from exudyn_ehd.coupling.thrust_pads import TiltingPadThrustBearing as TiltingPadThrustBearing
 from exudyn_ehd.coupling.watch.solver_state import StepControl as StepControl
 from exudyn_ehd.film.arcs import Arc as Arc
 from exudyn_ehd.film.arcs import Dam as Dam
