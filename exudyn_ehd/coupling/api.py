@@ -18,9 +18,8 @@ from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.joint_frame import check_start, hold, place_joint
+from exudyn_ehd.coupling.items.joint_frame import check_start, hold, move_to_start, place_joint
 from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore, hold_fe_journal
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.rows import Every, File, Period
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
@@ -356,9 +355,8 @@ def attach(
         if item.planar and abs(rotation[2, 2]) < 1.0 - 1e-12:
             raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
     sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
-    if not any(isinstance(side, MarkerSide) for side in sides):
-        yields = functools.partial(_yields, model, sides)
-        check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]), yields)
+    if move_to_start(mbs, (housing, journal), sides):
+        check_start(model.bearing, sides, functools.partial(_yields, model, sides))
     element = FilmElement(model, *sides, name)
     more: dict[str, object] = {}
     if isinstance(model, ElasticBearingModel):
@@ -371,9 +369,9 @@ def attach(
         add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
     held = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
     constraint = hold(mbs, name, (housing, journal), points, rotation, **held)
-    make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
-    register_joint(mbs, make)
-    return make(mbs)
+    numbers = number, constraint
+    make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=numbers)
+    return register_joint(mbs, make)
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:

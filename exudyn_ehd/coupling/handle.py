@@ -14,7 +14,6 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.element.outputs import FilmDisplay
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -297,6 +296,3 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
 
     def _film(self) -> FilmFields:
         return self.film()
-
-    def _history(self) -> JointHistory:
-        return self._recorded()

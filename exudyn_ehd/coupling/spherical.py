@@ -13,15 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.api import equip, require_arguments
-from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import Data, Index, JointModel, Side, Trial
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.joint_frame import place_joint
+from exudyn_ehd.coupling.items.joint_frame import move_to_start, place_joint
 from exudyn_ehd.coupling.kinematics.relative import BALL, ball_motion
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.history import PACK, JointHistory, make_row
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.record.rows import errors_of_ball_in
@@ -340,27 +338,16 @@ def CreateLubricatedSphericalJoint(
     name = name or f"lubricated ball joint {mbs.systemData.NumberOfObjects()}"
     sides = socket.side(points[0], rotation), ball.side(points[1], rotation)
     model = SphericalModel(bearing)
-    _check_start(mbs, model, (socket, ball), sides)
+    if move_to_start(mbs, (socket, ball), sides):
+        place = ball_motion(sides[0].frame, sides[1].frame)[:3]
+        if not model.smallest_gap(place) > 0.0:
+            raise InputError(
+                f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in "
+                f"the socket's frame, radial clearance {bearing.radial_clearance:g} m; check the initial positions, "
+                "and whether the clearance is radial."
+            )
     element = SphericalFilmElement(cast(JointModel, model), *sides, name)
     number = add_element(mbs, SphericalDisplay(element), show, color)
     make = functools.partial(LubricatedSphericalJoint, name=name, element=element, number=number)
-    register_joint(mbs, make)
-    equip(joint := make(mbs), stepControl)
+    equip(joint := register_joint(mbs, make), stepControl)
     return joint
-
-
-def _check_start(
-    mbs: exu.MainSystem, model: SphericalModel, items: tuple[Item, Item], sides: tuple[Side, Side]
-) -> None:
-    """Refuse an initial state in which the ball isn't inside the socket; markers tell after Assemble alone."""
-    if any(isinstance(side, MarkerSide) for side in sides):
-        return
-    for item, side in zip(items, sides, strict=True):
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
-    place = ball_motion(sides[0].frame, sides[1].frame)[:3]
-    if not model.smallest_gap(place) > 0.0:
-        raise InputError(
-            f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in the "
-            f"socket's frame, radial clearance {model.bearing.radial_clearance:g} m; check the initial positions, and "
-            "whether the clearance is radial."
-        )

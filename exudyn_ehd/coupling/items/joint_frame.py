@@ -28,6 +28,7 @@ from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
 from exudyn_ehd.coupling.kinematics.rigid_nodes import GROUND, PLACE, POINTS, SPIN, VELOCITY
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.status import InputError, require_vector
 
@@ -84,8 +85,7 @@ def joint_rotation(
             raise InputError(f"{_WHERE}.axis must not be zero, got {axis!r}.")
         z = to_global @ (z / np.linalg.norm(z))
     if matrix is not None:
-        rotation = _checked_rotation(matrix)
-        rotation = to_global @ rotation
+        rotation = to_global @ _checked_rotation(matrix)
         # 1e-9: an axis and a matrix typed or computed in double precision agree far better
         if given and np.linalg.norm(np.cross(z, rotation[:, 2])) + max(0.0, -z @ rotation[:, 2]) > 1e-9:
             raise InputError(
@@ -131,22 +131,23 @@ def joint_points(
     return point, point.copy()
 
 
-def check_start(
-    mbs: exu.MainSystem,
-    bearing: JournalBearing,
-    housing: tuple[Item, Side],
-    journal: tuple[Item, Side],
-    yields: Callable[[np.ndarray], bool],
-) -> None:
-    """Refuse an initial state in which the journal isn't inside the bore.
+def move_to_start(mbs: exu.MainSystem, items: tuple[Item, Item], sides: tuple[Side, Side]) -> bool:
+    """Bring both sides to the initial configuration; False with markers, which tell after Assemble alone."""
+    if any(isinstance(side, MarkerSide) for side in sides):
+        return False
+    for k, (item, side) in enumerate(zip(items, sides, strict=True)):
+        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
+            raise InputError(f"{_WHERE}.itemNumbers[{k}]: the initial coordinates of its node are not finite.")
+        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
+    return True
+
+
+def check_start(bearing: JournalBearing, sides: tuple[Side, Side], yields: Callable[[np.ndarray], bool]) -> None:
+    """Refuse an initial state, to which the sides were brought, in which the journal isn't inside the bore.
 
     ``yields`` says whether a bore that is not rigid makes room for a journal at a motion (10,).
     """
-    for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
-        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
-            raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
-    motion, bore, length = relative.motion_of(housing[1].frame, journal[1].frame), BoreGap(bearing), bearing.length
+    motion, bore, length = relative.motion_of(*(side.frame for side in sides)), BoreGap(bearing), bearing.length
     gap = bore.smallest(motion)
     tilt = math.hypot(motion[2], motion[3]) if math.isfinite(motion[2]) else math.inf
     if gap > 0.0 or (math.isfinite(gap) and yields(motion)):

@@ -34,7 +34,7 @@ from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, bind, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore, bore_faces, find_bore
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import SMALL, InputError
 
 
 def hold_fe_bore(
@@ -214,10 +214,6 @@ def _rotation(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.eye(3) + first * S + second * square, np.eye(3) + second * S + third * square
 
 
-# Displacement, m or rad, over which initial velocities are found as differences of positions.
-SMALL = 1e-6
-
-
 class Carrier:
     """Points in the frame of a side.
 
@@ -296,6 +292,7 @@ def initial_frame(mbs: exu.MainSystem, item: Item, side: Side) -> np.ndarray:
     frame[:, :3], frame[:, 3] = matrix @ side.rotation, place
     fastest = np.abs(rates).max(initial=0.0)
     if fastest > 0.0:
+        # m or rad over which velocities are found as differences of positions
         step = SMALL / fastest
         ends = [_marker_frame(mbs, side, reference + initial + s * step * rates, reference) for s in (1.0, -1.0)]
         frame[:, 4] = (ends[0][0] - ends[1][0]) / (2.0 * step)

@@ -159,17 +159,12 @@ class TreeSide(MarkerSide):
     the link have zero columns.
     """
 
-    def bind(self, mbs: exu.MainSystem) -> None:
-        """Find the number of coordinates."""
-        super().bind(mbs)
-        self._leading = ~np.tri(self.size, dtype=bool)  # [k, j]: j > k
-
     def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
-        Jp, Jr = self.jac[0].T, self.jac[1].T
+        Jp, Jr, behind = self.jac[0].T, self.jac[1].T, ~np.tri(self.size, dtype=bool)  # [k, j]: j > k
         turned = np.cross(Jr[None, :, :], np.stack([Jp, Jr])[:, :, None, :])
-        turned[0][self._leading] = np.cross(Jr[:, None, :], Jp[None, :, :])[self._leading]
-        turned[1][self._leading] = 0.0
+        turned[0][behind] = np.cross(Jr[:, None, :], Jp[None, :, :])[behind]
+        turned[1][behind] = 0.0
         # joints off the path move nothing, and nothing that they carry counts
         return turned.transpose(0, 3, 1, 2).reshape(6, self.size, self.size)
 

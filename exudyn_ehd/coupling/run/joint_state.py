@@ -113,12 +113,12 @@ class Joint:
         A new record does not reset wear, oil content and temperature of the film: see `forget`. Before Assemble the
         history is empty, and a warning says so; after it, before a run, it holds the initial state.
         """
-        history = self._recorded()
+        history = self._history()
         if not history.time.size and not np.isfinite(self.element.steps.began):
             warn_user(f"Joint '{self.name}': its history is empty before a run; run a solver first.", UserWarning)
         return history
 
-    def _recorded(self) -> JointHistory:
+    def _history(self) -> JointHistory:
         """Return the record like `history`, without a warning."""
         return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
 
@@ -148,7 +148,7 @@ class Joint:
 
     def _audited(self) -> JointHistory:
         """Return the record for an audit, which needs steps, and all of them."""
-        history, where = self._recorded(), f"{type(self).__name__}.audit: joint '{self.name}'"
+        history, where = self._history(), f"{type(self).__name__}.audit: joint '{self.name}'"
         if history.time.size == 0:
             raise InputError(f"{where} has no accepted steps yet; run a solver first.")
         if history.is_thinned:

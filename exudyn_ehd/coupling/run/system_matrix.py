@@ -30,8 +30,8 @@ _CONSTRAINTS = (
     "JointRollingDisc",
     "JointSpherical",
 )
-# Exudyn's steps of numerical differentiation: settings.timeIntegration.newton.numericalDifferentiation.
-RELATIVE_STEP, SMALLEST_COORDINATE = 1e-7, 1e-2
+# Exudyn's steps of numerical differentiation.
+_STEPS = exu.SimulationSettings().timeIntegration.newton.numericalDifferentiation
 
 
 class Factors(NamedTuple):
@@ -271,7 +271,7 @@ def _differences(mbs: exu.MainSystem, item: Index, places: np.ndarray, fK: float
         # a coordinate that an object has twice moves once
         for column, place in zip(*np.unique(places, return_index=True)[::-1], strict=True):
             moved = state.copy()
-            step = RELATIVE_STEP * (SMALLEST_COORDINATE + abs(state[place]))
+            step = _STEPS.relativeEpsilon * (_STEPS.minimumCoordinateSize + abs(state[place]))
             moved[place] += step
             write(moved.tolist())
             out[:, column] += factor / step * (np.array(mbs.ComputeItem(item, kind)) - still)

@@ -7,6 +7,7 @@ User options for the steps, and the rejection of steps too coarse for a film, th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,7 +15,6 @@ from functools import partial
 from typing import Any, TypeAlias, cast
 
 import exudyn as exu
-import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, Trial
@@ -219,32 +219,31 @@ class GapWatch:
     """
 
     def __init__(self, control: StepControl, bearing: JournalBearing) -> None:
-        self.share = control.largest_gap_change
-        self.bore = BoreGap(bearing)
+        self.share, self.bore, faces = control.largest_gap_change, BoreGap(bearing), getattr(bearing, "thrust", None)
+        # ranges of bore and end faces
         ranges = [SMALLEST_GAP_SHARE * bearing.radial_clearance]
         if bearing.contact is not None:
             ranges.append(bearing.contact.onset)
         if bearing.asperity is not None:
             ranges.append(ROUGHNESSES * bearing.asperity.composite_roughness)
-        self.range = max(ranges)
-        faces, self.range_of_faces = getattr(bearing, "thrust", None), 0.0
+        self.ranges = [max(ranges), 0.0]
         if faces is not None:
             least = SMALLEST_GAP_SHARE * faces.clearance
-            self.range_of_faces = least if faces.contact is None else faces.contact.onset
-        self.gap = self.film = self.face = np.nan
+            self.ranges[1] = least if faces.contact is None else faces.contact.onset
+        self.before = self.sizes = [math.nan, math.nan]
+
+    def _gaps(self, trial: Trial) -> list[float]:
+        """Smallest gaps of bore and end faces."""
+        return [self.bore.smallest(trial.motion), math.nan if trial.faces is None else trial.faces.minimum_gap]
 
     def start(self, trial: Trial, film: float | None) -> None:
         """Remember the gaps at the start of a step; ``film`` is that of a film in a worn or soft bore."""
-        self.gap = self.bore.smallest(trial.motion)
-        self.film = self.gap if film is None else film
-        self.face = np.nan if trial.faces is None else trial.faces.minimum_gap
+        bore, faces = self.before = self._gaps(trial)
+        self.sizes = [max(bore if film is None else film, self.ranges[0]), max(faces, self.ranges[1])]
 
     def rejects(self, trial: Trial, solver: Solver | None) -> bool:
         """Return whether the step to this state is too coarse and can be repeated."""
         # not true for a gap that is not finite: the film itself reports that
-        change = abs(self.bore.smallest(trial.motion) - self.gap)
-        too_far = change > self.share * max(self.film, self.range)
-        if trial.faces is not None:
-            change = abs(trial.faces.minimum_gap - self.face)
-            too_far = too_far or change > self.share * max(self.face, self.range_of_faces)
-        return bool(too_far and is_implicit(solver) and can_reject_step(solver))
+        changes = zip(self._gaps(trial), self.before, self.sizes, strict=True)
+        too_far = any(abs(now - before) > self.share * size for now, before, size in changes)
+        return too_far and is_implicit(solver) and can_reject_step(solver)
