@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import exudyn as exu
 import exudyn.graphics
@@ -207,21 +207,14 @@ _NO_ROW = np.full(WIDTH, np.nan)
 QUANTITIES = tuple(member.value for member in Quantity)
 
 
-class _SensedState(NamedTuple):
-    """Frames (3, 6) of housing and journal (see `kinematics`), local force and torque (3,) on the housing."""
+def _turn(h: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Rotation (3, 3) of the journal against the housing, for their frames (3, 6)."""
+    return h[:, :3].T @ j[:, :3]
 
-    housing: np.ndarray
-    journal: np.ndarray
-    force: np.ndarray
-    torque: np.ndarray
 
-    def local(self, column: int) -> np.ndarray:
-        """Difference of a column of the frames, in the housing's."""
-        return self.housing[:, :3].T @ (self.journal[:, column] - self.housing[:, column])
-
-    def turn(self) -> np.ndarray:
-        """Rotation (3, 3) of the journal against the housing."""
-        return self.housing[:, :3].T @ self.journal[:, :3]
+def _local(h: np.ndarray, j: np.ndarray, column: int) -> np.ndarray:
+    """Difference of a column of the frames, in the housing's."""
+    return h[:, :3].T @ (j[:, column] - h[:, column])
 
 
 def _transformation(rotation: np.ndarray, place: np.ndarray) -> np.ndarray:
@@ -229,23 +222,26 @@ def _transformation(rotation: np.ndarray, place: np.ndarray) -> np.ndarray:
     return np.vstack([np.column_stack([rotation, place]), [0.0, 0.0, 0.0, 1.0]]).ravel()
 
 
-OUTPUTS: dict[str, Callable[[_SensedState], np.ndarray]] = {
-    "Position": lambda s: s.housing[:, 3],
-    "Velocity": lambda s: s.housing[:, 4],
-    "HomogeneousTransformation": lambda s: _transformation(s.housing[:, :3], s.housing[:, 3]),
-    "HomogeneousTransformationLocal": lambda s: _transformation(s.turn(), s.local(3)),
-    "Displacement": lambda s: s.journal[:, 3] - s.housing[:, 3],
-    "DisplacementLocal": lambda s: s.local(3),
-    "VelocityLocal": lambda s: s.local(4),
-    "Rotation": lambda s: RotationMatrix2RotXYZ(s.turn()),
-    "AngularVelocity": lambda s: s.journal[:, 5] - s.housing[:, 5],
-    "AngularVelocityLocal": lambda s: s.local(5),
-    "Force": lambda s: s.housing[:, :3] @ s.force,
-    "ForceLocal": lambda s: s.force,
-    "Torque": lambda s: s.housing[:, :3] @ s.torque,
-    "TorqueLocal": lambda s: s.torque,
+OUTPUTS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]] = {
+    "Position": lambda h, j, load: h[:, 3],
+    "Velocity": lambda h, j, load: h[:, 4],
+    "HomogeneousTransformation": lambda h, j, load: _transformation(h[:, :3], h[:, 3]),
+    "HomogeneousTransformationLocal": lambda h, j, load: _transformation(_turn(h, j), _local(h, j, 3)),
+    "Displacement": lambda h, j, load: j[:, 3] - h[:, 3],
+    "DisplacementLocal": lambda h, j, load: _local(h, j, 3),
+    "VelocityLocal": lambda h, j, load: _local(h, j, 4),
+    "Rotation": lambda h, j, load: RotationMatrix2RotXYZ(_turn(h, j)),
+    "AngularVelocity": lambda h, j, load: j[:, 5] - h[:, 5],
+    "AngularVelocityLocal": lambda h, j, load: _local(h, j, 5),
+    "Force": lambda h, j, load: h[:, :3] @ load[:3],
+    "ForceLocal": lambda h, j, load: load[:3],
+    "Torque": lambda h, j, load: h[:, :3] @ load[3:],
+    "TorqueLocal": lambda h, j, load: load[3:],
 }
-"""Functions that read a sensor's value, by the names of Exudyn's OutputVariableType."""
+"""Functions that read a sensor's value, by the names of Exudyn's OutputVariableType.
+
+They take the frames (3, 6) of housing and journal, and the load (6,) on the housing in its frame.
+"""
 
 
 def reader(
@@ -265,7 +261,7 @@ def reader(
     asked = getattr(quantity, "name" if isinstance(quantity, exu.OutputVariableType) else "value", quantity)
     if isinstance(asked, str) and asked in OUTPUTS:
         output = OUTPUTS[asked]
-        return asked, lambda mbs: output(_state(mbs, element, constraint))
+        return asked, lambda mbs: output(*_sensed(mbs, element, constraint))
     if not isinstance(asked, str) or asked not in known:
         raise InputError(
             f"{where}: quantity must be a member of Quantity or its name, one of {', '.join(known)}, or an "
@@ -279,8 +275,10 @@ def reader(
     return asked, read
 
 
-def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) -> _SensedState:
-    """State of the joint; its sides are there once the film was asked."""
+def _sensed(
+    mbs: exu.MainSystem, element: FilmElement, constraint: Index | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Frames (3, 6) of housing and journal, which are there once the film was asked, and the load (6,)."""
     trial = element.current(mbs)[1]
     load = np.full(6, np.nan) if trial.status is not Status.CONVERGED else -trial.found.wrench
     if trial.faces is not None:
@@ -291,7 +289,7 @@ def _state(mbs: exu.MainSystem, element: FilmElement, constraint: Index | None) 
         multipliers = mbs.GetObjectOutput(constraint, output.TorqueLocal)
         load[3:] += [multipliers[1], -multipliers[0], 0.0]
     housing, journal = (side.frame.copy() for side in element.sides)
-    return _SensedState(housing, journal, load[:3], load[3:])
+    return housing, journal, load
 
 
 def add_sensor(

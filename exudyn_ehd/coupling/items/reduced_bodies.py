@@ -30,7 +30,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.relative import exponential_map, skew
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, bind, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore, bore_faces, find_bore
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
@@ -183,7 +183,7 @@ class FloatingBoreSide(Side):
             return
         floating.update(mbs, q[:n], q_t[:n], configuration)
         A, omega = floating.frame[:, :3], floating.frame[:, 5]
-        turned, rate = _rotation(self.turn @ q[n:])
+        turned, rate = exponential_map(self.turn @ q[n:])
         self.jac[:2, :, :n] = floating.jac[:2]
         self.jac[0, :, n:] = A @ self.shift
         self.jac[1, :, n:] = A @ (rate @ self.turn)
@@ -198,20 +198,6 @@ class FloatingBoreSide(Side):
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
         return floating_change(self.floating, q[: self.floating.size], self.arm, self.jac)
-
-
-def _rotation(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """exp(angle) (3, 3), and T (3, 3) with its angular velocity T d(angle)/dt, in the frame before the rotation."""
-    size = float(np.linalg.norm(angle))
-    S = skew(angle)
-    square = S @ S
-    if size < 1e-4:
-        # to 1e-16 and 1e-12: the next terms are of fourth order
-        first, second, third = 1.0 - size**2 / 6.0, 0.5 - size**2 / 24.0, 1.0 / 6.0 - size**2 / 120.0
-    else:
-        first, second = np.sin(size) / size, 2.0 * (np.sin(0.5 * size) / size) ** 2
-        third = (1.0 - first) / size**2
-    return np.eye(3) + first * S + second * square, np.eye(3) + second * S + third * square
 
 
 class Carrier:

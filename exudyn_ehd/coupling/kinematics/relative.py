@@ -56,6 +56,20 @@ def skews(vectors: np.ndarray) -> np.ndarray:
     return np.moveaxis(_CROSS @ vectors, -1, 0)
 
 
+def exponential_map(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """exp(angle) (3, 3), and T (3, 3) with its angular velocity T d(angle)/dt, in the frame before the rotation."""
+    size = float(np.linalg.norm(angle))
+    S = skew(angle)
+    square = S @ S
+    if size < 1e-4:
+        # to 1e-16 and 1e-12: the next terms are of fourth order
+        first, second, third = 1.0 - size**2 / 6.0, 0.5 - size**2 / 24.0, 1.0 / 6.0 - size**2 / 120.0
+    else:
+        first, second = math.sin(size) / size, 2.0 * (math.sin(0.5 * size) / size) ** 2
+        third = (1.0 - first) / size**2
+    return np.eye(3) + first * S + second * square, np.eye(3) + second * S + third * square
+
+
 @njit(cache=True)
 def _minus(a, b):
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]

@@ -35,7 +35,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.relative import exponential_map, skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, node_side
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
 from exudyn_ehd.status import FilmError, InputError
@@ -92,7 +92,8 @@ class TurningNode:
         theta = self.side.reference[3:] + q[self.places[3:]]
         change = self.rates(q, x[3:])[1]
         if self.side.kind == rigid_nodes.ROTATION_VECTOR:
-            change = _rotation_vector_rates(theta, change)
+            # the angular velocity is that in the turned frame
+            change = np.linalg.solve(exponential_map(theta)[1].T, change)
         theta = theta + change
         if self.side.kind == rigid_nodes.EULER_PARAMETERS:
             theta /= np.linalg.norm(theta)
@@ -268,8 +269,7 @@ class SpinningSystem:
         q = self.q.copy()
         for _, node, axis in self.spinning:
             start = node.turn(self.q)
-            a = skew(start @ axis)
-            goal = (np.eye(3) + np.sin(angle) * a + (1.0 - np.cos(angle)) * a @ a) @ start
+            goal = exponential_map(angle * (start @ axis))[0] @ start
             for _ in range(50):
                 rest = goal @ node.turn(q).T
                 x = 0.5 * np.array([0, 0, 0, rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]])
@@ -289,16 +289,6 @@ class SpinningSystem:
         self._solver.ComputeMassMatrix(self.mbs)
         n = self.q.size
         return np.array(self._solver.GetSystemMassMatrix())[:n, :n]
-
-
-def _rotation_vector_rates(theta: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """Rates (3,) of a rotation vector theta (3,) for an angular velocity in the turned frame.
-
-    Inverse of ``omega = (I - (1 - cos t) / t^2 [theta] + (t - sin t) / t^3 [theta]^2) theta_t`` with t = |theta|.
-    """
-    t, a = float(np.linalg.norm(theta)), skew(theta)
-    factor = 1.0 / 12.0 if t < 1e-3 else (1.0 - 0.5 * t / np.tan(0.5 * t)) / t**2
-    return omega + 0.5 * a @ omega + factor * a @ a @ omega
 
 
 # Vibrations of films with a memory, as shares of their size: the change that ends a search, the distance up to which
