@@ -19,7 +19,7 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, hold, move_to_start, place_joint
-from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore, hold_fe_journal
+from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_surfaces
 from exudyn_ehd.coupling.record.rows import Every, File, Period
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
@@ -236,7 +236,7 @@ def CreateLubricatedJoint(
     housing, journal, points, rotation = place_joint(
         _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame
     )
-    bearing, housing, journal = _on_its_bodies(mbs, bearing, (housing, journal), points, rotation)
+    bearing, (housing, journal) = hold_fe_surfaces(mbs, bearing, (housing, journal), points, rotation)
     joint = attach(
         mbs,
         _model_of(bearing, housing, journal),
@@ -292,22 +292,6 @@ def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:
     if isinstance(bearing, JournalBearing) and any(item.node is not None for item in items):
         compile_together(bearing, "bodies")
     return cast(JointModel, build_model(bearing))
-
-
-def _on_its_bodies(
-    mbs: exu.MainSystem,
-    bearing: JournalBearing,
-    items: tuple[Item, Item],
-    points: tuple[np.ndarray, np.ndarray],
-    rotation: np.ndarray,
-) -> tuple[JournalBearing, Item, Item]:
-    """Return the bearing with the bore and journal of the finite-element bodies under it, and both items."""
-    housing, journal = items
-    if housing.body is not None and getattr(bearing, "bush", None) is not None:
-        bearing, housing = hold_fe_bore(mbs, bearing, housing, points[0], rotation)
-    if journal.body is not None and getattr(bearing, "journal", None) is not None:
-        bearing, journal = hold_fe_journal(mbs, bearing, journal, points[1], rotation)
-    return bearing, housing, journal
 
 
 def _items_of_older_calls(

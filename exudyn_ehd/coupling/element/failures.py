@@ -16,8 +16,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
-from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
+from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
+from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.joint.balance.limits import (
     DEEPEST,

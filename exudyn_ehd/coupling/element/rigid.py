@@ -25,9 +25,9 @@ from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
+from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of, eccentricity_ratios
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
-from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
+from exudyn_ehd.coupling.record.history import make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation

@@ -26,7 +26,7 @@ from exudyn_ehd.coupling.contract import INITIAL, Index, Side
 from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.relative import BoreGap
+from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
 from exudyn_ehd.coupling.kinematics.rigid_nodes import GROUND, PLACE, POINTS, SPIN, VELOCITY
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.solid.mesh import frame_of
@@ -158,12 +158,12 @@ def check_start(bearing: JournalBearing, sides: tuple[Side, Side], yields: Calla
             f"tilt {tilt:.6g} rad, at most {2.0 * bore.widest / length:.6g} rad fit (2 c / L); check "
             "the initial rotations."
         )
-    half = 0.5 * length
-    ends = [math.hypot(motion[0] + s * half * motion[2], motion[1] + s * half * motion[3]) for s in (-1.0, 1.0)]
+    c = bearing.radial_clearance
+    ratios = eccentricity_ratios(motion, c, length)
     raise InputError(
         f"{_WHERE}: the journal is outside the bore in the initial configuration: eccentricity "
-        f"{math.hypot(motion[0], motion[1]):.6g} m in the mid-plane, {max(ends):.6g} m at an end, radial clearance "
-        f"{bearing.radial_clearance:.6g} m, smallest gap {gap:.6g} m; check the initial positions, and whether the "
+        f"{c * ratios[0]:.6g} m in the mid-plane, {c * ratios[1]:.6g} m at an end, radial clearance "
+        f"{c:.6g} m, smallest gap {gap:.6g} m; check the initial positions, and whether the "
         "clearance is radial."
     )
 

@@ -37,58 +37,54 @@ from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 from exudyn_ehd.status import SMALL, InputError
 
 
-def hold_fe_bore(
-    mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
-) -> tuple[JournalBearing, Item]:
-    """Bearing with the bore that was found in the housing, and the housing that moves with it.
+def hold_fe_surfaces(
+    mbs: exu.MainSystem,
+    bearing: JournalBearing,
+    items: tuple[Item, Item],
+    points: tuple[np.ndarray, np.ndarray],
+    rotation: np.ndarray,
+) -> tuple[JournalBearing, tuple[Item, Item]]:
+    """Bearing with the bore and the journal of the reduced bodies under it, and both items, which move with them.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
     bearing : JournalBearing
-        With an `FEBore` as bush.
-    housing : Item
-        An ObjectFFRFreducedOrder.
-    point, rotation : ndarray (3,), (3, 3)
-        Joint point [m] and joint frame in the reference configuration, global.
+        With an `FEBore` as bush for an ObjectFFRFreducedOrder as housing, an `FEJournal` for one as journal.
+    items : pair of Item
+        Housing and journal.
+    points, rotation : pair of ndarray (3,), ndarray (3, 3)
+        Joint points [m] and joint frame in the reference configuration, global.
 
     Raises
     ------
     InputError
-        If the housing is something else, or has no such bore.
+        If a body has no such surface, or the bearing none for it.
     """
-    bush = bearing.bush
-    if not isinstance(bush, FEBore):
-        raise InputError(
-            "CreateLubricatedJoint.bearing: the bore of an ObjectFFRFreducedOrder deflects by its own modes with "
-            f"bush=FEBore(fem=...), got {type(bush).__name__}(...); for another bush give MarkerSuperElementRigid on "
-            "the body as itemNumbers[0]."
-        )
-    radius = bearing.journal_radius + bearing.radial_clearance
-    reduced, housing = _find_surface(mbs, bush, "bush", housing, (radius, bearing.length), (point, rotation))
-    return dataclasses.replace(bearing, bush=reduced), housing
-
-
-def hold_fe_journal(
-    mbs: exu.MainSystem, bearing: JournalBearing, journal: Item, point: np.ndarray, rotation: np.ndarray
-) -> tuple[JournalBearing, Item]:
-    """Return the bearing with the flexible journal of a body, and the journal's item, as `hold_fe_bore` does."""
-    pin = bearing.journal
-    if not isinstance(pin, FEJournal):
-        raise InputError(
-            "CreateLubricatedJoint.bearing: the journal of an ObjectFFRFreducedOrder deflects by its own modes with "
-            f"journal=FEJournal(fem=...), got {type(pin).__name__}(...); for another one give MarkerSuperElementRigid "
-            "on the body as itemNumbers[1]."
-        )
-    if bearing.thrust is not None:
-        raise InputError(
-            "JournalBearing.thrust=ThrustFaces(...) does not go with journal=FEJournal(...): its collars would move "
-            "with the mean of the journal's surface; give another joint the faces, or leave them out."
-        )
-    size = bearing.journal_radius, bearing.length
-    reduced, held = _find_surface(mbs, pin, "journal", journal, size, (point, rotation))
-    mass = _centrifugal_mass(mbs, pin, journal, point, rotation)
-    return dataclasses.replace(bearing, journal=TurningJournal(surface=reduced, mass=mass)), held
+    held = list(items)
+    for k, (option, kind, name) in enumerate((("bush", FEBore, "bore"), ("journal", FEJournal, "journal"))):
+        surface = getattr(bearing, option, None)
+        if items[k].body is None or surface is None:
+            continue
+        if not isinstance(surface, kind):
+            raise InputError(
+                f"CreateLubricatedJoint.bearing: the {name} of an ObjectFFRFreducedOrder deflects by its own modes "
+                f"with {option}={kind.__name__}(fem=...), got {type(surface).__name__}(...); for another {option} give "
+                f"MarkerSuperElementRigid on the body as itemNumbers[{k}]."
+            )
+        if isinstance(surface, FEJournal) and bearing.thrust is not None:
+            raise InputError(
+                "JournalBearing.thrust=ThrustFaces(...) does not go with journal=FEJournal(...): its collars would "
+                "move with the mean of the journal's surface; give another joint the faces, or leave them out."
+            )
+        size = bearing.journal_radius + (1 - k) * bearing.radial_clearance, bearing.length
+        found, held[k] = _find_surface(mbs, surface, option, items[k], size, (points[k], rotation))
+        if isinstance(surface, FEJournal):
+            mass = _centrifugal_mass(mbs, surface, items[k], points[k], rotation)
+            bearing = dataclasses.replace(bearing, journal=TurningJournal(surface=found, mass=mass))
+        else:
+            bearing = dataclasses.replace(bearing, bush=found)
+    return bearing, (held[0], held[1])
 
 
 def _centrifugal_mass(

@@ -303,6 +303,14 @@ def levers_of(bearing: JournalBearing) -> np.ndarray:
     return np.array(getattr(bearing, "levers", (1.0, 1.0, half, half)))
 
 
+def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
+    """Eccentricity ratio in the mid-plane and the largest along the length (which is at an end: it is convex)."""
+    x, y, bx, by = motion[:4].tolist()
+    half = 0.5 * length
+    ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
+    return (x * x + y * y) ** 0.5 / radial_clearance, ends**0.5 / radial_clearance
+
+
 # Points around and along a bore that is no circular cylinder.
 AROUND, ALONG = 180, 9
 
@@ -350,10 +358,7 @@ class BoreGap:
         """Smallest gap [m] at a motion (10,) of the journal's axis; negative where the surfaces overlap."""
         if self.depth.size:
             return float(self.values(motion).min())
-        x, y, bx, by = motion[:4].tolist()
-        half = self.half
-        ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
-        return self.clearance - math.sqrt(ends)
+        return self.clearance * (1.0 - eccentricity_ratios(motion, self.clearance, 2.0 * self.half)[1])
 
     def values(self, motion: np.ndarray) -> np.ndarray:
         """Gaps [m] all over a bore with profiles."""

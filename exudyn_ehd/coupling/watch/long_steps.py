@@ -51,8 +51,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Side
-from exudyn_ehd.coupling.kinematics.relative import levers_of
-from exudyn_ehd.coupling.record.history import eccentricity_ratios
+from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios, levers_of
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.audit.ringing import FADING
 from exudyn_ehd.status import SMALL, RingingWarning, warn_user
