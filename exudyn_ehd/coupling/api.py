@@ -353,8 +353,7 @@ def attach(
         add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
     held = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
     constraint = hold(mbs, name, (housing, journal), points, rotation, **held)
-    numbers = number, constraint
-    make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=numbers)
+    make = functools.partial(LubricatedJoint, element=element, numbers=(number, constraint), display=display)
     return register_joint(mbs, make)
 
 

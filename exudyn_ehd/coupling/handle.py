@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import pathlib
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
@@ -17,18 +16,17 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.coupling.run.restart import place
 from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.audit.audit import Audit, audit_record
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 from exudyn_ehd.pictures.mixins import FilmPictures, HistoryPictures
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type
-
-if TYPE_CHECKING:
-    from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-    from exudyn_ehd.joint.audit.audit import Audit
-    from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 
 
 class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
@@ -68,17 +66,12 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     def __init__(
         self,
         mbs: exu.MainSystem,
-        name: str,
         element: FilmElement,
-        display: FilmDisplay,
         numbers: tuple[Index, Index | None],
+        display: FilmDisplay,
     ) -> None:
-        self.mbs = mbs
-        self.name = name
-        self.element: FilmElement = element
+        super().__init__(mbs, element, numbers)
         self.display = display
-        self.bearing = element.model.bearing
-        self.objectNumber, self.constraintNumber = numbers
         bush = getattr(element, "bush", None)
         # the element's own does not keep the system alive
         self.bush = None if bush is None else dataclasses.replace(bush, mbs=mbs)
@@ -126,8 +119,6 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         FilmError
             If no equilibrium was found.
         """
-        from exudyn_ehd.coupling.run.restart import place
-
         self.element.presence.require(self.mbs)
         return place(self.mbs, self.element, self.name, load, speed)
 
@@ -156,9 +147,6 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         InputError
             If nothing was recorded yet, or if the record is thinned (`Every`, `Period`).
         """
-        # imported here: runs need none of it
-        from exudyn_ehd.joint.audit.audit import audit_record
-
         require_type("LubricatedJoint.audit: bearing", self.bearing, JournalBearing, hint="no other one is audited.")
 
         return audit_record(self.bearing, self._audited(), liner=liner, measure_time=measure_time)

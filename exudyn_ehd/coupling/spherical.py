@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import exudyn as exu
 import exudyn.graphics
@@ -26,16 +26,14 @@ from exudyn_ehd.coupling.record.rows import errors_of_ball_in
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint
 from exudyn_ehd.coupling.watch.solver_state import StepControl
+from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
-from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
+from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, steady_spherical
 from exudyn_ehd.joint.step_error import NO_BALL_ERROR, pack_of_ball
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type, require_vector
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.audit.audit import Audit
 
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
@@ -208,10 +206,6 @@ class LubricatedSphericalJoint(Joint):
     bearing: SphericalBearing  # type: ignore[assignment]
     _quantities = _QUANTITIES
 
-    def __init__(self, mbs: exu.MainSystem, name: str, element: SphericalFilmElement, number: Index) -> None:
-        self.mbs, self.name, self.element, self.objectNumber = mbs, name, element, number
-        self.bearing = cast(SphericalBearing, element.model.bearing)
-
     def __repr__(self) -> str:
         ball = f"ball of {shown('length', 2.0 * self.bearing.ball_radius)}"
         clearance = f"clearance {shown('length', self.bearing.radial_clearance)}"
@@ -251,9 +245,6 @@ class LubricatedSphericalJoint(Joint):
         InputError
             If nothing was recorded yet.
         """
-        # imported here: runs need none of it
-        from exudyn_ehd.joint.spherical.steady import audit_ball
-
         record = self._audited()
         return audit_ball(self.bearing, record.motion, record)
 
@@ -348,6 +339,6 @@ def CreateLubricatedSphericalJoint(
             )
     element = SphericalFilmElement(cast(JointModel, model), *sides, name)
     number = add_element(mbs, SphericalDisplay(element), show, color)
-    make = functools.partial(LubricatedSphericalJoint, name=name, element=element, number=number)
+    make = functools.partial(LubricatedSphericalJoint, element=element, numbers=(number, None))
     equip(joint := register_joint(mbs, make), stepControl)
     return joint

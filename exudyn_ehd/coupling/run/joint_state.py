@@ -88,13 +88,13 @@ class Joint:
         The film between the two frames.
     """
 
-    name: str
-    mbs: exu.MainSystem
-    bearing: JournalBearing
-    objectNumber: Index
-    constraintNumber: Index | None = None
-    element: FilmElement
     _quantities = QUANTITIES
+
+    def __init__(self, mbs: exu.MainSystem, element: FilmElement, numbers: tuple[Index, Index | None]) -> None:
+        self.mbs, self.name = mbs, element.failures.name
+        self.element: FilmElement = element
+        self.bearing: JournalBearing = element.model.bearing
+        self.objectNumber, self.constraintNumber = numbers
 
     @property
     def history(self) -> JointHistory:
