@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.api import equip, require_arguments
-from exudyn_ehd.coupling.contract import Data, Index, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import Data, Index, JointModel, Trial
 from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element, pressure_colours, ring_triangles
@@ -21,8 +21,6 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.joint_frame import move_to_start, place_joint
 from exudyn_ehd.coupling.kinematics.relative import BALL, ball_motion
 from exudyn_ehd.coupling.record.history import PACK, JointHistory, make_row
-from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.record.rows import errors_of_ball_in
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint
 from exudyn_ehd.coupling.watch.solver_state import StepControl
@@ -31,7 +29,7 @@ from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, steady_spherical
-from exudyn_ehd.joint.step_error import NO_BALL_ERROR, pack_of_ball
+from exudyn_ehd.joint.step_error import pack_of_ball
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type, require_vector
 
@@ -71,13 +69,7 @@ class SphericalFailures(Failures):
 class SphericalFilmElement(FilmElement):
     """Film between the sides of a socket and of a ball; parameters as for `FilmElement`."""
 
-    kinematics = BALL
-
-    def __init__(self, model: JointModel, socket: Side, ball: Side, name: str) -> None:
-        super().__init__(model, socket, ball, name)
-        self.failures = SphericalFailures(name, model.bearing)
-        self.steps.record = Record(model.bearing, errors_of_ball_in, NO_BALL_ERROR)
-        self.outer = outer_load.OuterLoad(self.sides, outer_load.BALL)
+    kinematics, blocks, messages = BALL, outer_load.BALL, SphericalFailures
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film; its motion is place, velocity, angular velocity and 0."""

@@ -52,7 +52,7 @@ from exudyn_ehd.status import SMALL
 UNKNOWN = np.full(LOADS, np.nan)
 _LoadState: TypeAlias = tuple[float, np.ndarray, np.ndarray]
 # Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
-JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
+JOURNAL, BALL = [[0, 1], [3, 4]], [[0, 1, 2]]
 # Samples within a step; a pulse is seen if it is longer than a step over their number. Each costs a call of every load.
 SAMPLES = 16
 # Halvings of the part with the largest change: with 6 a jump is found to 1 / (16 * 2^6) of the step.

@@ -68,24 +68,24 @@ class FilmElement:
         Number of film evaluations.
     last : Trial or None
         The state evaluated last, if it is still known.
-    kinematics : Kinematics
-        Of the motion that the film knows.
+    kinematics, blocks, messages
+        Kinematics of the motion that the film knows, blocks of its `OuterLoad`, class of its failures.
     """
 
-    kinematics = relative.JOURNAL
+    kinematics, blocks, messages = relative.JOURNAL, outer_load.JOURNAL, Failures
 
     def __init__(
         self, model: JointModel, housing: Side, journal: Side, name: str, bore_nodes: Sequence[Index] = ()
     ) -> None:
         self.model = model
         self.sides, self.bore_nodes = (housing, journal), bore_nodes
-        self.failures = Failures(name, model.bearing)
+        self.failures = self.messages(name, model.bearing)
         self.is_massless = False
         self.evaluations = 0
         self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self.steps = AcceptedSteps(self)
-        self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
+        self.outer = OuterLoad(self.sides, self.blocks)
         self.presence: Presence
         self.faces: ThrustModel | None = None
         self.offset = 0.0

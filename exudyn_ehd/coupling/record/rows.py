@@ -24,9 +24,9 @@ import json
 import os
 import pathlib
 import secrets
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
-from typing import Any, BinaryIO, ClassVar, NamedTuple, TypeAlias
+from typing import Any, BinaryIO, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -47,11 +47,9 @@ from exudyn_ehd.coupling.record.history import (
 )
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind, errors_of_ball
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, NO_BALL_ERROR, NO_ERROR, errors_behind, errors_of_ball
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, RunError, require_integer, require_type
 from exudyn_ehd.storage import require_path
-
-Errors: TypeAlias = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -114,14 +112,11 @@ class Thinner:
     ----------
     rule : Every, Period or None
         None keeps all rows.
-    errors : function
-        Errors (n,) of the steps of rows (n, WIDTH) and the error of the pose behind them, for that before them.
-    none : array
-        Error of the pose at the beginning of a record.
+    bearing : JournalBearing or SphericalBearing
     """
 
-    def __init__(self, rule: Every | Period | None, errors: Errors, none: np.ndarray) -> None:
-        self.rule, self._errors, self._none = rule, errors, none
+    def __init__(self, rule: Every | Period | None, bearing: JournalBearing) -> None:
+        self.rule, self._bearing = rule, bearing
         self.begin_anew()
 
     def begin_anew(self, last: np.ndarray | None = None) -> None:
@@ -129,7 +124,8 @@ class Thinner:
         self.count = 0 if last is None else int(last[STEP_COUNT])
         self._known_error = np.nan if last is None else float(last[STEP_ERROR])
         # what is kept so far of the span under way; the last rows as they came, and the pose's error there
-        self._open, self._lead, self._error = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH)), self._none
+        self._open, self._lead = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH))
+        self._error = NO_BALL_ERROR if isinstance(self._bearing, SphericalBearing) else NO_ERROR
 
     def take(self, rows: np.ndarray) -> np.ndarray:
         """Add rows (n, WIDTH); returns those (k, WIDTH + 2) of the spans that have ended."""
@@ -153,7 +149,7 @@ class Thinner:
         whole = np.concatenate([self._lead, rows])
         last = np.maximum.accumulate(np.where(np.isfinite(whole[:, FIRST_BLOCK]), np.arange(len(whole)), -1))
         whole[last >= 0, TANGENT] = whole[last[last >= 0], TANGENT]
-        errors, error = self._errors(whole, self._error)
+        errors, error = errors_of(self._bearing, whole, self._error)
         errors = errors[len(self._lead) :]
         errors[0] = np.fmax(errors[0], self._known_error)
         count = self.count + np.arange(len(rows))
@@ -179,21 +175,20 @@ class Thinner:
 
 
 def errors_of(bearing: JournalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Errors (n,) of the steps of a journal's rows (n, WIDTH), that of the pose behind them; see `errors_behind`."""
-    motion, peak, deflection = rows[:, COLUMNS["motion"]], rows[:, COLUMNS["peak_angle"]], None
+    """Errors (n,) of the steps of rows (n, WIDTH) of a journal or a ball, and that of the pose behind them.
+
+    See `errors_behind` and `errors_of_ball`.
+    """
+    time, motion, gap, load = rows[:, TIME], rows[:, COLUMNS["motion"]], rows[:, MINIMUM_GAP], rows[:, LOAD]
+    if isinstance(bearing, SphericalBearing):
+        place, velocity, _ = np.split(motion[:, :9], 3, axis=1)
+        return errors_of_ball(before, time, place, velocity, rows[:, PACK], gap, bearing.radial_clearance, load)
+    peak, deflection = rows[:, COLUMNS["peak_angle"]], None
     if isinstance(getattr(bearing, "bush", None), ElasticLiner):
         size = rows[:, COLUMNS["bore_displacement"], None]
         deflection = size * np.stack((np.cos(peak), np.sin(peak)), axis=1)
-    blocks, gap = rows[:, TANGENT].reshape(-1, *BLOCKS.shape), rows[:, MINIMUM_GAP]
-    dimensions = bearing.radial_clearance, bearing.length
-    return errors_behind(before, rows[:, TIME], motion, blocks, gap, *dimensions, deflection, rows[:, LOAD])
-
-
-def errors_of_ball_in(bearing: SphericalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Errors (n,) of the steps of a ball's rows (n, WIDTH), and that of its place behind them; see `errors_of_ball`."""
-    place, velocity, _ = np.split(rows[:, COLUMNS["motion"]][:, :9], 3, axis=1)
-    known, gap, load = rows[:, PACK], rows[:, MINIMUM_GAP], rows[:, LOAD]
-    return errors_of_ball(before, rows[:, TIME], place, velocity, known, gap, bearing.radial_clearance, load)
+    blocks, dimensions = rows[:, TANGENT].reshape(-1, *BLOCKS.shape), (bearing.radial_clearance, bearing.length)
+    return errors_behind(before, time, motion, blocks, gap, *dimensions, deflection, load)
 
 
 HEAD = 512
