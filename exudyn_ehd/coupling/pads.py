@@ -345,10 +345,6 @@ def CreateTiltingPadBearing(
     return TiltingPadJoint(mbs, name, bearing, pads, numbers, constraint, housing.side(points[0], rotation))
 
 
-# Thickness of a pad as drawn over the width of the pads, and points along its edges.
-THICKNESS, POINTS_DRAWN = 0.25, 12
-
-
 @dataclasses.dataclass(frozen=True, eq=False)
 class NoFilm:
     """A joint without a film around its journal: the model, which is its own evaluation.
@@ -533,10 +529,10 @@ def CreateTiltingPadThrustBearing(
 
 
 def _shape(bearing: TiltingThrustPads) -> Data:
-    """Graphics of a pad in the frame of its body."""
+    """Graphics of a pad in the frame of its body, a quarter of its width thick, its edges of 12 points."""
     inner, outer, first = bearing.inner_radius, bearing.outer_radius, -bearing.pivot_angle
-    radii, height = np.repeat([inner, outer], POINTS_DRAWN), THICKNESS * (outer - inner)
-    theta = np.concatenate([along := np.linspace(first, first + bearing.extent, POINTS_DRAWN), along[::-1]])
+    radii, height = np.repeat([inner, outer], 12), 0.25 * (outer - inner)
+    theta = np.concatenate([along := np.linspace(first, first + bearing.extent, 12), along[::-1]])
     corners = np.column_stack([radii * np.cos(theta) - bearing.pivot_radius, radii * np.sin(theta)])
     sides = [[k, (k + 1) % len(corners)] for k in range(len(corners))]
     return cast(Data, exudyn.graphics.SolidExtrusion(corners.tolist(), sides, height, pOff=[0.0, 0.0, -height]))

@@ -41,8 +41,6 @@ from exudyn_ehd.status import InputError, Status
 _VISUALIZATION = exu.ConfigurationType.Visualization
 # Colour of the housing's ring or the bush, through which the film is seen.
 GREY = [0.72, 0.74, 0.78, 0.2]
-# Thickness of the housing's ring, and the clearance as drawn: shares of the journal's radius.
-WALL, CLEARANCE = 0.2, 0.1
 
 
 class FilmDisplay:
@@ -64,7 +62,7 @@ class FilmDisplay:
     def __init__(self, element: FilmElement) -> None:
         self.element = element
         self.wanted = False
-        self.clearance = CLEARANCE
+        self.clearance = 0.1
         self.pressure: np.ndarray | None = None
         self.gap: np.ndarray | None = None
         self.largest = 0.0
@@ -126,7 +124,8 @@ class FilmDisplay:
             surface(np.column_stack([journal[:, 0], bore[:, 0]]), z[[0, 0]], ends)
             surface(np.column_stack([bore[:, -1], journal[:, -1]]), z[[-1, -1]], ends)
         if self.bush is None:
-            wall = np.full(len(bore), bore.max() + WALL * model.bearing.journal_radius)
+            # the housing's ring is a fifth of the journal's radius thick
+            wall = np.full(len(bore), bore.max() + 0.2 * model.bearing.journal_radius)
             surface(np.column_stack([bore[:, 0], wall, wall, bore[:, -1]]), z[[0, 0, -1, -1]], GREY)
         else:
             mesh = model.bore.modes.mesh

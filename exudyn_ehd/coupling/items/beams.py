@@ -18,9 +18,8 @@ SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
 """Node types that hold a position and a slope, and their dimension."""
 CABLES = {"ANCFCable2D": 2, "ANCFCable": 3}
 EXACT_BEAMS = ("BeamGeometricallyExact2D", "BeamGeometricallyExact3D", "BeamGeometricallyExact")
-# |cos| between cable and joint axis up to which the axis counts as across the cable, and from which as along it (8
-# degrees)
-ACROSS, ALONG = math.sin(math.radians(8.0)), math.cos(math.radians(8.0))
+# Angle, degrees, up to which the joint axis counts as along a cable, and within which of a right angle as across it.
+ALIGNED = 8.0
 
 
 def node_coordinates(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -92,14 +91,14 @@ def cable_side(
     if dimension == 2:
         director = np.array([0.0, 0.0, 1.0])
     else:
-        cosine = abs(float(t @ rotation[:, 2]))
-        if ACROSS < cosine < ALONG:
+        angle = math.degrees(math.acos(min(abs(float(t @ rotation[:, 2])), 1.0)))
+        if ALIGNED < angle < 90.0 - ALIGNED:
             raise InputError(
                 f"CreateLubricatedJoint.axis must be along or across the cable of {where}, got an angle of "
-                f"{math.degrees(math.acos(cosine)):.3g} degrees: a cable has no orientation about its axis; use a beam "
-                "element or a rigid body at its end."
+                f"{angle:.3g} degrees: a cable has no orientation about its axis; use a beam element or a rigid body "
+                "at its end."
             )
-        director = rotation[:, 2] if cosine <= ACROSS else rotation[:, 0]
+        director = rotation[:, 0] if angle <= ALIGNED else rotation[:, 2]
         director = director - t * (t @ director)
         director /= np.linalg.norm(director)
     return SlopeSide(list(nodes), reference, place, slope, director, point, rotation)

@@ -193,9 +193,8 @@ def errors_of(bearing: JournalBearing, rows: np.ndarray, before: np.ndarray) -> 
 
 HEAD = 512
 FORMAT = "exudyn_ehd rows 5"
-# Numbers in a row, and bytes.
-WIDE = WIDTH + 2
-BYTES = 8 * WIDE
+# Bytes of a row.
+BYTES = 8 * (WIDTH + 2)
 NAME = "{name}"
 
 
@@ -273,7 +272,7 @@ class RowsOnDisk(NamedTuple):
         return new
 
     def add(self, rows: np.ndarray, number: int) -> RowsOnDisk:
-        """Write rows (n, WIDE) behind the others; those after the first ``number`` may be replaced by the next.
+        """Write rows (n, WIDTH + 2) behind the others; those after the first ``number`` may be replaced by the next.
 
         Raises
         ------
@@ -288,7 +287,7 @@ class RowsOnDisk(NamedTuple):
         return self._replace(settled=self.settled + number)
 
     def mapped(self) -> np.ndarray:
-        """Rows (n, WIDE) of the file, which are read where they are asked for.
+        """Rows (n, WIDTH + 2) of the file, which are read where they are asked for.
 
         Raises
         ------
@@ -296,10 +295,10 @@ class RowsOnDisk(NamedTuple):
             If the file is another one by now.
         """
         if not self.settled:
-            return np.empty((0, WIDE))
+            return np.empty((0, WIDTH + 2))
         with open(self.path, "rb") as file:
             self._require_head(file)
-        return np.memmap(self.path, dtype=float, mode="r", offset=HEAD, shape=(self.settled, WIDE))
+        return np.memmap(self.path, dtype=float, mode="r", offset=HEAD, shape=(self.settled, WIDTH + 2))
 
     def _require_head(self, file: BinaryIO) -> None:
         if file.read(HEAD) != self.head:

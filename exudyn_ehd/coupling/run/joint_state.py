@@ -25,8 +25,6 @@ from exudyn_ehd.status import SMALL, InputError, require_number, require_type, w
 from exudyn_ehd.storage import fingerprint
 
 FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
-# Points at which modes of a bore are compared: angles [rad], shares of the length.
-_ANGLES, _PLACES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37])
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -263,8 +261,9 @@ def bore_modes_of(element: FilmElement) -> np.ndarray | None:
     """
     if not isinstance(element, ModalFilmElement):
         return None
-    places = element.model.bearing.length * _PLACES
-    return np.vstack((element.bore.radial(_ANGLES, places).reshape(-1, element.stiffness.size), element.stiffness))
+    # any angles, rad, and shares of the length tell modes apart
+    angles, places = np.linspace(0.3, 6.1, 7), element.model.bearing.length * np.array([-0.43, 0.11, 0.37])
+    return np.vstack((element.bore.radial(angles, places).reshape(-1, element.stiffness.size), element.stiffness))
 
 
 def check_owner(joint: Joint, state: JointState) -> None:
