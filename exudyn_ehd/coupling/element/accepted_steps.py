@@ -35,8 +35,8 @@ from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
 from exudyn_ehd.status import OverloadWarning, Status, warn_user
 
-# A run goes on with the last step of the run before if it starts at its end, share of that step; a sum of a million steps
-# has a round-off of 1e-4 of one.
+# A run goes on with the last step of the run before if it starts at its end, share of that step; the sum of a million
+# steps has a round-off of 1e-4 of one.
 SAME_TIME = 1e-3
 
 
