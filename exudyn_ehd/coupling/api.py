@@ -354,7 +354,8 @@ def attach(
     held = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
     constraint = hold(mbs, name, (housing, journal), points, rotation, **held)
     make = functools.partial(LubricatedJoint, element=element, numbers=(number, constraint), display=display)
-    return register_joint(mbs, make)
+    register_joint(mbs, make)
+    return make(mbs)
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:

@@ -332,5 +332,6 @@ def CreateLubricatedSphericalJoint(
     element = SphericalFilmElement(cast(JointModel, model), *sides, name)
     number = add_element(mbs, SphericalDisplay(element), show, color)
     make = functools.partial(LubricatedSphericalJoint, element=element, numbers=(number, None))
-    equip(joint := register_joint(mbs, make), stepControl)
+    register_joint(mbs, make)
+    equip(joint := make(mbs), stepControl)
     return joint

@@ -6,7 +6,7 @@ import pathlib
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, nullcontext
 from functools import partial
-from typing import TypeVar, overload
+from typing import overload
 
 import exudyn as exu
 import numpy as np
@@ -22,17 +22,15 @@ from exudyn_ehd.coupling.watch.solver_state import StepControl, hooked
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
 JOINTS = "lubricatedJoints"
-Handle = TypeVar("Handle", bound=Joint)
 _IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
 
 
-def register_joint(mbs: exu.MainSystem, make: Callable[[exu.MainSystem], Handle]) -> Handle:
-    """Let a system know a joint by a function of the system that makes its handle; returns the handle.
+def register_joint(mbs: exu.MainSystem, make: Callable[[exu.MainSystem], Joint]) -> None:
+    """Let a system know a joint by a function of the system that makes its handle.
 
     The handle itself would keep the system alive for ever: Python can't see that the system's variables refer to it.
     """
     mbs.variables.setdefault(JOINTS, []).append(make)
-    return make(mbs)
 
 
 def joints_of(mbs: exu.MainSystem) -> list[Joint]:
