@@ -85,7 +85,7 @@ def joint_rotation(
             raise InputError(f"{_WHERE}.axis must not be zero, got {axis!r}.")
         z = to_global @ (z / np.linalg.norm(z))
     if matrix is not None:
-        rotation = to_global @ _checked_rotation(matrix)
+        rotation = to_global @ checked_rotation(f"{_WHERE}.rotationMatrixAxes", matrix)
         # 1e-9: an axis and a matrix typed or computed in double precision agree far better
         if given and np.linalg.norm(np.cross(z, rotation[:, 2])) + max(0.0, -z @ rotation[:, 2]) > 1e-9:
             raise InputError(
@@ -100,9 +100,8 @@ def joint_rotation(
     return frame_of(z, x if np.linalg.norm(np.cross(z, x)) > 1e-6 else y)
 
 
-def _checked_rotation(matrix: ArrayLike) -> np.ndarray:
-    """``rotationMatrixAxes`` as an array (3, 3); `InputError` for what isn't a rotation."""
-    where = f"{_WHERE}.rotationMatrixAxes"
+def checked_rotation(where: str, matrix: ArrayLike) -> np.ndarray:
+    """The argument ``where`` as an array (3, 3); `InputError` for what isn't a rotation."""
     try:
         rotation = np.array(matrix, dtype=float)
     except (TypeError, ValueError, OverflowError):

@@ -129,8 +129,7 @@ def object_mass(mbs: exu.MainSystem, item: Index) -> np.ndarray | csc_matrix | N
     """Mass matrix (n, n) of an object in its own coordinates; None if Exudyn returns none and it is not constant."""
     data = mbs.GetObject(item)
     if data["objectType"] == "GenericODE2":
-        function: Any = data["massMatrixUserFunction"]
-        body = getattr(function["function"], "__self__", None) if isinstance(function, dict) else None
+        body = force_owner(mbs, int(item), "massMatrixUserFunction")
         if isinstance(body, ReducedBody):
             q = np.asarray(mbs.systemData.GetODE2Coordinates())[mbs.systemData.GetObjectLTGODE2(int(item))]
             return body.mass(mbs, 0.0, int(item), q.tolist(), [])
@@ -280,13 +279,13 @@ class Presence:
         )
 
 
-def force_owner(mbs: exu.MainSystem, number: int) -> object:
-    """Return the object whose method is the force function of an Exudyn object; None without such a function."""
+def force_owner(mbs: exu.MainSystem, number: int, name: str = "forceUserFunction") -> object:
+    """Return the object whose method is the force function of an Exudyn object, or another; None without such one."""
     item = ObjectIndex(number)
     # only some objects have a force function
     if mbs.GetObject(item)["objectType"] != "GenericODE2":
         return None
-    function: Any = mbs.GetObjectParameter(item, "forceUserFunction")
+    function: Any = mbs.GetObjectParameter(item, name)
     return getattr(function["function"], "__self__", None) if isinstance(function, dict) else None
 
 

@@ -124,7 +124,8 @@ class BeamSide(Side):
 
     def __init__(self, ends: tuple[NodeSide, NodeSide], share: float, point: np.ndarray, rotation: np.ndarray) -> None:
         super().__init__([node for end in ends for node in end.nodes], sum(end.size for end in ends))
-        self.ends, self.weights = ends, (1.0 - share, share)
+        self.ends, self.weights, n = ends, (1.0 - share, share), ends[0].size
+        self.parts = (ends[0], 1.0 - share, slice(n)), (ends[1], share, slice(n, None))
         rest = np.zeros(self.size)
         self._update_ends(rest, rest)
         section = self.section()
@@ -132,15 +133,8 @@ class BeamSide(Side):
         self.rotation = section.T @ rotation
         self.arm = section @ self.rho
 
-    def _parts(self) -> tuple[tuple[NodeSide, float, slice], ...]:
-        n = self.ends[0].size
-        return (
-            (self.ends[0], self.weights[0], slice(0, n)),
-            (self.ends[1], self.weights[1], slice(n, self.size)),
-        )
-
     def _update_ends(self, q: np.ndarray, q_t: np.ndarray) -> None:
-        for end, _, place in self._parts():
+        for end, _, place in self.parts:
             end.update(None, q[place], q_t[place], None)
 
     def _mean(self, column: int) -> np.ndarray:
@@ -166,14 +160,14 @@ class BeamSide(Side):
         self.frame[:, 5] = self._mean(5)
         self.frame[:, 3] = self._mean(3) + self.arm
         self.frame[:, 4] = self._mean(4) + np.cross(self.frame[:, 5], self.arm)
-        for end, weight, place in self._parts():
+        for end, weight, place in self.parts:
             self.jac[:2, :, place] = weight * end.jac[:2]
         self.jac[0] += np.cross(self.jac[1].T, self.arm).T
 
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
         out = np.zeros((6, self.size, self.size))
-        for end, weight, place in self._parts():
+        for end, weight, place in self.parts:
             out[:, place, place] = weight * end.change(mbs, q[place])
         add_lever(self.jac[1], self.arm, out)
         return out

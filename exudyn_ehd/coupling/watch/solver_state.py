@@ -184,12 +184,9 @@ class StepControl:
     error: float | None = None
 
     def __post_init__(self) -> None:
-        require_number("StepControl.largest_gap_change", self.largest_gap_change, at_least=0.01)
-        if self.largest_gap_change > 1.0:
-            raise InputError(
-                f"StepControl.largest_gap_change must be between 0.01 and 1, got {self.largest_gap_change!r}; leave "
-                "the control out with stepControl=None."
-            )
+        hint = "leave the control out with stepControl=None."
+        where = "StepControl.largest_gap_change"
+        require_number(where, self.largest_gap_change, at_least=0.01, at_most=1.0, hint=hint)
         if self.error is not None:
             require_number("StepControl.error", self.error, at_least=1e-4, at_most=0.5)
             if self.largest_gap_change != LARGEST_GAP_CHANGE:
