@@ -248,9 +248,9 @@ class PlausibilityWarning(UserWarning):
 
 
 def warn_user(text: str, kind: type[Warning]) -> None:
-    """Warn at the line of the caller's scene, however deep inside the package this is called."""
+    """Warn at the line of the caller's scene, however deep inside this package and Exudyn this is called."""
     frame, level = sys._getframe(1), 3
-    own = __name__.partition(".")[0], "dataclasses"
+    own = __name__.partition(".")[0], "dataclasses", "exudyn"
     while frame.f_back is not None and frame.f_back.f_globals.get("__name__", "").partition(".")[0] in own:
         frame, level = frame.f_back, level + 1
     warnings.warn(text, kind, stacklevel=level)

@@ -31,9 +31,9 @@ PAGE = PACKAGE / "MESSAGES.md"
 COMMAND = "python -m tests.message_page"
 # Errors that a user reads, and the calls that tell a user something without one.
 ERRORS = {"InputError", "FilmError", "RunError", "EHDError", "KeyError", "AttributeError", "KeyboardInterrupt"}
-CALLS = {"warn_user", "warnings.warn", "summary.LOGGER.info"}
+CALLS = {"warn_user", "warnings.warn", "doubts.LOGGER.info"}
 # Calls whose text is the second argument.
-TEXT_SECOND = {"summary.LOGGER.info", "self._at"}
+TEXT_SECOND = {"doubts.LOGGER.info", "self._at"}
 # The file whose `self._at` makes errors; elsewhere it is something else.
 FAILURES = "coupling/element/failures.py"
 # Pass on the texts of their callers.

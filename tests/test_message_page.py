@@ -77,7 +77,7 @@ def test_sites_are_found():
         ("film/lubricant/lubricant.py", "Lubricant.at needs a temperature_law, which says how the viscosity changes"),
         ("status.py", "... must be True or False, got ...."),
         (
-            "coupling/record/on_disk.py",
+            "coupling/record/rows.py",
             "CreateLubricatedJoint.record: '...' holds something else than a record and is ",
         ),
         ("coupling/element/failures.py", "LubricatedJoint '...': the modes of its ... have no mass, which explicit "),

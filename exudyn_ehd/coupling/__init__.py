@@ -4,8 +4,7 @@ Module map
 ----------
 api         `CreateLubricatedJoint`, axial options `Free` and `Held`
 spherical   `CreateLubricatedSphericalJoint`: a ball in its socket
-thrust_pads `CreateTiltingPadThrustBearing`: pads as bodies on pivots under a collar
-pads        `CreateTiltingPadBearing`: pads as bodies, a film for each of them
+pads        `CreateTiltingPadBearing`, `CreateTiltingPadThrustBearing`: pads as bodies, a film for each of them
 replace     `ReplaceJoint`: films in the place of joints that a model has; `ReplaceReducedBody`
 handle      `LubricatedJoint`: what a user has of a joint
 rotor       rotors in several films: equilibria over the speed, eigenvalues, unbalance

@@ -4,31 +4,29 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import warnings
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, cast, overload
 
 import exudyn as exu
-import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
-from exudyn_ehd.coupling.element.display import FilmDisplay
-from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.element.attach import add_faces, attach_bush, initial_coordinates
+from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.joint_frame import check_start, hold, joint_points, joint_rotation, resolve_pair
-from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.record.on_disk import File
-from exudyn_ehd.coupling.record.thinning import Every, Period
+from exudyn_ehd.coupling.items.joint_frame import check_start, hold, move_to_start, place_joint
+from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_surfaces
+from exudyn_ehd.coupling.record.rows import Every, File, Period
+from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
-from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model, compile_together
-from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector, warn_user
 
 RecordOption: TypeAlias = File | Every | Period
 
@@ -223,14 +221,9 @@ def CreateLubricatedJoint(
     >>> shaft = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.5, 0.025, 2), initialAngularVelocity=[0, 0, 314])
     >>> joint = ehd.CreateLubricatedJoint(mbs, "main", [mbs.CreateGround(), shaft], [0, 0, 0], [0, 0, 1], bearing)
     """
-    require_system(_WHERE, mbs, assembled=False)
-    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show), ("returnDict", returnDict)):
-        require_bool(f"{_WHERE}.{argument}", value)
-    for argument, motion in (("axial", axial), ("tilt", tilt)):
-        require_type(f"{_WHERE}.{argument}", motion, Free, Held)
-    require_of_joint(f"{_WHERE}.stepControl", stepControl)
+    flags = {"useGlobalFrame": useGlobalFrame, "show": show, "returnDict": returnDict}
+    require_arguments(_WHERE, mbs, name, stepControl, {"axial": axial, "tilt": tilt}, flags)
     require_type(f"{_WHERE}.record", record, File, Every, Period, type(None))
-    require_new(_WHERE, mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
         require_number(f"{_WHERE}.{argument}", size, "m", above=0.0)
@@ -240,10 +233,10 @@ def CreateLubricatedJoint(
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
     name = name or f"lubricated joint {mbs.systemData.NumberOfObjects()}"
-    housing, journal = resolve_pair(mbs, itemNumbers)
-    rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
-    points = joint_points(housing, journal, position, useGlobalFrame)
-    bearing, housing, journal = _on_its_bodies(mbs, bearing, (housing, journal), points, rotation)
+    housing, journal, points, rotation = place_joint(
+        _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame
+    )
+    bearing, (housing, journal) = hold_fe_surfaces(mbs, bearing, (housing, journal), points, rotation)
     joint = attach(
         mbs,
         _model_of(bearing, housing, journal),
@@ -258,13 +251,32 @@ def CreateLubricatedJoint(
         color=color,
         gravity=gravity,
     )
-    _equip(joint, stepControl, record)
+    equip(joint, stepControl, record)
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint
 
 
-def _equip(joint: LubricatedJoint, control: StepControl | None, record: RecordOption | None) -> None:
+def require_arguments(
+    where: str,
+    mbs: exu.MainSystem,
+    name: str,
+    control: StepControl | None,
+    motions: dict[str, Free | Held],
+    flags: dict[str, bool],
+) -> None:
+    """Check what all calls that create joints have in common."""
+    require_system(where, mbs, assembled=False)
+    for argument, value in flags.items():
+        require_bool(f"{where}.{argument}", value)
+    for argument, motion in motions.items():
+        require_type(f"{where}.{argument}", motion, Free, Held)
+    require_of_joint(f"{where}.stepControl", control)
+    require_new(where, mbs, name)
+
+
+def equip(joint: Joint, control: StepControl | None, record: RecordOption | None = None) -> None:
+    """Give a joint a control of its steps and a rule for its record."""
     steps = joint.element.steps
     if control is not None:
         steps.control = GapWatch(control, joint.bearing)
@@ -282,34 +294,12 @@ def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:
     return cast(JointModel, build_model(bearing))
 
 
-def _on_its_bodies(
-    mbs: exu.MainSystem,
-    bearing: JournalBearing,
-    items: tuple[Item, Item],
-    points: tuple[np.ndarray, np.ndarray],
-    rotation: np.ndarray,
-) -> tuple[JournalBearing, Item, Item]:
-    """Return the bearing with the bore and journal of the finite-element bodies under it, and both items."""
-    housing, journal = items
-    if housing.body is not None and getattr(bearing, "bush", None) is not None:
-        # imported here: a rigid bearing needs no solid
-        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
-
-        bearing, housing = hold_fe_bore(mbs, bearing, housing, points[0], rotation)
-    if journal.body is not None and getattr(bearing, "journal", None) is not None:
-        # imported here: a rigid bearing needs no solid
-        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_journal
-
-        bearing, journal = hold_fe_journal(mbs, bearing, journal, points[1], rotation)
-    return bearing, housing, journal
-
-
 def _items_of_older_calls(
     itemNumbers: Sequence[Index | None], bodyNumbers: Sequence[Index | None]
 ) -> Sequence[Index | None]:
     if any(item is not None for item in itemNumbers):
         raise InputError(f"{_WHERE}: give itemNumbers or bodyNumbers, its older name, not both.")
-    warnings.warn(f"{_WHERE}.bodyNumbers is now called itemNumbers.", DeprecationWarning, stacklevel=3)
+    warn_user(f"{_WHERE}.bodyNumbers is now called itemNumbers.", DeprecationWarning)
     return bodyNumbers
 
 
@@ -349,58 +339,23 @@ def attach(
         if item.planar and abs(rotation[2, 2]) < 1.0 - 1e-12:
             raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
     sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
-    if not any(isinstance(side, MarkerSide) for side in sides):
-        yields = functools.partial(_yields, model, sides)
-        check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]), yields)
+    if move_to_start(mbs, (housing, journal), sides):
+        check_start(model.bearing, sides, functools.partial(_yields, model, sides))
     element = FilmElement(model, *sides, name)
     more: dict[str, object] = {}
-    if hasattr(model, "bore"):
-        # imported here: a rigid bearing needs no solid
-        from exudyn_ehd.coupling.element.attach import attach_bush
-
+    if isinstance(model, ElasticBearingModel):
         element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show, gravity)
     elif gravity is not None:
         raise InputError(f"{_WHERE}.bushGravity: joint '{name}' has no bush with mass; leave it out.")
     display = FilmDisplay(element)
-    number = mbs.AddObject(
-        eii.ObjectGenericODE2(
-            name=name,
-            nodeNumbers=element.nodes,
-            forceUserFunction=element.force,
-            jacobianUserFunction=element.jacobian,
-            visualization=eii.VObjectGenericODE2(
-                show=show, color=list(color), graphicsDataUserFunction=display.graphics
-            ),
-            **more,
-        )
-    )
-    element.presence = Presence(mbs, name, element, number, sides)
+    number = add_element(mbs, display, show, color, **more)
     if getattr(model.bearing, "thrust", None) is not None:
-        # imported here: a bearing without faces needs none of it
-        from exudyn_ehd.coupling.element.attach import add_faces
-
         add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
-    constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
-    make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
+    held = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
+    constraint = hold(mbs, name, (housing, journal), points, rotation, **held)
+    make = functools.partial(LubricatedJoint, element=element, numbers=(number, constraint), display=display)
     register_joint(mbs, make)
     return make(mbs)
-
-
-def hold_axis(
-    mbs: exu.MainSystem,
-    name: str,
-    items: tuple[Item, Item],
-    points: tuple[np.ndarray, np.ndarray],
-    rotation: np.ndarray,
-    axial: Free | Held,
-    tilt: Free | Held,
-) -> Index | None:
-    """Add the constraint of `Held` between housing and journal; None where nothing is to be held."""
-    # planar bodies can't move axially or tilt, nor points turn: the constraint would be empty, and singular
-    flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in items)
-    turns = not all(item.kind in (rigid_nodes.GROUND, *rigid_nodes.POINTS) for item in items)
-    kept = {"axial": isinstance(axial, Held) and not flat, "tilt": isinstance(tilt, Held) and turns and not flat}
-    return hold(mbs, name, items[0], items[1], points, rotation, **kept) if any(kept.values()) else None
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:
@@ -408,12 +363,8 @@ def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> 
 
     The arrays of the sides must belong to that motion.
     """
-    if hasattr(model, "bore"):
-        # imported here: a rigid bearing needs no solid
-        from exudyn_ehd.coupling.element.attach import initial_coordinates
-        from exudyn_ehd.joint.model.flexible import ElasticBearingModel
-
-        return isinstance(model, ElasticBearingModel) and initial_coordinates(model, sides) is not None
+    if isinstance(model, ElasticBearingModel):
+        return initial_coordinates(model, sides) is not None
     if getattr(model.bearing, "bush", None) is None:
         return False
     return model.evaluate(motion, model.initial_history(motion)).status is Status.CONVERGED

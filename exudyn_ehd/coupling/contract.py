@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol, SupportsInt, TypeAlias
+from dataclasses import dataclass
+from typing import Any, Protocol, SupportsInt, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -12,10 +13,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
+from exudyn_ehd.joint.thrust import ThrustEvaluation
 from exudyn_ehd.status import InputError, Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.thrust import ThrustEvaluation
 
 # Exudyn's index types exist at run time, but not in its type stubs.
 _indices: Any = exu
@@ -63,6 +62,7 @@ class JointEvaluation(Protocol):
         """Return the film's memory after this state, for the case that it is accepted."""
 
 
+@dataclass(slots=True, eq=False)
 class Trial:
     """One state and the films' evaluation there; ``evaluation`` is None if the film was not evaluated.
 
@@ -70,29 +70,21 @@ class Trial:
     is the evaluation of films on end faces, whose motion is that of the bodies; None without them.
     """
 
-    __slots__ = ("begin", "bodies", "evaluation", "faces", "memory", "motion", "q", "q_t", "status", "step")
+    q: list[float]
+    q_t: list[float]
+    memory: History | None
+    step: float
+    begin: StepStart | None
+    bodies: np.ndarray
+    motion: np.ndarray
+    evaluation: JointEvaluation | None = None
+    faces: ThrustEvaluation | None = None
+    status: Status = Status.NO_FILM
 
-    def __init__(
-        self,
-        q: list[float],
-        q_t: list[float],
-        memory: History | None,
-        step: float,
-        begin: StepStart | None,
-        bodies: np.ndarray,
-        motion: np.ndarray,
-    ) -> None:
-        self.q = q
-        self.q_t = q_t
-        self.memory = memory
-        self.step = step
-        self.begin = begin
-        self.bodies = bodies
-        self.motion = motion
-        self.evaluation: JointEvaluation | None = None
-        self.faces: ThrustEvaluation | None = None
+    def __post_init__(self) -> None:
         # a sum is finite only if all its terms are
-        self.status = Status.NO_FILM if math.isfinite(sum(q)) else Status.NOT_FINITE
+        if not math.isfinite(sum(self.q)):
+            self.status = Status.NOT_FINITE
 
     def take(self, evaluation: JointEvaluation, faces: ThrustEvaluation | None = None) -> None:
         """Store the evaluations of the journal's film and of the end faces."""
@@ -132,29 +124,33 @@ class JointModel(Protocol):
         """
 
 
-class Side(Protocol):
+class Side:
     """Frame of one side of a joint as a function of the coordinates of its nodes.
 
     Work arrays of its own for other states than the solver's come by `copy.deepcopy`.
 
-    Attributes
+    Parameters
     ----------
     nodes : list
         Nodes it depends on.
     size : int
         Number n of their coordinates.
+
+    Attributes
+    ----------
     frame : ndarray (3, 6)
     jac : ndarray (4, 3, n)
         Work arrays of `exudyn_ehd.coupling.kinematics.rigid_nodes`.
     """
 
-    nodes: list[Index]
-    size: int
-    frame: np.ndarray
-    jac: np.ndarray
+    def __init__(self, nodes: list[Index], size: int) -> None:
+        self.nodes, self.size = nodes, size
+        self.frame, self.jac = np.zeros((3, 6)), np.zeros((4, 3, size))
 
     def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+        raise NotImplementedError
 
     def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
+        raise NotImplementedError

@@ -5,32 +5,28 @@ from __future__ import annotations
 import dataclasses
 import pathlib
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.element.display import FilmDisplay
+from exudyn_ehd.coupling.element.outputs import FilmDisplay
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import reader
-from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.coupling.run.restart import place
 from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.audit.audit import Audit, audit_record
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 from exudyn_ehd.pictures.mixins import FilmPictures, HistoryPictures
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type
-
-if TYPE_CHECKING:
-    from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-    from exudyn_ehd.joint.audit.audit import Audit
-    from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 
 
 class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
@@ -70,17 +66,12 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     def __init__(
         self,
         mbs: exu.MainSystem,
-        name: str,
         element: FilmElement,
-        display: FilmDisplay,
         numbers: tuple[Index, Index | None],
+        display: FilmDisplay,
     ) -> None:
-        self.mbs = mbs
-        self.name = name
-        self.element: FilmElement = element
+        super().__init__(mbs, element, numbers)
         self.display = display
-        self.bearing = element.model.bearing
-        self.objectNumber, self.constraintNumber = numbers
         bush = getattr(element, "bush", None)
         # the element's own does not keep the system alive
         self.bush = None if bush is None else dataclasses.replace(bush, mbs=mbs)
@@ -128,9 +119,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         FilmError
             If no equilibrium was found.
         """
-        from exudyn_ehd.coupling.run.restart import place
-
-        self.element.require_items(self.mbs)
+        self.element.presence.require(self.mbs)
         return place(self.mbs, self.element, self.name, load, speed)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
@@ -158,46 +147,9 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         InputError
             If nothing was recorded yet, or if the record is thinned (`Every`, `Period`).
         """
-        # imported here: runs need none of it
-        from exudyn_ehd.joint.audit.audit import audit_record
-
         require_type("LubricatedJoint.audit: bearing", self.bearing, JournalBearing, hint="no other one is audited.")
 
         return audit_record(self.bearing, self._audited(), liner=liner, measure_time=measure_time)
-
-    def AddSensor(
-        self,
-        quantity: Quantity | exu.OutputVariableType | str,
-        *,
-        fileName: str = "",
-        name: str = "",
-        writeToFile: bool | None = None,
-    ) -> Index:
-        """Add an Exudyn sensor of one quantity, e.g. for ``mbs.PlotSensor`` and ``mbs.GetSensorStoredData``.
-
-        Parameters
-        ----------
-        quantity : Quantity, exudyn.OutputVariableType or str
-            A quantity of the film, by its name in `JointHistory` or as a `Quantity`: vectors are in the joint frame,
-            loads act on the journal. Or an output of Exudyn's joints, as of one with the markers [housing, journal],
-            film, end faces and constraint together: in the housing's joint frame ForceLocal, TorqueLocal,
-            DisplacementLocal, VelocityLocal, Rotation (Tait-Bryan angles), AngularVelocityLocal,
-            HomogeneousTransformationLocal; global Force, Torque, Displacement, AngularVelocity, and Position, Velocity,
-            HomogeneousTransformation of the housing's joint point. Forces and torques of these outputs act from the
-            journal on the housing, torques about the bearing's centre.
-        fileName : str, default ""
-            File to write to, as in Exudyn's sensors.
-        name : str, default ""
-            Name of the sensor; by default joint and quantity.
-        writeToFile : bool or None, default None
-            Write the file; None: if a file name is given. The sensor stores its values in any case.
-
-        Returns
-        -------
-        exudyn.SensorIndex
-        """
-        title, read = reader(self.element, self.constraintNumber, quantity)
-        return self._add_sensor(title, read, fileName, name, writeToFile)
 
     def film(self) -> FilmFields:
         """The film at the last accepted state: pressure, gap, fill and temperature on the grid.
@@ -332,6 +284,3 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
 
     def _film(self) -> FilmFields:
         return self.film()
-
-    def _history(self) -> JointHistory:
-        return self._recorded()

@@ -2,6 +2,11 @@
 
 The film of a pad is a joint whose housing is the pad: its frame has the pad's centre of curvature as origin and turns
 with the pad. Geometry and forces: `exudyn_ehd.joint.static.pads`.
+
+`CreateTiltingPadThrustBearing`: pads as bodies of a model that tilt about pivots, each with a film under the collar.
+
+To a solver the film of a pad is that of a joint between the pad and the shaft with one end face and no film around its
+journal: the pad's face lies at the upper end of the joint's length, under the collar.
 """
 
 from __future__ import annotations
@@ -10,9 +15,10 @@ import dataclasses
 import functools
 import math
 from collections.abc import Sequence
+from typing import cast
 
 import exudyn as exu
-import exudyn.itemInterface as eii
+import exudyn.graphics
 import numpy as np
 from exudyn.rigidBodyUtilities import (
     AngularVelocity2EulerParameters_t,
@@ -22,19 +28,23 @@ from exudyn.rigidBodyUtilities import (
 )
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.api import Free, Held, attach, hold_axis
-from exudyn_ehd.coupling.contract import INITIAL, Index, Side, require_system
+from exudyn_ehd.coupling.api import Free, Held, attach, equip, require_arguments
+from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, require_system
 from exudyn_ehd.coupling.handle import LubricatedJoint
-from exudyn_ehd.coupling.items.bodies import Item, body_item
-from exudyn_ehd.coupling.items.joint_frame import add_body_on, joint_points, joint_rotation, resolve_pair, rigid_marker
+from exudyn_ehd.coupling.items.bodies import body_item
+from exudyn_ehd.coupling.items.joint_frame import add_body_on, hold, hold_at_pivot, in_the_name_of, place_joint
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
+from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
-from exudyn_ehd.coupling.run.solve import require_new
-from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.coupling.run.restart import equilibrium_task, shift_journal
+from exudyn_ehd.coupling.watch.solver_state import StepControl
+from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult
 from exudyn_ehd.joint.static.pads import PadModel, TiltingPads
-from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
+from exudyn_ehd.pictures.records import shown
+from exudyn_ehd.status import InputError, Status, require_type, require_vector
 
 _WHERE = "CreateTiltingPadBearing"
 
@@ -199,9 +209,6 @@ class TiltingPadJoint:
         where, mbs = "TiltingPadJoint.place_in_equilibrium", self.mbs
         require_system(where, mbs, assembled=True, of=f" of bearing '{self.name}'")
         journal = self.pads[0].element.sides[1]
-        if not isinstance(journal, NodeSide) or not journal.nodes:
-            raise InputError(f"{where}: the journal of '{self.name}' must be a rigid body or node that moves.")
-        force = require_vector(f"{where}: load", load, 2, "N")
         # brings the journal's frame to the initial state
         self.pads[0].element.motion(mbs, INITIAL)
         data, housing = mbs.systemData, self._housing
@@ -209,17 +216,10 @@ class TiltingPadJoint:
         own = [place for node in housing.nodes for place in data.GetNodeLTGODE2(int(node))]
         housing.update(mbs, q[own], q_t[own], INITIAL)
         motion = relative.motion_of(housing.frame, journal.frame)
-        spin = float(motion[8]) if speed is None else require_number(f"{where}: speed", speed, "rad/s")
-        if spin == 0.0:
-            raise InputError(
-                f"{where}: '{self.name}' does not turn in the initial state, and films without speed carry no steady "
-                "load; give speed=..., or the bodies an initial angular velocity."
-            )
-        result = equilibrium(self.bearing, speed=spin, load=(force[0], force[1]))
+        journal, force, spin = equilibrium_task(where, journal, f"bearing '{self.name}'", motion, load, speed)
+        result = equilibrium(self.bearing, speed=spin, load=force)
         A, place, velocity, turning = np.split(housing.frame, (3, 4, 5), axis=1)
-        own = data.GetNodeLTGODE2(int(journal.nodes[0]))[: rigid_nodes.translations(journal.kind)]
-        q[own] += (A[:, :2] @ (result.position - motion[:2]))[: len(own)]
-        q_t[own] -= (A[:, :2] @ motion[4:6])[: len(own)]
+        shift_journal(mbs, journal, (q, q_t), A, result.position, motion)
         pivots = self.bearing.arm - self.bearing.preload * self.bearing.machined_clearance + result.pivot_displacements
         for k, pad in enumerate(self.pads):
             node, lever = pad.element.sides[0], A[:, :2] @ (pivots[k] * self._directions[0, :, k])
@@ -308,83 +308,231 @@ def CreateTiltingPadBearing(
     >>> joint = ehd.CreateTiltingPadBearing(mbs, "pads", items, [0, 0, 0], [0, 0, 1], pads, tilt=ehd.Held())
     >>> mbs.Assemble()
     """
-    require_system(_WHERE, mbs, assembled=False)
+    name = name or f"tilting pads {mbs.systemData.NumberOfObjects()}"
+    flags = {"useGlobalFrame": useGlobalFrame, "show": show}
+    require_arguments(_WHERE, mbs, f"{name} pad 1", stepControl, {"axial": axial, "tilt": tilt}, flags)
     require_type(f"{_WHERE}.bearing", bearing, TiltingPads)
     assert bearing is not None
-    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):
-        require_bool(f"{_WHERE}.{argument}", value)
-    for argument, motion in (("axial", axial), ("tilt", tilt)):
-        require_type(f"{_WHERE}.{argument}", motion, Free, Held)
-    require_of_joint(f"{_WHERE}.stepControl", stepControl)
     weight = require_vector(f"{_WHERE}.gravity", gravity, 3, "m/s^2")
     if not min(bearing.pad_mass, bearing.pad_inertia) > 0.0:
         raise InputError(
             f"{_WHERE}.bearing: pads are bodies and need TiltingPads.pad_mass and pad_inertia above 0, got "
             f"{bearing.pad_mass!r} kg and {bearing.pad_inertia!r} kg m2."
         )
-    name = name or f"tilting pads {mbs.systemData.NumberOfObjects()}"
-    require_new(_WHERE, mbs, f"{name} pad 1")
-    housing, journal = resolve_pair(mbs, itemNumbers)
+    housing, journal, points, rotation = place_joint(
+        _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame
+    )
     if housing.kind is None or housing.kind in rigid_nodes.POINTS:
         raise InputError(f"{_WHERE}.itemNumbers[0] must be a rigid body, a rigid node or marker, or ground.")
-    rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
-    points = joint_points(housing, journal, position, useGlobalFrame)
-    pads, objects = [], []
+    pads, objects, inertia = [], [], RigidBodyInertia(bearing.pad_mass, bearing.pad_inertia * np.eye(3))
+    rigid, spring = bearing.pivot_stiffness is None, ([1.0, 0.0, 0.0], bearing.pivot_stiffness, 0.0)
     for k, angle in enumerate(bearing.pivots):
         radial = rotation @ [math.cos(angle), math.sin(angle), 0.0]
         centre = points[0] - bearing.preload * bearing.machined_clearance * radial
         own, pivot = f"{name} pad {k + 1}", centre + bearing.arm * radial
-        body, *joints = _add_pad(mbs, own, bearing, (housing, pivot), (rotation, radial), weight)
-        joint = attach(
-            mbs,
-            PadModel(bearing, k),
-            body_item(mbs, _WHERE, body),
-            journal,
-            (centre, points[1]),
-            rotation,
-            name=own,
-            show=show,
-        )
-        if stepControl is not None:
-            joint.element.steps.control = GapWatch(stepControl, joint.bearing)
+        body = add_body_on(mbs, f"{own} body", housing, pivot, rotation, inertia, weight, show=False)
+        pad = body_item(mbs, _WHERE, body)
+        held = np.column_stack((radial, np.cross(rotation[:, 2], radial), rotation[:, 2]))
+        joints = hold_at_pivot(mbs, own, (housing, pad), pivot, held, [int(rigid), 1, 1, 1, 1, 0], spring)
+        ends, model = (centre, points[1]), PadModel(bearing, k)
+        joint = attach(mbs, model, pad, journal, ends, rotation, name=own, show=show)
+        equip(joint, stepControl)
         pads.append(joint)
         objects.append((body, *joints))
-    constraint = hold_axis(mbs, name, (housing, journal), points, rotation, axial, tilt)
+    kept = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
+    constraint = hold(mbs, name, (housing, journal), points, rotation, **kept)
     numbers = [*zip(*objects, strict=True), ()][:3]
     return TiltingPadJoint(mbs, name, bearing, pads, numbers, constraint, housing.side(points[0], rotation))
 
 
-def _add_pad(
-    mbs: exu.MainSystem,
-    name: str,
-    bearing: TiltingPads,
-    place: tuple[Item, np.ndarray],
-    axes: tuple[np.ndarray, np.ndarray],
-    gravity: np.ndarray,
-) -> list[Index]:
-    """Add a pad with its centre of mass in the pivot, its constraint to the housing, and the spring of its pivot.
+@dataclasses.dataclass(frozen=True, eq=False)
+class NoFilm:
+    """A joint without a film around its journal: the model, which is its own evaluation.
 
-    ``place``: the housing and the pivot; ``axes``: the bearing's frame and the direction from its axis to the pivot.
+    Attributes
+    ----------
+    bearing : TiltingThrustPads
     """
-    (housing, pivot), (rotation, radial) = place, axes
-    inertia = RigidBodyInertia(bearing.pad_mass, bearing.pad_inertia * np.eye(3))
-    body = add_body_on(mbs, f"{name} body", housing, pivot, rotation, inertia, gravity, show=False)
-    held = np.column_stack((radial, np.cross(rotation[:, 2], radial), rotation[:, 2]))
-    markers = []
-    for label, item in (("housing", housing), ("pad", body_item(mbs, _WHERE, body))):
-        markers.append(rigid_marker(mbs, f"{name} pivot on {label}", item, pivot, held, "a pad"))
-    flexible = bearing.pivot_stiffness is not None
-    pivot_joint = eii.ObjectJointGeneric(
-        name=f"{name} pivot",
-        markerNumbers=markers,
-        constrainedAxes=[int(not flexible), 1, 1, 1, 1, 0],
-        visualization=eii.VObjectJointGeneric(show=False),
+
+    bearing: TiltingThrustPads
+    remembers, needs_spin, status, wrench = False, False, Status.CONVERGED, np.zeros(6)
+
+    def initial_history(self, motion: np.ndarray) -> History | None:
+        """Return None: there is nothing to remember."""
+        return None
+
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> NoFilm:
+        """Return the evaluation at any motion."""
+        return self
+
+    def tangent(self) -> np.ndarray:
+        """Zeros (6, 10)."""
+        return np.zeros((6, 10))
+
+    def quantities(self) -> dict[str, float]:
+        """Return none."""
+        return {}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, kw_only=True)
+class TiltingPadThrustBearing:
+    """A thrust bearing with tilting pads in a model, from `CreateTiltingPadThrustBearing`.
+
+    Attributes
+    ----------
+    name : str
+    mbs : exudyn.MainSystem
+    bearing : TiltingThrustPads
+    pads : tuple of LubricatedJoint
+        Films of the pads. ``history`` has them in the columns ``thrust_minimum_gap``, ``thrust_peak_pressure``,
+        ``thrust_force`` (on the collar, along the axis), ``thrust_torque``, ``thrust_power_loss`` and
+        ``thrust_contact_load``; all others are nan or 0. ``AddSensor`` takes the same names. Methods that look at the
+        film around a journal do not apply.
+    bodyNumbers : tuple of exudyn.ObjectIndex
+        Bodies of the pads; the pivot is their reference point and their centre of mass, the radial line through it x.
+
+    Examples
+    --------
+    After the example of `CreateTiltingPadThrustBearing`:
+
+    >>> thrust
+    <TiltingPadThrustBearing 'thrust': 8 pads, outer diameter 200 mm>
+    >>> sensor = thrust.pads[0].AddSensor("thrust_minimum_gap")
+    >>> mbs.Assemble()
+    >>> thrust.film_thickness.shape  # of the initial state
+    (1, 8)
+    """
+
+    name: str
+    mbs: exu.MainSystem
+    bearing: TiltingThrustPads
+    pads: tuple[LubricatedJoint, ...]
+    bodyNumbers: tuple[Index, ...]
+
+    def __repr__(self) -> str:
+        size = shown("length", 2.0 * self.bearing.outer_radius)
+        return f"<TiltingPadThrustBearing '{self.name}': {len(self.pads)} pads, outer diameter {size}>"
+
+    @property
+    def film_thickness(self) -> np.ndarray:
+        """Film thickness (n, k) of the k pads at their pivots in the n accepted steps, m."""
+        rows = [pad.history for pad in self.pads]
+        (x, y, bx, by), z = np.array([r.motion[:, :4] for r in rows]).T, np.array([r.axial_position for r in rows]).T
+        return np.asarray(self.bearing.pivot_film + z + bx * (x - self.bearing.pivot_radius) + by * y)
+
+
+def CreateTiltingPadThrustBearing(
+    mbs: exu.MainSystem,
+    name: str = "",
+    itemNumbers: Sequence[Index | None] = (None, None),
+    position: Sequence[float] | np.ndarray = (),
+    axis: Sequence[float] | np.ndarray = (),
+    bearing: TiltingThrustPads | None = None,
+    rotationMatrixAxes: ArrayLike | None = None,
+    gravity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
+    useGlobalFrame: bool = True,
+    show: bool = True,
+) -> TiltingPadThrustBearing:
+    """Create a thrust bearing with tilting pads between a housing and a shaft with a collar.
+
+    Every pad becomes a rigid body on the housing: a joint holds it at its pivot across the axis and against a turn
+    about the axis, and along the axis too unless ``bearing.pivot_stiffness`` gives it an axial spring and damper. A
+    film element without mass lies between each pad and the shaft, with its exact Jacobian. The films press the collar
+    along +axis only; they and the pivots leave the shaft free in all other directions.
+
+    It works as a `CreateLubricatedJoint` does with implicit and static solvers, `SolveDynamic`, `SaveState` and
+    restarts. Its films do not take part in ``StepControl(error=...)``; `UntilPeriodic` and `SolveEquilibrium` do not
+    accept them.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system, before Assemble.
+    name : str, default ""
+        Name of the bearing, used in messages too; its pads are called "name pad 1" and so on.
+    itemNumbers : sequence of two, default (None, None)
+        Required: housing, a rigid body, its node, a rigid marker on it, or ground; shaft, as for
+        `CreateLubricatedJoint`.
+    position : (3,) [m], default ()
+        Point of the bearing's axis in the plane of the untilted pads, in the reference configuration: global, or in the
+        housing's frame with ``useGlobalFrame=False``; [] if markers are given, both in this plane. The collar lies
+        ``bearing.clearance`` beyond it.
+    axis : (3,), default ()
+        Axis of bearing and shaft from the pads to the collar, as for `CreateLubricatedJoint`.
+    bearing : TiltingThrustPads, default None
+        Required: dimensions, pivots, inertia and lubricant of the pads.
+    rotationMatrixAxes : (3, 3) or None, default None
+        Frame as for `CreateLubricatedJoint`; the first pivot lies on its x, the others follow about its z.
+    gravity : (3,) [m/s^2], default (0.0, 0.0, 0.0)
+        Acceleration of gravity that acts on the pads, global.
+    useGlobalFrame : bool, default True
+        See position, axis, rotationMatrixAxes.
+    show : bool, default True
+        Draw the pads in Exudyn's renderer.
+
+    Returns
+    -------
+    TiltingPadThrustBearing
+
+    Raises
+    ------
+    InputError
+        Before anything runs, for: wrong or identical items; planar bodies; a position or axis that can't be meant; a
+        collar that touches pads in the initial configuration; an assembled system.
+
+    Examples
+    --------
+    After the example of `TiltingThrustPads`:
+
+    >>> from exudyn.utilities import InertiaCylinder
+    >>> SC = exu.SystemContainer()
+    >>> mbs = SC.AddSystem()
+    >>> shaft = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.5, 0.04, 2), initialAngularVelocity=[0, 0, 300])
+    >>> items = [mbs.CreateGround(), shaft]
+    >>> thrust = ehd.CreateTiltingPadThrustBearing(mbs, "thrust", items, [0, 0, 0], [0, 0, 1], pads)
+    """
+    where, flags = "CreateTiltingPadThrustBearing", {"useGlobalFrame": useGlobalFrame, "show": show}
+    require_arguments(where, mbs, f"{name} pad 1" if name else "", None, {}, flags)
+    require_type(f"{where}.bearing", bearing, TiltingThrustPads)
+    assert bearing is not None
+    weight = require_vector(f"{where}.gravity", gravity, 3, "m/s^2").tolist()
+    name = name or f"thrust bearing {mbs.systemData.NumberOfObjects()}"
+    housing, shaft, points, rotation = place_joint(
+        where, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame, ("housing", "shaft")
     )
-    spring = eii.ObjectConnectorLinearSpringDamper(
-        name=f"{name} spring",
-        markerNumbers=markers,
-        stiffness=bearing.pivot_stiffness or 0.0,
-        axisMarker0=[1.0, 0.0, 0.0],
-        visualization=eii.VObjectConnectorLinearSpringDamper(show=False),
-    )
-    return [body, *map(mbs.AddObject, (pivot_joint, spring)[: 1 + flexible])]
+    if housing.kind is None or housing.kind in POINTS or housing.planar or shaft.planar:
+        raise InputError(
+            f"{where}.itemNumbers: pivots need a 3D rigid body, its node or ground as housing, and the collar a shaft "
+            "that moves along its axis; not planar bodies, and as housing no mass point, link of a kinematic tree or "
+            "flexible body: put a rigid body on it."
+        )
+    pads, bodies, height = [], [], 0.5 * bearing.length * rotation[:, 2]
+    # a marker stays where it is
+    points = points[0], points[1] if shaft.is_marker else points[1] - height
+    inertia = RigidBodyInertia(bearing.pad_mass, np.diag([*bearing.pad_inertia, sum(bearing.pad_inertia)]))
+    shape = {"graphicsDataList": [_shape(bearing)], "show": show}
+    rigid, spring = bearing.pivot_stiffness is None, ([0.0, 0.0, 1.0], bearing.pivot_stiffness, bearing.pivot_damping)
+    for k in range(bearing.pads):
+        angle, title = 2.0 * math.pi * k / bearing.pads, f"{name} pad {k + 1}"
+        c, s = math.cos(angle), math.sin(angle)
+        frame = rotation @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        pivot = points[0] + bearing.pivot_radius * frame[:, 0]
+        bodies.append(add_body_on(mbs, f"{title} body", housing, pivot, frame, inertia, weight, **shape))
+        pad = body_item(mbs, f"{where}: {title}", bodies[-1])
+        hold_at_pivot(mbs, title, (housing, pad), pivot, frame, [1, 1, int(rigid), 0, 0, 1], spring)
+        with in_the_name_of(where, "pad", "shaft"):
+            ends, model = (points[0] - height, points[1]), cast(JointModel, NoFilm(bearing))
+            pads.append(attach(mbs, model, pad, shaft, ends, frame, name=title))
+    return TiltingPadThrustBearing(name=name, mbs=mbs, bearing=bearing, pads=tuple(pads), bodyNumbers=tuple(bodies))
+
+
+def _shape(bearing: TiltingThrustPads) -> Data:
+    """Graphics of a pad in the frame of its body, a quarter of its width thick, its edges of 12 points."""
+    inner, outer, first = bearing.inner_radius, bearing.outer_radius, -bearing.pivot_angle
+    radii, height = np.repeat([inner, outer], 12), 0.25 * (outer - inner)
+    theta = np.concatenate([along := np.linspace(first, first + bearing.extent, 12), along[::-1]])
+    corners = np.column_stack([radii * np.cos(theta) - bearing.pivot_radius, radii * np.sin(theta)])
+    sides = [[k, (k + 1) % len(corners)] for k in range(len(corners))]
+    return cast(Data, exudyn.graphics.SolidExtrusion(corners.tolist(), sides, height, pOff=[0.0, 0.0, -height]))

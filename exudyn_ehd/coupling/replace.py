@@ -21,7 +21,7 @@ from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex, 
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import MASS_POINTS, POINT_KINDS
 from exudyn_ehd.coupling.items.markers import marker_item
-from exudyn_ehd.coupling.items.object_mass import own_equations
+from exudyn_ehd.coupling.items.objects import own_equations
 from exudyn_ehd.coupling.run.solve import joints_of
 from exudyn_ehd.status import ROUNDING, InputError, require_type
 

@@ -5,41 +5,33 @@ from __future__ import annotations
 import dataclasses
 import functools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import exudyn as exu
 import exudyn.graphics
-import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, Trial, require_system
+from exudyn_ehd.coupling.api import equip, require_arguments
+from exudyn_ehd.coupling.contract import Data, Index, JointModel, Trial
 from exudyn_ehd.coupling.element import outer_load
-from exudyn_ehd.coupling.element.display import FilmDisplay, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.failures import Failures
-from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import reader
-from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.joint_frame import in_the_name_of, joint_points, joint_rotation, resolve_pair
-from exudyn_ehd.coupling.kinematics import spherical
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide
+from exudyn_ehd.coupling.items.joint_frame import move_to_start, place_joint
+from exudyn_ehd.coupling.kinematics.relative import BALL, ball_motion
 from exudyn_ehd.coupling.record.history import PACK, JointHistory, make_row
-from exudyn_ehd.coupling.record.record import Record
-from exudyn_ehd.coupling.record.thinning import errors_of_ball_in
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.solve import register_joint, require_new
-from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.coupling.run.solve import register_joint
+from exudyn_ehd.coupling.watch.solver_state import StepControl
+from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
-from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
-from exudyn_ehd.joint.step_error import NO_BALL_ERROR, pack_of_ball
+from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, steady_spherical
+from exudyn_ehd.joint.step_error import pack_of_ball
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import FilmError, InputError, Status, require_bool, require_type, require_vector
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.audit.audit import Audit
+from exudyn_ehd.status import FilmError, InputError, Status, require_type, require_vector
 
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
@@ -77,17 +69,7 @@ class SphericalFailures(Failures):
 class SphericalFilmElement(FilmElement):
     """Film between the sides of a socket and of a ball; parameters as for `FilmElement`."""
 
-    kinematics = spherical
-
-    def __init__(self, model: JointModel, socket: Side, ball: Side, name: str) -> None:
-        super().__init__(model, socket, ball, name)
-        self.failures = SphericalFailures(name, model.bearing)
-        self.steps.record = Record(model.bearing, errors_of_ball_in, NO_BALL_ERROR)
-        self.outer = outer_load.OuterLoad(self.sides, outer_load.BALL)
-
-    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivative (6, 10) of the wrench to the motion's `spherical.ROWS`."""
-        return np.ascontiguousarray(trial.found.tangent()[:, spherical.ROWS])
+    kinematics, blocks, messages = BALL, outer_load.BALL, SphericalFailures
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film; its motion is place, velocity, angular velocity and 0."""
@@ -214,10 +196,7 @@ class LubricatedSphericalJoint(Joint):
     """
 
     bearing: SphericalBearing  # type: ignore[assignment]
-
-    def __init__(self, mbs: exu.MainSystem, name: str, element: SphericalFilmElement, number: Index) -> None:
-        self.mbs, self.name, self.element, self.objectNumber = mbs, name, element, number
-        self.bearing = cast(SphericalBearing, element.model.bearing)
+    _quantities = _QUANTITIES
 
     def __repr__(self) -> str:
         ball = f"ball of {shown('length', 2.0 * self.bearing.ball_radius)}"
@@ -258,39 +237,8 @@ class LubricatedSphericalJoint(Joint):
         InputError
             If nothing was recorded yet.
         """
-        # imported here: runs need none of it
-        from exudyn_ehd.joint.spherical.steady import audit_ball
-
         record = self._audited()
         return audit_ball(self.bearing, record.motion, record)
-
-    def AddSensor(
-        self,
-        quantity: str | exu.OutputVariableType,
-        *,
-        fileName: str = "",
-        name: str = "",
-        writeToFile: bool | None = None,
-    ) -> Index:
-        """Add an Exudyn sensor of one quantity; it is stored, and written if it has a file's name.
-
-        Parameters
-        ----------
-        quantity : str or exudyn.OutputVariableType
-            ``eccentricity_ratio``, ``force`` (on the ball, socket's frame), ``minimum_gap``, ``peak_pressure``,
-            ``power_loss``, ``contact_load``; or what Exudyn's joints give, as for `LubricatedJoint.AddSensor`.
-        fileName, name : str, default ""
-            As for `LubricatedJoint.AddSensor`.
-        writeToFile : bool or None, default None
-            As for `LubricatedJoint.AddSensor`.
-
-        Returns
-        -------
-        exudyn.SensorIndex
-        """
-        where = "LubricatedSphericalJoint.AddSensor"
-        title, read = reader(self.element, None, quantity, _QUANTITIES, where)
-        return self._add_sensor(title, read, fileName, name, writeToFile)
 
 
 def CreateLubricatedSphericalJoint(
@@ -362,57 +310,28 @@ def CreateLubricatedSphericalJoint(
     >>> arm = mbs.CreateRigidBody(inertia=InertiaCuboid(7800, [0.2, 0.02, 0.02]), gravity=[0, 0, -9.81])
     >>> joint = ehd.CreateLubricatedSphericalJoint(mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], ball)
     """
-    require_system(_WHERE, mbs, assembled=False)
-    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):
-        require_bool(f"{_WHERE}.{argument}", value)
+    require_arguments(_WHERE, mbs, name, stepControl, {}, {"useGlobalFrame": useGlobalFrame, "show": show})
     require_type(f"{_WHERE}.bearing", bearing, SphericalBearing)
     assert bearing is not None
-    require_of_joint(f"{_WHERE}.stepControl", stepControl)
     require_vector(f"{_WHERE}.color", color, 4)
-    require_new(_WHERE, mbs, name)
-    with in_the_name_of(_WHERE, "socket", "ball"):
-        socket, ball = resolve_pair(mbs, itemNumbers)
-        rotation = joint_rotation(
-            socket, () if rotationMatrixAxes is not None else axis, rotationMatrixAxes, useGlobalFrame
-        )
-        points = joint_points(socket, ball, position, useGlobalFrame)
+    axis = axis if rotationMatrixAxes is None else ()
+    socket, ball, points, rotation = place_joint(
+        _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame, ("socket", "ball")
+    )
     name = name or f"lubricated ball joint {mbs.systemData.NumberOfObjects()}"
     sides = socket.side(points[0], rotation), ball.side(points[1], rotation)
     model = SphericalModel(bearing)
-    _check_start(mbs, model, (socket, ball), sides)
+    if move_to_start(mbs, (socket, ball), sides):
+        place = ball_motion(sides[0].frame, sides[1].frame)[:3]
+        if not model.smallest_gap(place) > 0.0:
+            raise InputError(
+                f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in "
+                f"the socket's frame, radial clearance {bearing.radial_clearance:g} m; check the initial positions, "
+                "and whether the clearance is radial."
+            )
     element = SphericalFilmElement(cast(JointModel, model), *sides, name)
-    display = SphericalDisplay(element)
-    number = mbs.AddObject(
-        eii.ObjectGenericODE2(
-            name=name,
-            nodeNumbers=[node for side in sides for node in side.nodes],
-            forceUserFunction=element.force,
-            jacobianUserFunction=element.jacobian,
-            visualization=eii.VObjectGenericODE2(
-                show=show, color=list(color), graphicsDataUserFunction=display.graphics
-            ),
-        )
-    )
-    element.presence = Presence(mbs, name, element, number, sides)
-    if stepControl is not None:
-        element.steps.control = GapWatch(stepControl, element.model.bearing)
-    make = functools.partial(LubricatedSphericalJoint, name=name, element=element, number=number)
+    number = add_element(mbs, SphericalDisplay(element), show, color)
+    make = functools.partial(LubricatedSphericalJoint, element=element, numbers=(number, None))
     register_joint(mbs, make)
-    return make(mbs)
-
-
-def _check_start(
-    mbs: exu.MainSystem, model: SphericalModel, items: tuple[Item, Item], sides: tuple[Side, Side]
-) -> None:
-    """Refuse an initial state in which the ball isn't inside the socket; markers tell after Assemble alone."""
-    if any(isinstance(side, MarkerSide) for side in sides):
-        return
-    for item, side in zip(items, sides, strict=True):
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
-    place = spherical.motion_of(sides[0].frame, sides[1].frame)[:3]
-    if not model.smallest_gap(place) > 0.0:
-        raise InputError(
-            f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in the "
-            f"socket's frame, radial clearance {model.bearing.radial_clearance:g} m; check the initial positions, and "
-            "whether the clearance is radial."
-        )
+    equip(joint := make(mbs), stepControl)
+    return joint

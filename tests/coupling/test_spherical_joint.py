@@ -13,7 +13,7 @@ import scenes
 from exudyn.utilities import InertiaCuboid
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.kinematics import relative, spherical
+from exudyn_ehd.coupling.kinematics import relative
 
 OIL = ehd.Lubricant(viscosity=0.1)
 HELD = {"socket_angles": (0.0, 2.3), "contact": ehd.RegularisedWall(onset=2e-6)}
@@ -59,7 +59,7 @@ def test_motion_sees_what_is_relative_alone():
     frames = rng.normal(size=(2, 3, 6))
     for frame in frames:
         frame[:, :3] = scenes.rotation(rng.normal(size=3))
-    motion = spherical.motion_of(*frames)
+    motion = relative.ball_motion(*frames)
     turn, shift, velocity, omega = scenes.rotation(rng.normal(size=3)), *rng.normal(size=(3, 3))
     carried = frames.copy()
     for frame, before in zip(carried, frames):
@@ -67,13 +67,13 @@ def test_motion_sees_what_is_relative_alone():
         frame[:, 3] = turn @ before[:, 3] + shift
         frame[:, 4] = turn @ before[:, 4] + velocity + np.cross(omega, frame[:, 3])
         frame[:, 5] = turn @ before[:, 5] + omega
-    assert spherical.motion_of(*carried) == pytest.approx(motion, abs=1e-13)
+    assert relative.ball_motion(*carried) == pytest.approx(motion, abs=1e-13)
     # half a microsecond on, by the velocities
     step, later = 1e-7, frames.copy()
     for frame in later:
         frame[:, :3] = scenes.rotation(step * frame[:, 5]) @ frame[:, :3]
         frame[:, 3] += step * frame[:, 4]
-    rate = (spherical.motion_of(*later) - motion)[:3] / step
+    rate = (relative.ball_motion(*later) - motion)[:3] / step
     assert rate == pytest.approx(motion[4:7], abs=1e-5)
 
 

@@ -99,7 +99,5 @@ class ToyFilm:
 
 def attach(mbs, items, model, position=(), axis=(0, 0, 1), rotation=None, use_global=True, **options):
     """CreateLubricatedJoint with a film model in place of a bearing."""
-    housing, journal = joint_frame.resolve_pair(mbs, items)
-    frame = joint_frame.joint_rotation(housing, axis, rotation, use_global)
-    points = joint_frame.joint_points(housing, journal, position, use_global)
-    return api.attach(mbs, model, housing, journal, points, frame, **options)
+    place = joint_frame.place_joint("CreateLubricatedJoint", mbs, items, position, axis, rotation, use_global)
+    return api.attach(mbs, model, *place, **options)

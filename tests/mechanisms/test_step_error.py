@@ -11,7 +11,7 @@ import pytest
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.record import summary
+from exudyn_ehd.coupling.watch import doubts
 from exudyn_ehd.joint.step_error import FIRST
 from tests.benchmarks.accuracy.scenes import measured
 from tests.mechanisms.test_rates_follow_positions import CLOSURES, four_bar, pin, settings
@@ -67,7 +67,7 @@ def true_error(history, reference, start=0.0):
 def told_steps(joint):
     """The number of steps in all that the line of a run names, None if it names none."""
     history = joint.history
-    line = summary.line(joint.name, joint.bearing, history)
+    line = doubts.line(joint.name, joint.bearing, history)
     found = re.search(r"take (\d+) steps (per turn|in all)", line)
     if found is None:
         return None

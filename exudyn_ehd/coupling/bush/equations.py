@@ -27,8 +27,8 @@ from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Side
-from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
-from exudyn_ehd.coupling.items.reduced_bodies import Carrier
+from exudyn_ehd.coupling.items.objects import warn_if_indefinite
+from exudyn_ehd.coupling.items.reduced_bodies import Carrier, positions, velocities
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.solid.loads import BushLoad, FollowerPressure, dead_forces, factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
@@ -146,8 +146,8 @@ class BushEquations:
         u, v = self._nodal(q), self._nodal(q_t)
         if self.carrier is not None:
             self.carrier.move(q[self.count :], q_t[self.count :], configuration)
-            u[self.slaved] = self.carrier.positions() - self.solid.mesh.nodes[self.slaved]
-            v[self.slaved] = self.carrier.velocities()
+            u[self.slaved] = positions(self.carrier.side.frame, self.carrier.local) - self.solid.mesh.nodes[self.slaved]
+            v[self.slaved] = velocities(self.carrier.side.frame, self.carrier.local)
         return u, v
 
     def _nodal(self, q: np.ndarray) -> np.ndarray:
@@ -252,7 +252,8 @@ class BushEquations:
         whole, carried = self._rounding
         if self.carrier is None:
             return whole * size
-        return math.hypot(whole * size, carried * float(np.abs(self.carrier.positions()).max(initial=0.0)))
+        places = np.abs(positions(self.carrier.side.frame, self.carrier.local)).max(initial=0.0)
+        return math.hypot(whole * size, carried * float(places))
 
     def require_upright(self, mbs: exu.MainSystem, places: np.ndarray, time: float) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""

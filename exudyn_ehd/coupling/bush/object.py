@@ -17,6 +17,7 @@ from exudyn import itemInterface as items
 
 from exudyn_ehd.coupling.bush.equations import BushEquations, RigidPart
 from exudyn_ehd.coupling.contract import CURRENT, Index, NodeIndex, Side, require_system
+from exudyn_ehd.coupling.items.joint_frame import checked_rotation
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.items.reduced_bodies import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.solid.bush import ANCFBush
@@ -256,12 +257,8 @@ def CreateFlexibleBush(
     require_system("CreateFlexibleBush", mbs)
     require_type("CreateFlexibleBush.bush", bush, ANCFBush)
     require_type("CreateFlexibleBush.outer", outer, FreeOuter, FixedOuter, CarriedOuter)
-    rotation = np.eye(3) if rotationMatrix is None else np.asarray(rotationMatrix, dtype=float)
-    if rotation.shape != (3, 3) or not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9):
-        raise InputError(
-            f"CreateFlexibleBush.rotationMatrix must be a rotation matrix, got {rotationMatrix!r}; its columns are "
-            "the bush axes in the global frame."
-        )
+    where = "CreateFlexibleBush.rotationMatrix"
+    rotation = np.eye(3) if rotationMatrix is None else checked_rotation(where, rotationMatrix)
     place = require_vector("CreateFlexibleBush.position", position, 3, "m")
     carry = _carried(mbs, outer.itemNumber, place, rotation) if isinstance(outer, CarriedOuter) else None
     velocity = require_vector("CreateFlexibleBush.initialVelocity", initialVelocity, 3, "m/s")
@@ -357,7 +354,7 @@ def add_bush(
     elif mount is not None:
         slaved[mesh.outer.nodes] = True
         local = mesh.nodes + rotation.T @ (position - mount.point)
-        carrier = Carrier(mbs, mount.side, mount.initial, local[slaved])
+        carrier = Carrier(mbs, mount.side, local[slaved])
         if held[slaved].any():
             raise InputError(
                 "CreateFlexibleBush.supports must leave the outer surface to its carrier, got supported outer nodes; "

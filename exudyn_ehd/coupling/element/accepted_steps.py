@@ -11,7 +11,6 @@ solves in between, in which films are steady, change nothing of it.
 
 from __future__ import annotations
 
-import warnings
 import weakref
 from collections.abc import Callable
 from typing import Protocol
@@ -22,21 +21,21 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
-from exudyn_ehd.coupling.record import summary
+from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder, Record
-from exudyn_ehd.coupling.watch import poor_films, solver_state
-from exudyn_ehd.coupling.watch.long_steps import ChatterWatch, TurnWatch, warn_of_radius
-from exudyn_ehd.coupling.watch.step_control import GapWatch
+from exudyn_ehd.coupling.watch import doubts, solver_state
+from exudyn_ehd.coupling.watch.solver_state import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.limits import HOT
 from exudyn_ehd.joint.balance.newton import lacks_oil
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
-from exudyn_ehd.status import OverloadWarning, Status
+from exudyn_ehd.status import OverloadWarning, Status, warn_user
 
-# A run goes on with the last step of the run before if it starts at its end, share of that step.
+# A run goes on with the last step of the run before if it starts at its end, share of that step; the sum of a million
+# steps has a round-off of 1e-4 of one.
 SAME_TIME = 1e-3
 
 
@@ -50,6 +49,7 @@ class SteppedElement(Protocol):
         Carriers of the joint frame and of the journal's frame.
     failures : Failures
     outer : OuterLoad
+    presence : Presence
     is_massless : bool
         True if it has coordinates of its own without mass, which explicit solvers do not support.
     """
@@ -59,9 +59,7 @@ class SteppedElement(Protocol):
     failures: Failures
     outer: OuterLoad
     is_massless: bool
-
-    def require_items(self, mbs: exu.MainSystem) -> None:
-        """Refuse a system of which items were deleted that the joint was made on."""
+    presence: Presence
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element."""
@@ -206,7 +204,7 @@ class AcceptedSteps:
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
-        self.film.require_items(mbs)
+        self.film.presence.require(mbs)
         film, place, before = self.film, self.film.read(mbs, START_OF_STEP)[0], self._first
         # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
         # nothing has moved either run starts where the other ended
@@ -237,15 +235,15 @@ class AcceptedSteps:
     def _watch_anew(self, mbs: exu.MainSystem) -> None:
         """Begin to watch the films, forces and steps of a run; every warning is given once."""
         bearing, solver = self.film.model.bearing, self.solver
-        self._chatter = ChatterWatch(bearing) if solver_state.is_explicit(solver) else None
+        self._chatter = doubts.ChatterWatch(bearing) if solver_state.is_explicit(solver) else None
         area = 2.0 * bearing.journal_radius * bearing.length
         may_ring = solver is None or solver_state.is_implicit(solver)
         self._ringing = ringing.RingingWatch(area) if may_ring else None
-        self._turning = TurnWatch(mbs, self.film.sides, solver)
-        warn_of_radius(solver)
+        self._turning = doubts.TurnWatch(mbs, self.film.sides, solver)
+        doubts.warn_of_radius(solver)
         self._may_starve = self._uses_memory and lacks_oil(bearing)
-        self._thin, self._told, self._overloaded = poor_films.smooth_limit(bearing), False, False
-        self._cool, self._grid = HOT, poor_films.GridWatch()
+        self._thin, self._told, self._overloaded = doubts.smooth_limit(bearing), False, False
+        self._cool, self._grid = HOT, doubts.GridWatch()
 
     def _take_up(
         self, mbs: exu.MainSystem, start: float, place: list[float], solver: solver_state.Solver | None
@@ -293,9 +291,9 @@ class AcceptedSteps:
         if row is not None and (absurd := failures.absurd(start, row, trial)) is not None:
             raise absurd
         self._cool = failures.check_heat(start, trial, self.film_memory, self._cool)
-        if self._may_starve and self.memory is not None and (lost := poor_films.lost_share(self.memory)) > 0.0:
+        if self._may_starve and self.memory is not None and (lost := doubts.lost_share(self.memory)) > 0.0:
             self._may_starve = False
-            poor_films.warn_of_starvation(failures.name, start, lost)
+            doubts.warn_of_starvation(failures.name, start, lost)
         self._turning.take(failures.name, start)
         if row is None:
             return
@@ -316,10 +314,10 @@ class AcceptedSteps:
         self._grid.take(start, row[PEAK_PRESSURE], getattr(trial.found, "film", None))
         if (gap := row[MINIMUM_GAP]) < self._thin:
             self._thin = -np.inf
-            poor_films.warn_of_thin_film(failures.name, start, gap, failures.tilting(trial.motion))
+            doubts.warn_of_thin_film(failures.name, start, gap, failures.tilting(trial.motion))
         if not self._overloaded and failures.overload(row) > 1.0:
             self._overloaded = True
-            warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)
+            warn_user(failures.overloaded(start, row, trial.motion), OverloadWarning)
 
     @property
     def film_memory(self) -> History | None:
@@ -373,10 +371,10 @@ class AcceptedSteps:
         self._told = True
         failures, bearing, history = self.film.failures, self.film.model.bearing, self.history(mbs)
         self._grid.tell(failures.name)
-        poor_films.warn_of_tiny_forces(failures.name, self.solver, self.tolerance, bearing, history)
-        if summary.is_on() and history.time.size > 1:
+        doubts.warn_of_tiny_forces(failures.name, self.solver, self.tolerance, bearing, history)
+        if doubts.is_on() and history.time.size > 1:
             why = () if self.chosen or solver_state.is_explicit(self.solver) else failures.refused.values()
-            summary.LOGGER.info("%s", summary.line(failures.name, bearing, history, why))
+            doubts.LOGGER.info("%s", doubts.line(failures.name, bearing, history, why))
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the end of the run or the current state if that is later than the last step.

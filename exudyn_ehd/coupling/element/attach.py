@@ -15,11 +15,11 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
-from exudyn_ehd.coupling.contract import Index, JointModel, NodeIndex, Side
+from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
 from exudyn_ehd.coupling.element.nodal import BoreFilmElement, ModalFilmElement, NodalFilmElement, TurningFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.object_mass import own_equations, require_heavy_housing
+from exudyn_ehd.coupling.items.objects import own_equations, require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide, initial_frame
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import centre_of, motion_of
@@ -45,7 +45,7 @@ _BODIES = "lubricatedBodies"
 
 def attach_bush(
     mbs: exu.MainSystem,
-    model: JointModel,
+    model: ElasticBearingModel,
     items: tuple[Item, Item],
     sides: tuple[Side, Side],
     place: tuple[np.ndarray, np.ndarray],
@@ -53,7 +53,7 @@ def attach_bush(
     show: bool,
     gravity: np.ndarray | None,
 ) -> tuple[BoreFilmElement, dict[str, object]]:
-    """Add the bush of ``model`` (an `ElasticBearingModel`).
+    """Add the bush of ``model``.
 
     Parameters
     ----------
@@ -77,7 +77,6 @@ def attach_bush(
     arguments : dict
         Arguments of the element's ObjectGenericODE2 besides nodes and functions.
     """
-    assert isinstance(model, ElasticBearingModel)
     for item, side in zip(items, sides, strict=True):
         start = undeformed(mbs, item, side) if isinstance(side, FloatingBoreSide) else item
         side.frame[:] = initial_frame(mbs, start, side)

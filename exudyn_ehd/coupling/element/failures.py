@@ -11,14 +11,13 @@ end it is 0.2 to 0.9 of 1 / alpha.
 from __future__ import annotations
 
 import math
-import warnings
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
-from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
+from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
+from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.joint.balance.limits import (
     DEEPEST,
@@ -228,17 +227,16 @@ class Failures:
             place = f"{hottest(T, film.grid)}, {self.place(trial.motion)}"
             raise self._at(time, f"the film is at {place}{NO_OIL}{contact}")
         where = f"LubricatedJoint '{self.name}' at t = {time:.9g} s"
-        warnings.warn(hot_film(T, film.grid, where), HotFilmWarning, stacklevel=2)
+        warn_user(hot_film(T, film.grid, where), HotFilmWarning)
         return HOTTEST
 
     def warn_of_memory(self, start: float, end: float) -> None:
         """A run starts elsewhere than the run before has started and ended."""
-        warnings.warn(
+        warn_user(
             f"LubricatedJoint '{self.name}': the run from t = {start:.9g} s starts at a state that no run has led to; "
             f"its film goes on with what it remembers of t = {end:.9g} s (oil content, wear, temperature, deflection). "
             "Call joint.forget() before a run whose film shall start anew.",
             MemoryWarning,
-            stacklevel=2,
         )
 
     def _pressed_through(self, time: float, trial: Trial) -> FilmError | None:

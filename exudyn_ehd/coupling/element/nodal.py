@@ -40,9 +40,6 @@ from exudyn_ehd.solid.bush_modes import BoreModes
 from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.status import Status
 
-# An explicit solver that is not stored gives itself away by so many whole steps in a row, behind the first one.
-EXPLICIT_STEPS = 2
-
 
 class BoreFilmElement(FilmElement):
     """Film between two sides on a bore with nodes of its own."""
@@ -116,7 +113,8 @@ class ModalFilmElement(BoreFilmElement):
             return
         explicit = step == self._step + 1 and step > 1 and (self._at_start or self._asked == 1)
         self._in_a_row = self._in_a_row + 1 if explicit else 0
-        if self._in_a_row == EXPLICIT_STEPS:
+        # behind the first one
+        if self._in_a_row == 2:
             raise self.failures.no_mass()
         self._step, self._asked, self._at_start = step, 1, at_start
 

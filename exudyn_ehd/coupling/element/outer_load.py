@@ -41,9 +41,8 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Side, Trial
-from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.coupling.items.bodies import body_of_node
-from exudyn_ehd.coupling.items.object_mass import object_mass
+from exudyn_ehd.coupling.items.objects import force_owner, object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.watch import solver_state
@@ -53,7 +52,7 @@ from exudyn_ehd.status import SMALL
 UNKNOWN = np.full(LOADS, np.nan)
 _LoadState: TypeAlias = tuple[float, np.ndarray, np.ndarray]
 # Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
-JOURNAL, BALL = ([0, 1], [3, 4]), ([0, 1, 2],)
+JOURNAL, BALL = [[0, 1], [3, 4]], [[0, 1, 2]]
 # Samples within a step; a pulse is seen if it is longer than a step over their number. Each costs a call of every load.
 SAMPLES = 16
 # Halvings of the part with the largest change: with 6 a jump is found to 1 / (16 * 2^6) of the step.

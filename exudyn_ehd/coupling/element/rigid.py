@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from types import ModuleType
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -24,18 +23,16 @@ from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
-from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
+from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of, eccentricity_ratios
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
-from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
+from exudyn_ehd.coupling.record.history import make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.thrust import ThrustModel
 from exudyn_ehd.status import InputError, Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.thrust import ThrustModel
 
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
@@ -71,24 +68,24 @@ class FilmElement:
         Number of film evaluations.
     last : Trial or None
         The state evaluated last, if it is still known.
-    kinematics : module
-        Of the motion that the film knows.
+    kinematics, blocks, messages
+        Kinematics of the motion that the film knows, blocks of its `OuterLoad`, class of its failures.
     """
 
-    kinematics: ModuleType = relative
+    kinematics, blocks, messages = relative.JOURNAL, outer_load.JOURNAL, Failures
 
     def __init__(
         self, model: JointModel, housing: Side, journal: Side, name: str, bore_nodes: Sequence[Index] = ()
     ) -> None:
         self.model = model
         self.sides, self.bore_nodes = (housing, journal), bore_nodes
-        self.failures = Failures(name, model.bearing)
+        self.failures = self.messages(name, model.bearing)
         self.is_massless = False
         self.evaluations = 0
         self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self.steps = AcceptedSteps(self)
-        self.outer = OuterLoad(self.sides, outer_load.JOURNAL)
+        self.outer = OuterLoad(self.sides, self.blocks)
         self.presence: Presence
         self.faces: ThrustModel | None = None
         self.offset = 0.0
@@ -203,7 +200,7 @@ class FilmElement:
 
     def _find_places(self, mbs: exu.MainSystem) -> np.ndarray:
         """Bind the sides to a system, once it is assembled; the places of the element's coordinates."""
-        self.require_items(mbs)
+        self.presence.require(mbs)
         bind(mbs, *self.sides)
         places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
         self._places = np.array(places, dtype=int)
@@ -212,10 +209,6 @@ class FilmElement:
     def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
         return q, q_t
-
-    def require_items(self, mbs: exu.MainSystem) -> None:
-        """Refuse a system of which items were deleted that the joint was made on."""
-        self.presence.require(mbs)
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""

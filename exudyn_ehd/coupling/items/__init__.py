@@ -7,5 +7,5 @@ markers         rigid markers; the best rigid fit of nodes of finite elements; i
 joint_frame     where the joint is, and what is held of its axial freedom
 beams           beams and cables
 reduced_bodies  reduced finite-element bodies; what carries a bush
-object_mass     mass of an object; equations of reduced bodies with an exact Jacobian
+objects         whose user functions an object has, its mass; equations of reduced bodies with an exact Jacobian
 """

@@ -7,19 +7,19 @@ import math
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide, slope_rotation
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, node_side
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
 from exudyn_ehd.status import SMALL, InputError
 
 SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
 """Node types that hold a position and a slope, and their dimension."""
 CABLES = {"ANCFCable2D": 2, "ANCFCable": 3}
 EXACT_BEAMS = ("BeamGeometricallyExact2D", "BeamGeometricallyExact3D", "BeamGeometricallyExact")
-# |cos| between cable and joint axis up to which the axis counts as across the cable, and from which as along it (8
-# degrees)
-ACROSS, ALONG = math.sin(math.radians(8.0)), math.cos(math.radians(8.0))
+# Angle, degrees, up to which the joint axis counts as along a cable, and within which of a right angle as across it.
+ALIGNED = 8.0
 
 
 def node_coordinates(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -58,24 +58,12 @@ def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarr
     x : float
         Place along the element [m], from its first node.
     """
-    if length is None:
-        values, slopes = [1.0, 0.0], [0.0, 1.0]
-    else:
-        s = x / length
-        values = [
-            1.0 - 3.0 * s**2 + 2.0 * s**3,
-            length * (s - 2.0 * s**2 + s**3),
-            3.0 * s**2 - 2.0 * s**3,
-            length * (s**3 - s**2),
-        ]
-        slopes = [
-            (6.0 * s**2 - 6.0 * s) / length,
-            1.0 - 4.0 * s + 3.0 * s**2,
-            (6.0 * s - 6.0 * s**2) / length,
-            3.0 * s**2 - 2.0 * s,
-        ]
+    rows = np.eye(2)
+    if length is not None:
+        curve = CubicHermiteSpline([0.0, length], np.eye(4)[::2], np.eye(4)[1::2])
+        rows = np.array([curve(x), curve(x, 1)])
     part = np.eye(3)[:, :dimension]
-    return tuple(np.hstack([value * part for value in row]) for row in (values, slopes))  # type: ignore[return-value]
+    return np.kron(rows[0], part), np.kron(rows[1], part)
 
 
 def cable_side(
@@ -103,14 +91,14 @@ def cable_side(
     if dimension == 2:
         director = np.array([0.0, 0.0, 1.0])
     else:
-        cosine = abs(float(t @ rotation[:, 2]))
-        if ACROSS < cosine < ALONG:
+        angle = math.degrees(math.acos(min(abs(float(t @ rotation[:, 2])), 1.0)))
+        if ALIGNED < angle < 90.0 - ALIGNED:
             raise InputError(
                 f"CreateLubricatedJoint.axis must be along or across the cable of {where}, got an angle of "
-                f"{math.degrees(math.acos(cosine)):.3g} degrees: a cable has no orientation about its axis; use a beam "
-                "element or a rigid body at its end."
+                f"{angle:.3g} degrees: a cable has no orientation about its axis; use a beam element or a rigid body "
+                "at its end."
             )
-        director = rotation[:, 2] if cosine <= ACROSS else rotation[:, 0]
+        director = rotation[:, 0] if angle <= ALIGNED else rotation[:, 2]
         director = director - t * (t @ director)
         director /= np.linalg.norm(director)
     return SlopeSide(list(nodes), reference, place, slope, director, point, rotation)
@@ -137,12 +125,6 @@ def _within(where: str, x: float, low: float, high: float) -> float:
             f"along its axis, got {x:.6g} m; give the element of the beam that carries the joint, or move the joint."
         )
     return min(max(x, low), high)
-
-
-def beam_ends(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[NodeSide, NodeSide]:
-    """The nodes' own frames of a geometrically exact beam element."""
-    first, second = (node_side(mbs, node) for node in nodes)
-    return first, second
 
 
 def beam_side(

@@ -15,7 +15,7 @@ from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex, Obje
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
-from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide
+from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide, node_side
 from exudyn_ehd.status import InputError
 
 POINT_KINDS = {"Point": rigid_nodes.POINT, "Point2D": rigid_nodes.PLANAR_POINT, "PointGround": rigid_nodes.GROUND}
@@ -251,7 +251,8 @@ def beam_item(
     mbs: exu.MainSystem, where: str, nodes: tuple[Index, ...], length: float, transform: np.ndarray | None = None
 ) -> Item:
     """Element of a geometrically exact beam, or a marker on one at ``transform`` (4, 4), local coordinates."""
-    ends = beams.beam_ends(mbs, nodes)
+    first, second = (node_side(mbs, node) for node in nodes)
+    ends = first, second
     reference, initial, velocities = beams.node_coordinates(mbs, nodes)
     share = None if transform is None else 0.5 + float(transform[0, 3]) / length
     position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])

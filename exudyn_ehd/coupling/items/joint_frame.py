@@ -26,12 +26,30 @@ from exudyn_ehd.coupling.contract import INITIAL, Index, Side
 from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE, POINTS, SPIN, VELOCITY
+from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
+from exudyn_ehd.coupling.kinematics.rigid_nodes import GROUND, PLACE, POINTS, SPIN, VELOCITY
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.status import InputError, require_vector
 
 _WHERE = "CreateLubricatedJoint"
+
+
+def place_joint(
+    where: str,
+    mbs: exu.MainSystem,
+    itemNumbers: Sequence[object],
+    position: Sequence[float] | np.ndarray,
+    axis: Sequence[float] | np.ndarray,
+    matrix: ArrayLike | None,
+    use_global: bool,
+    names: tuple[str, str] = ("housing", "journal"),
+) -> tuple[Item, Item, tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Both items, their joint points (3,) and the joint frame (3, 3), global, checked in the name of ``where``."""
+    with in_the_name_of(where, *names):
+        housing, journal = resolve_pair(mbs, itemNumbers)
+        rotation = joint_rotation(housing, axis, matrix, use_global)
+        return housing, journal, joint_points(housing, journal, position, use_global), rotation
 
 
 def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[object]) -> tuple[Item, Item]:
@@ -67,8 +85,7 @@ def joint_rotation(
             raise InputError(f"{_WHERE}.axis must not be zero, got {axis!r}.")
         z = to_global @ (z / np.linalg.norm(z))
     if matrix is not None:
-        rotation = _checked_rotation(matrix)
-        rotation = to_global @ rotation
+        rotation = to_global @ checked_rotation(f"{_WHERE}.rotationMatrixAxes", matrix)
         # 1e-9: an axis and a matrix typed or computed in double precision agree far better
         if given and np.linalg.norm(np.cross(z, rotation[:, 2])) + max(0.0, -z @ rotation[:, 2]) > 1e-9:
             raise InputError(
@@ -83,9 +100,8 @@ def joint_rotation(
     return frame_of(z, x if np.linalg.norm(np.cross(z, x)) > 1e-6 else y)
 
 
-def _checked_rotation(matrix: ArrayLike) -> np.ndarray:
-    """``rotationMatrixAxes`` as an array (3, 3); `InputError` for what isn't a rotation."""
-    where = f"{_WHERE}.rotationMatrixAxes"
+def checked_rotation(where: str, matrix: ArrayLike) -> np.ndarray:
+    """The argument ``where`` as an array (3, 3); `InputError` for what isn't a rotation."""
     try:
         rotation = np.array(matrix, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -114,22 +130,23 @@ def joint_points(
     return point, point.copy()
 
 
-def check_start(
-    mbs: exu.MainSystem,
-    bearing: JournalBearing,
-    housing: tuple[Item, Side],
-    journal: tuple[Item, Side],
-    yields: Callable[[np.ndarray], bool],
-) -> None:
-    """Refuse an initial state in which the journal isn't inside the bore.
+def move_to_start(mbs: exu.MainSystem, items: tuple[Item, Item], sides: tuple[Side, Side]) -> bool:
+    """Bring both sides to the initial configuration; False with markers, which tell after Assemble alone."""
+    if any(isinstance(side, MarkerSide) for side in sides):
+        return False
+    for k, (item, side) in enumerate(zip(items, sides, strict=True)):
+        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
+            raise InputError(f"{_WHERE}.itemNumbers[{k}]: the initial coordinates of its node are not finite.")
+        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
+    return True
+
+
+def check_start(bearing: JournalBearing, sides: tuple[Side, Side], yields: Callable[[np.ndarray], bool]) -> None:
+    """Refuse an initial state, to which the sides were brought, in which the journal isn't inside the bore.
 
     ``yields`` says whether a bore that is not rigid makes room for a journal at a motion (10,).
     """
-    for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
-        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
-            raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
-    motion, bore, length = relative.motion_of(housing[1].frame, journal[1].frame), BoreGap(bearing), bearing.length
+    motion, bore, length = relative.motion_of(*(side.frame for side in sides)), BoreGap(bearing), bearing.length
     gap = bore.smallest(motion)
     tilt = math.hypot(motion[2], motion[3]) if math.isfinite(motion[2]) else math.inf
     if gap > 0.0 or (math.isfinite(gap) and yields(motion)):
@@ -140,12 +157,12 @@ def check_start(
             f"tilt {tilt:.6g} rad, at most {2.0 * bore.widest / length:.6g} rad fit (2 c / L); check "
             "the initial rotations."
         )
-    half = 0.5 * length
-    ends = [math.hypot(motion[0] + s * half * motion[2], motion[1] + s * half * motion[3]) for s in (-1.0, 1.0)]
+    c = bearing.radial_clearance
+    ratios = eccentricity_ratios(motion, c, length)
     raise InputError(
         f"{_WHERE}: the journal is outside the bore in the initial configuration: eccentricity "
-        f"{math.hypot(motion[0], motion[1]):.6g} m in the mid-plane, {max(ends):.6g} m at an end, radial clearance "
-        f"{bearing.radial_clearance:.6g} m, smallest gap {gap:.6g} m; check the initial positions, and whether the "
+        f"{c * ratios[0]:.6g} m in the mid-plane, {c * ratios[1]:.6g} m at an end, radial clearance "
+        f"{c:.6g} m, smallest gap {gap:.6g} m; check the initial positions, and whether the "
         "clearance is radial."
     )
 
@@ -153,16 +170,21 @@ def check_start(
 def hold(
     mbs: exu.MainSystem,
     name: str,
-    housing: Item,
-    journal: Item,
+    items: tuple[Item, Item],
     points: tuple[np.ndarray, np.ndarray],
     rotation: np.ndarray,
     *,
     axial: bool,
     tilt: bool,
-) -> Index:
+) -> Index | None:
     """Constrain the relative displacement along the joint axis, and the axes' angles to each other, to their values in
-    the reference configuration."""
+    the reference configuration; None where nothing is to be held."""
+    # planar bodies can't move axially or tilt, nor points turn: the constraint would be empty, and singular
+    moves = not all(item.planar or item.kind == GROUND for item in items)
+    axial, tilt = axial and moves, tilt and moves and not all(item.kind in (GROUND, *POINTS) for item in items)
+    if not (axial or tilt):
+        return None
+    housing, journal = items
     asked, turns = ("tilt" if tilt else "axial"), []
     axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
     markers = []
@@ -254,6 +276,42 @@ def add_body_on(
     )
     mbs.SetNodeParameter(body["nodeNumber"], "initialVelocities", [*side.frame[:, VELOCITY], *turning])
     return cast(Index, body["bodyNumber"])
+
+
+def hold_at_pivot(
+    mbs: exu.MainSystem,
+    name: str,
+    items: tuple[Item, Item],
+    pivot: np.ndarray,
+    frame: np.ndarray,
+    held: Sequence[int],
+    spring: tuple[list[float], float | None, float],
+) -> list[Index]:
+    """Hold a pad on its housing at a pivot (3,) with a frame (3, 3), global, in the axes ``held`` (6,) of the frame.
+
+    ``spring`` is an axis (3,) of the frame, along which the pivot has a stiffness, N/m, and a damping, N s/m; a
+    stiffness of None adds no spring.
+    """
+    markers = [
+        rigid_marker(mbs, f"{name} {part}", item, pivot, frame, "a pad")
+        for part, item in zip(("seat", "pivot"), items, strict=True)
+    ]
+    axis, stiffness, damping = spring
+    joint = eii.ObjectJointGeneric(
+        name=f"{name} pivot",
+        markerNumbers=markers,
+        constrainedAxes=list(held),
+        visualization=eii.VObjectJointGeneric(show=False),
+    )
+    support = eii.ObjectConnectorLinearSpringDamper(
+        name=f"{name} spring",
+        markerNumbers=markers,
+        stiffness=stiffness or 0.0,
+        damping=damping,
+        axisMarker0=axis,
+        visualization=eii.VObjectConnectorLinearSpringDamper(show=False),
+    )
+    return [mbs.AddObject(item) for item in (joint, support)[: 1 if stiffness is None else 2]]
 
 
 @contextmanager

@@ -42,7 +42,7 @@ from exudyn_ehd.status import SMALL, InputError
 SLENDER = 1e-8
 
 
-class FittedSide:
+class FittedSide(Side):
     """Frame fitted to nodes whose coordinates are positions.
 
     Parameters
@@ -73,13 +73,12 @@ class FittedSide:
         point: np.ndarray,
         rotation: np.ndarray,
     ) -> None:
-        self.nodes, self.size, self.weights, self.rotation = nodes, size, weights, rotation
+        super().__init__(nodes, size)
+        self.weights, self.rotation = weights, rotation
         self.rows, self.columns = places
         self.reference = reference
         self.spokes = reference - weights @ reference
         self.offset = point - weights @ reference
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, size))
         self.update(None, np.zeros(size), np.zeros(size), None)
 
     def _points(self, values: np.ndarray) -> np.ndarray:

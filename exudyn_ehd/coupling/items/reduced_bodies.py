@@ -30,65 +30,61 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.relative import exponential_map, skew
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, bind, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore, bore_faces, find_bore
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import SMALL, InputError
 
 
-def hold_fe_bore(
-    mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
-) -> tuple[JournalBearing, Item]:
-    """Bearing with the bore that was found in the housing, and the housing that moves with it.
+def hold_fe_surfaces(
+    mbs: exu.MainSystem,
+    bearing: JournalBearing,
+    items: tuple[Item, Item],
+    points: tuple[np.ndarray, np.ndarray],
+    rotation: np.ndarray,
+) -> tuple[JournalBearing, tuple[Item, Item]]:
+    """Bearing with the bore and the journal of the reduced bodies under it, and both items, which move with them.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
     bearing : JournalBearing
-        With an `FEBore` as bush.
-    housing : Item
-        An ObjectFFRFreducedOrder.
-    point, rotation : ndarray (3,), (3, 3)
-        Joint point [m] and joint frame in the reference configuration, global.
+        With an `FEBore` as bush for an ObjectFFRFreducedOrder as housing, an `FEJournal` for one as journal.
+    items : pair of Item
+        Housing and journal.
+    points, rotation : pair of ndarray (3,), ndarray (3, 3)
+        Joint points [m] and joint frame in the reference configuration, global.
 
     Raises
     ------
     InputError
-        If the housing is something else, or has no such bore.
+        If a body has no such surface, or the bearing none for it.
     """
-    bush = bearing.bush
-    if not isinstance(bush, FEBore):
-        raise InputError(
-            "CreateLubricatedJoint.bearing: the bore of an ObjectFFRFreducedOrder deflects by its own modes with "
-            f"bush=FEBore(fem=...), got {type(bush).__name__}(...); for another bush give MarkerSuperElementRigid on "
-            "the body as itemNumbers[0]."
-        )
-    radius = bearing.journal_radius + bearing.radial_clearance
-    reduced, housing = _find_surface(mbs, bush, "bush", housing, (radius, bearing.length), (point, rotation))
-    return dataclasses.replace(bearing, bush=reduced), housing
-
-
-def hold_fe_journal(
-    mbs: exu.MainSystem, bearing: JournalBearing, journal: Item, point: np.ndarray, rotation: np.ndarray
-) -> tuple[JournalBearing, Item]:
-    """Return the bearing with the flexible journal of a body, and the journal's item, as `hold_fe_bore` does."""
-    pin = bearing.journal
-    if not isinstance(pin, FEJournal):
-        raise InputError(
-            "CreateLubricatedJoint.bearing: the journal of an ObjectFFRFreducedOrder deflects by its own modes with "
-            f"journal=FEJournal(fem=...), got {type(pin).__name__}(...); for another one give MarkerSuperElementRigid "
-            "on the body as itemNumbers[1]."
-        )
-    if bearing.thrust is not None:
-        raise InputError(
-            "JournalBearing.thrust=ThrustFaces(...) does not go with journal=FEJournal(...): its collars would move "
-            "with the mean of the journal's surface; give another joint the faces, or leave them out."
-        )
-    size = bearing.journal_radius, bearing.length
-    reduced, held = _find_surface(mbs, pin, "journal", journal, size, (point, rotation))
-    mass = _centrifugal_mass(mbs, pin, journal, point, rotation)
-    return dataclasses.replace(bearing, journal=TurningJournal(surface=reduced, mass=mass)), held
+    held = list(items)
+    for k, (option, kind, name) in enumerate((("bush", FEBore, "bore"), ("journal", FEJournal, "journal"))):
+        surface = getattr(bearing, option, None)
+        if items[k].body is None or surface is None:
+            continue
+        if not isinstance(surface, kind):
+            raise InputError(
+                f"CreateLubricatedJoint.bearing: the {name} of an ObjectFFRFreducedOrder deflects by its own modes "
+                f"with {option}={kind.__name__}(fem=...), got {type(surface).__name__}(...); for another {option} give "
+                f"MarkerSuperElementRigid on the body as itemNumbers[{k}]."
+            )
+        if isinstance(surface, FEJournal) and bearing.thrust is not None:
+            raise InputError(
+                "JournalBearing.thrust=ThrustFaces(...) does not go with journal=FEJournal(...): its collars would "
+                "move with the mean of the journal's surface; give another joint the faces, or leave them out."
+            )
+        size = bearing.journal_radius + (1 - k) * bearing.radial_clearance, bearing.length
+        found, held[k] = _find_surface(mbs, surface, option, items[k], size, (points[k], rotation))
+        if isinstance(surface, FEJournal):
+            mass = _centrifugal_mass(mbs, surface, items[k], points[k], rotation)
+            bearing = dataclasses.replace(bearing, journal=TurningJournal(surface=found, mass=mass))
+        else:
+            bearing = dataclasses.replace(bearing, bush=found)
+    return bearing, (held[0], held[1])
 
 
 def _centrifugal_mass(
@@ -146,7 +142,7 @@ def _find_surface(
     return reduced, dataclasses.replace(item, build=build)
 
 
-class FloatingBoreSide:
+class FloatingBoreSide(Side):
     """Frame that follows a body's floating frame and the rigid part P q, Theta q of its bore's motion in the modes q.
 
     Position ``r + A (x0 + P q)``, rotation ``A exp(Theta q) R``.
@@ -166,13 +162,10 @@ class FloatingBoreSide:
     def __init__(
         self, frame: NodeSide, modal_node: Index, origin: np.ndarray, rotation: np.ndarray, rigid: np.ndarray
     ) -> None:
+        super().__init__([*frame.nodes, modal_node], frame.size + rigid.shape[1])
         self.floating = frame
-        self.nodes = [*frame.nodes, modal_node]
         self.origin, self.rotation = origin, rotation
         self.shift, self.turn = rotation @ rigid[:3], rotation @ rigid[3:]
-        self.size = frame.size + rigid.shape[1]
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, self.size))
         rest = np.zeros(self.size)
         self.update(None, rest, rest, None)
 
@@ -186,7 +179,7 @@ class FloatingBoreSide:
             return
         floating.update(mbs, q[:n], q_t[:n], configuration)
         A, omega = floating.frame[:, :3], floating.frame[:, 5]
-        turned, rate = _rotation(self.turn @ q[n:])
+        turned, rate = exponential_map(self.turn @ q[n:])
         self.jac[:2, :, :n] = floating.jac[:2]
         self.jac[0, :, n:] = A @ self.shift
         self.jac[1, :, n:] = A @ (rate @ self.turn)
@@ -203,24 +196,6 @@ class FloatingBoreSide:
         return floating_change(self.floating, q[: self.floating.size], self.arm, self.jac)
 
 
-def _rotation(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """exp(angle) (3, 3), and T (3, 3) with its angular velocity T d(angle)/dt, in the frame before the rotation."""
-    size = float(np.linalg.norm(angle))
-    S = skew(angle)
-    square = S @ S
-    if size < 1e-4:
-        # to 1e-16 and 1e-12: the next terms are of fourth order
-        first, second, third = 1.0 - size**2 / 6.0, 0.5 - size**2 / 24.0, 1.0 / 6.0 - size**2 / 120.0
-    else:
-        first, second = np.sin(size) / size, 2.0 * (np.sin(0.5 * size) / size) ** 2
-        third = (1.0 - first) / size**2
-    return np.eye(3) + first * S + second * square, np.eye(3) + second * S + third * square
-
-
-# Displacement, m or rad, over which initial velocities are found as differences of positions.
-SMALL = 1e-6
-
-
 class Carrier:
     """Points in the frame of a side.
 
@@ -229,17 +204,14 @@ class Carrier:
     mbs : exudyn.MainSystem
     side : Side
         Carries the bush's frame; the carrier keeps a copy with arrays of its own.
-    initial : ndarray (3, 6)
-        Its frame (A, p, v, omega) in the initial configuration.
     local : ndarray (s, 3)
         X [m].
     """
 
-    def __init__(self, mbs: exu.MainSystem, side: Side, initial: np.ndarray, local: np.ndarray) -> None:
+    def __init__(self, mbs: exu.MainSystem, side: Side, local: np.ndarray) -> None:
         # held by the system's own functions: what they refer to must not keep it alive
         self.mbs: exu.MainSystem = weakref.proxy(mbs)
         self.side: Side = copy.deepcopy(side)
-        self.initial = initial
         self.local = local
         self._bound = False
 
@@ -249,14 +221,6 @@ class Carrier:
             bind(self.mbs, self.side)
             self._bound = True
         self.side.update(self.mbs, q, q_t, configuration)
-
-    def positions(self) -> np.ndarray:
-        """Return x, shape (s, 3) [m]."""
-        return positions(self.side.frame, self.local)
-
-    def velocities(self) -> np.ndarray:
-        """Return dx/dt, shape (s, 3) [m/s]."""
-        return velocities(self.side.frame, self.local)
 
     def frame_accelerations(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Acceleration and angular acceleration (6,) of the frame at q_tt = 0; `move` has run at the same state."""
@@ -310,6 +274,7 @@ def initial_frame(mbs: exu.MainSystem, item: Item, side: Side) -> np.ndarray:
     frame[:, :3], frame[:, 3] = matrix @ side.rotation, place
     fastest = np.abs(rates).max(initial=0.0)
     if fastest > 0.0:
+        # m or rad over which velocities are found as differences of positions
         step = SMALL / fastest
         ends = [_marker_frame(mbs, side, reference + initial + s * step * rates, reference) for s in (1.0, -1.0)]
         frame[:, 4] = (ends[0][0] - ends[1][0]) / (2.0 * step)

@@ -6,6 +6,5 @@ sides          pose, rates and Jacobians of a side; kernels of two sides on node
 rigid_nodes    nodes of rigid bodies
 beam_sides     points of beams and cables
 floating_body  equations of motion of a body in a floating frame with modes
-relative       motion of the journal in the housing's frame, its place along the axis, smallest gap
-spherical      motion of a ball in the frame of its socket
+relative       motion of a journal or a ball in the housing's frame, place along the axis, smallest gap
 """

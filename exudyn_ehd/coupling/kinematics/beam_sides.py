@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 from scipy.spatial.transform import Rotation
 
-from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever, column, combined, cross, dot
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
@@ -101,7 +101,7 @@ def slope_change(Sx, q, d0, rho, jac, change_out):
     add_lever(jac[1], slope_rotation(s, d0) @ rho, change_out)
 
 
-class BeamSide:
+class BeamSide(Side):
     """Frame at a place along a geometrically exact beam element with two rigid-body nodes.
 
     Position, velocity and angular velocity are interpolated linearly between the nodes, as the element's own virtual
@@ -123,12 +123,9 @@ class BeamSide:
     """
 
     def __init__(self, ends: tuple[NodeSide, NodeSide], share: float, point: np.ndarray, rotation: np.ndarray) -> None:
-        self.ends = ends
-        self.weights = (1.0 - share, share)
-        self.nodes = [node for end in ends for node in end.nodes]
-        self.size = sum(end.size for end in ends)
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, self.size))
+        super().__init__([node for end in ends for node in end.nodes], sum(end.size for end in ends))
+        self.ends, self.weights, n = ends, (1.0 - share, share), ends[0].size
+        self.parts = (ends[0], 1.0 - share, slice(n)), (ends[1], share, slice(n, None))
         rest = np.zeros(self.size)
         self._update_ends(rest, rest)
         section = self.section()
@@ -136,15 +133,8 @@ class BeamSide:
         self.rotation = section.T @ rotation
         self.arm = section @ self.rho
 
-    def _parts(self) -> tuple[tuple[NodeSide, float, slice], ...]:
-        n = self.ends[0].size
-        return (
-            (self.ends[0], self.weights[0], slice(0, n)),
-            (self.ends[1], self.weights[1], slice(n, self.size)),
-        )
-
     def _update_ends(self, q: np.ndarray, q_t: np.ndarray) -> None:
-        for end, _, place in self._parts():
+        for end, _, place in self.parts:
             end.update(None, q[place], q_t[place], None)
 
     def _mean(self, column: int) -> np.ndarray:
@@ -170,20 +160,20 @@ class BeamSide:
         self.frame[:, 5] = self._mean(5)
         self.frame[:, 3] = self._mean(3) + self.arm
         self.frame[:, 4] = self._mean(4) + np.cross(self.frame[:, 5], self.arm)
-        for end, weight, place in self._parts():
+        for end, weight, place in self.parts:
             self.jac[:2, :, place] = weight * end.jac[:2]
         self.jac[0] += np.cross(self.jac[1].T, self.arm).T
 
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
         out = np.zeros((6, self.size, self.size))
-        for end, weight, place in self._parts():
+        for end, weight, place in self.parts:
             out[:, place, place] = weight * end.change(mbs, q[place])
         add_lever(self.jac[1], self.arm, out)
         return out
 
 
-class SlopeSide:
+class SlopeSide(Side):
     """Frame on a cable, whose nodes hold positions and slopes; see the module's text.
 
     The roll about the cable is no coordinate: a moment about the cable's axis finds no resistance and no motion there.
@@ -212,16 +202,13 @@ class SlopeSide:
         point: np.ndarray,
         rotation: np.ndarray,
     ) -> None:
-        self.nodes = nodes
+        super().__init__(nodes, reference.size)
         self.reference = reference
-        self.size = reference.size
         self.place, self.slope = np.ascontiguousarray(place), np.ascontiguousarray(slope)
         self.director = np.ascontiguousarray(director)
         own = slope_rotation(self.slope @ reference, self.director)
         self.rho = own.T @ (point - self.place @ reference)
         self.rotation = own.T @ rotation
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, self.size))
 
     def update(
         self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None

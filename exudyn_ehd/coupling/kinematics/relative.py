@@ -13,6 +13,13 @@ with the bearing's axis e_z, the journal's axis a, and the distance z_0 of both 
 configuration. It does not depend on where along the axis the journal's joint point lies; its rate is w, to second order
 in the tilt.
 
+Motion of a ball in the frame of its socket, of whose own frame the place alone counts. With r = p_j - p_h and A the
+socket's frame
+
+    e = A^T r,   v = A^T (v_j - v_h - w_h x r) = A^T u,   w = A^T (w_j - w_h) = A^T s,
+
+and where the socket turns by dphi a vector A^T g fixed in space changes by -A^T (dphi x g).
+
 Smallest gap between a journal and its rigid bore, circular or not.
 
 With the journal's axis at (x, y) + z (b_x, b_y) the gap is c - (x + z b_x) cos theta - (y + z b_y) sin theta and what
@@ -22,6 +29,8 @@ the bore's profiles add. Its smallest value in a circular bore is c less the lar
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -45,6 +54,20 @@ def skew(v: np.ndarray) -> np.ndarray:
 def skews(vectors: np.ndarray) -> np.ndarray:
     """Matrices (n, 3, 3) of the cross products with the columns of ``vectors`` (3, n)."""
     return np.moveaxis(_CROSS @ vectors, -1, 0)
+
+
+def exponential_map(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """exp(angle) (3, 3), and T (3, 3) with its angular velocity T d(angle)/dt, in the frame before the rotation."""
+    size = float(np.linalg.norm(angle))
+    S = skew(angle)
+    square = S @ S
+    if size < 1e-4:
+        # to 1e-16 and 1e-12: the next terms are of fourth order
+        first, second, third = 1.0 - size**2 / 6.0, 0.5 - size**2 / 24.0, 1.0 / 6.0 - size**2 / 120.0
+    else:
+        first, second = math.sin(size) / size, 2.0 * (math.sin(0.5 * size) / size) ** 2
+        third = (1.0 - first) / size**2
+    return np.eye(3) + first * S + second * square, np.eye(3) + second * S + third * square
 
 
 @njit(cache=True)
@@ -193,7 +216,7 @@ def wrench_map(frame_h, frame_j, jac_h, jac_j):
 def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, k_out, d_out):
     """Add dQ/dq to ``k_out`` and write dQ/dq_t to ``d_out`` (n, n); ``k_out`` brings the geometric blocks of the sides.
 
-    ``tangent`` (6, 10) is d wrench / d motion in the joint frame.
+    ``tangent`` (6, m) is d wrench / d motion in the joint frame, of a motion with m entries.
     """
     force, moment = (loads[2, 0], loads[2, 1], loads[2, 2]), (-loads[1, 0], -loads[1, 1], -loads[1, 2])
     by_wrench, n_h = wrench_map(frame_h, frame_j, jac_h, jac_j), jac_h.shape[2]
@@ -203,7 +226,7 @@ def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, m
         jac, k = (jac_h, c) if c < n_h else (jac_j, c - n_h)
         for i in range(6):
             by_place[i] = by_rate[i] = 0.0
-            for m in range(10):
+            for m in range(tangent.shape[1]):
                 by_place[i] += tangent[i, m] * motion_q[m, c]
                 by_rate[i] += tangent[i, m] * motion_qt[m, c]
         # the arm of the force about the journal's point
@@ -224,6 +247,42 @@ def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, m
             k_out[i, c] += total
 
 
+def ball_motion(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
+    """Motion (11,) of a ball for frames (3, 6): place, 0, velocity, 0, angular velocity."""
+    out = np.zeros(11)
+    d = frame_j - frame_h
+    turn = skew(frame_h[:, SPIN]) @ d[:, PLACE]
+    out[:3], out[4:7], out[8:] = (d[:, PLACE], d[:, VELOCITY] - turn, d[:, SPIN]) @ frame_h[:, :3]
+    return out
+
+
+def ball_variation(
+    frame_h: np.ndarray, frame_j: np.ndarray, jac_h: np.ndarray, jac_j: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives (11, n) of a ball's motion to q and q_t, columns in the order socket, ball."""
+    d, spin, n_h = frame_j - frame_h, skew(frame_h[:, SPIN]), jac_h.shape[2]
+    arm, moving = skew(d[:, PLACE]), skew(d[:, VELOCITY] - spin @ d[:, PLACE])
+    by_q, by_rate = np.zeros((2, 11, n_h + jac_j.shape[2]))
+    for sign, (jp, jr, vq, wq), own in ((-1.0, jac_h, slice(n_h)), (1.0, jac_j, slice(n_h, None))):
+        place, rate, spun, turn = jp, vq - spin @ jp, wq, sign * frame_h[:, :3].T
+        if sign < 0.0:
+            place, rate = jp - arm @ jr, rate - arm @ wq - moving @ jr
+            spun = wq - skew(d[:, SPIN]) @ jr
+        by_q[:3, own], by_q[4:7, own], by_q[8:, own] = turn @ place, turn @ rate, turn @ spun
+        by_rate[4:7, own], by_rate[8:, own] = turn @ place, turn @ jr
+    return by_q, by_rate
+
+
+class Kinematics(NamedTuple):
+    """Motion (m,) of one frame in another, and its derivatives (m, n) to the coordinates and rates of both."""
+
+    motion_of: Callable
+    variation_of: Callable
+
+
+JOURNAL, BALL = Kinematics(motion_of, variation_of), Kinematics(ball_motion, ball_variation)
+
+
 def centre_of(frame_h: np.ndarray, frame_j: np.ndarray, offset: float) -> np.ndarray:
     """Centre (3,) of the journal in the joint frame for the distance ``offset`` of the joint points, m."""
     arm = frame_j[:, PLACE] - offset * frame_j[:, AXIS] - frame_h[:, PLACE]
@@ -242,6 +301,14 @@ def levers_of(bearing: JournalBearing) -> np.ndarray:
     """Lengths (4,) that turn a motion's places, or their rates, into distances: a tilt counts at the ends, m."""
     half = 0.5 * bearing.length
     return np.array(getattr(bearing, "levers", (1.0, 1.0, half, half)))
+
+
+def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
+    """Eccentricity ratio in the mid-plane and the largest along the length (which is at an end: it is convex)."""
+    x, y, bx, by = motion[:4].tolist()
+    half = 0.5 * length
+    ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
+    return (x * x + y * y) ** 0.5 / radial_clearance, ends**0.5 / radial_clearance
 
 
 # Points around and along a bore that is no circular cylinder.
@@ -291,10 +358,7 @@ class BoreGap:
         """Smallest gap [m] at a motion (10,) of the journal's axis; negative where the surfaces overlap."""
         if self.depth.size:
             return float(self.values(motion).min())
-        x, y, bx, by = motion[:4].tolist()
-        half = self.half
-        ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
-        return self.clearance - math.sqrt(ends)
+        return self.clearance * (1.0 - eccentricity_ratios(motion, self.clearance, 2.0 * self.half)[1])
 
     def values(self, motion: np.ndarray) -> np.ndarray:
         """Gaps [m] all over a bore with profiles."""

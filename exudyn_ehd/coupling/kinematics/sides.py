@@ -12,15 +12,20 @@ jac) of `rigid_nodes`, the housing's first; q and q_t (n,) hold both sides' coor
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import exudyn as exu
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import global_loads, motion_of, tangent_matrices, variation_of
+from exudyn_ehd.coupling.kinematics.relative import (
+    JOURNAL,
+    Kinematics,
+    global_loads,
+    motion_of,
+    tangent_matrices,
+    variation_of,
+)
 from exudyn_ehd.coupling.kinematics.rigid_nodes import node_change, node_frame, vary
 
 NODE_KINDS = {
@@ -32,7 +37,7 @@ NODE_KINDS = {
 """Kinds of rotation coordinates of rigid-body nodes, by Exudyn's names of the nodes."""
 
 
-class NodeSide:
+class NodeSide(Side):
     """Marker frame fixed to one rigid-body node, or to ground.
 
     Parameters
@@ -52,16 +57,12 @@ class NodeSide:
     def __init__(
         self, kind: int, node: Index | None, reference: np.ndarray, rho: np.ndarray, rotation: np.ndarray
     ) -> None:
+        super().__init__([] if node is None else [node], rigid_nodes.COORDINATES[kind])
         self.kind = kind
-        self.nodes = [] if node is None else [node]
-        self.size = rigid_nodes.COORDINATES[kind]
         self.reference = np.ascontiguousarray(reference, dtype=float)
         self.rho = np.ascontiguousarray(rho, dtype=float)
         self.rotation = np.ascontiguousarray(rotation, dtype=float)
-        self.frame = np.zeros((3, 6))
-        self.frame[:, :3] = self.rotation
-        self.frame[:, 3] = self.rho
-        self.jac = np.zeros((4, 3, self.size))
+        self.frame[:, :3], self.frame[:, 3] = self.rotation, self.rho
 
     @property
     def arrays(self) -> tuple[int | np.ndarray, ...]:
@@ -91,7 +92,7 @@ def node_side(mbs: exu.MainSystem, node: Index) -> NodeSide:
     return side
 
 
-class MarkerSide:
+class MarkerSide(Side):
     """Marker frame of any rigid marker, through Exudyn's marker Jacobians.
 
     The change of the Jacobians with the coordinates, which velocities and the geometric stiffness need, comes from
@@ -109,12 +110,9 @@ class MarkerSide:
     """
 
     def __init__(self, marker: Index, nodes: list[Index], rotation: np.ndarray) -> None:
+        super().__init__(nodes, 0)
         self.marker = marker
-        self.nodes = nodes
         self.rotation = np.ascontiguousarray(rotation, dtype=float)
-        self.frame = np.zeros((3, 6))
-        self.jac = np.zeros((4, 3, 0))
-        self.size = -1
         self._offers_change = True
 
     def bind(self, mbs: exu.MainSystem) -> None:
@@ -161,17 +159,12 @@ class TreeSide(MarkerSide):
     the link have zero columns.
     """
 
-    def bind(self, mbs: exu.MainSystem) -> None:
-        """Find the number of coordinates."""
-        super().bind(mbs)
-        self._leading = ~np.tri(self.size, dtype=bool)  # [k, j]: j > k
-
     def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
-        Jp, Jr = self.jac[0].T, self.jac[1].T
+        Jp, Jr, behind = self.jac[0].T, self.jac[1].T, ~np.tri(self.size, dtype=bool)  # [k, j]: j > k
         turned = np.cross(Jr[None, :, :], np.stack([Jp, Jr])[:, :, None, :])
-        turned[0][self._leading] = np.cross(Jr[:, None, :], Jp[None, :, :])[self._leading]
-        turned[1][self._leading] = 0.0
+        turned[0][behind] = np.cross(Jr[:, None, :], Jp[None, :, :])[behind]
+        turned[1][behind] = 0.0
         # joints off the path move nothing, and nothing that they carry counts
         return turned.transpose(0, 3, 1, 2).reshape(6, self.size, self.size)
 
@@ -240,11 +233,11 @@ def motion_between(
     q: np.ndarray,
     q_t: np.ndarray,
     configuration: exu.ConfigurationType,
-    kinematics: ModuleType = relative,
+    kinematics: Kinematics = JOURNAL,
 ) -> np.ndarray:
-    """Bring two sides to q and q_t (n,), housing's first; the motion as `relative`, or another one, has it."""
+    """Bring two sides to q and q_t (n,), housing's first; return the motion."""
     housing, journal = sides
-    if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
+    if kinematics is JOURNAL and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
         return np.asarray(move_nodes(housing.arrays, journal.arrays, q, q_t))
     n = housing.size
     housing.update(mbs, q[:n], q_t[:n], configuration)
@@ -258,7 +251,7 @@ def derivatives_between(
     state: tuple[np.ndarray, np.ndarray],
     wrench: np.ndarray,
     tangent: np.ndarray,
-    kinematics: ModuleType = relative,
+    kinematics: Kinematics = JOURNAL,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Derivatives of what a wrench between housing and journal makes of a state (q, q_t), to which both are brought.
 
@@ -266,20 +259,19 @@ def derivatives_between(
     ----------
     wrench : (6,) array
         On the journal, joint frame.
-    tangent : (6, 10) array
+    tangent : (6, m) array
         Its derivatives to the motion.
-    kinematics : module
-        `relative`, or another one with its ``variation_of``.
+    kinematics : Kinematics
 
     Returns
     -------
     stiffness, damping : (n, n) arrays
         dQ/dq and dQ/dq_t.
-    motion_q, motion_qt : (10, n) arrays
+    motion_q, motion_qt : (m, n) arrays
         Derivatives of the motion.
     """
     (housing, journal), (q, q_t), n_h, loads = sides, state, sides[0].size, np.empty((4, 3))
-    if kinematics is relative and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
+    if kinematics is JOURNAL and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
         found: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
         found = derive_nodes(housing.arrays, journal.arrays, q, q_t, wrench, tangent)
         return found

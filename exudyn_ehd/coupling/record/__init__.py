@@ -4,8 +4,6 @@ Module map
 ----------
 history      quantities over accepted steps
 record       the rows and films of a joint's accepted steps, and histories back from files
-thinning     numbers and errors of steps; some of the steps, with the worst ones
-on_disk      a history in a file, for long runs
-summary      a run in one line
+rows         numbers and errors of steps; some of the steps, with the worst ones; rows in a file, for long runs
 revolutions  extremes by revolution
 """

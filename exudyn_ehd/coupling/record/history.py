@@ -403,14 +403,6 @@ def has_gaps(step_count: np.ndarray) -> bool:
     return bool(np.any(np.diff(step_count) > 1))
 
 
-def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
-    """Eccentricity ratio in the mid-plane and the largest along the length (which is at an end: it is convex)."""
-    x, y, bx, by = motion[:4].tolist()
-    half = 0.5 * length
-    ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
-    return (x * x + y * y) ** 0.5 / radial_clearance, ends**0.5 / radial_clearance
-
-
 def make_row(
     time: float,
     motion: np.ndarray,

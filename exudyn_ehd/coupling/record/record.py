@@ -25,10 +25,17 @@ from exudyn_ehd.coupling.record.history import (
     JointHistory,
     has_gaps,
 )
-from exudyn_ehd.coupling.record.on_disk import RowsOnDisk, between, open_rows, read_head, require_own
-from exudyn_ehd.coupling.record.thinning import Every, Period, Thinner, errors_of
+from exudyn_ehd.coupling.record.rows import (
+    Every,
+    Period,
+    RowsOnDisk,
+    Thinner,
+    between,
+    open_rows,
+    read_head,
+    require_own,
+)
 from exudyn_ehd.joint.model.fields import FilmFields
-from exudyn_ehd.joint.step_error import NO_ERROR
 from exudyn_ehd.status import ROUNDING, InputError, RunError, require_integer, require_number
 from exudyn_ehd.storage import read_arrays, require_path
 
@@ -41,11 +48,7 @@ class Record:
 
     Parameters
     ----------
-    bearing : JournalBearing
-    errors : function
-        As `errors_of`.
-    none : array
-        Error of the pose at the beginning.
+    bearing : JournalBearing or SphericalBearing
 
     Attributes
     ----------
@@ -55,10 +58,9 @@ class Record:
         Minimum film thickness of all rows, m; infinite where no film has one.
     """
 
-    def __init__(self, bearing: JournalBearing, errors: Callable = errors_of, none: np.ndarray = NO_ERROR) -> None:
+    def __init__(self, bearing: JournalBearing) -> None:
         self._dimensions: dict[str, Any] = {name: float(getattr(bearing, name)) for name in DIMENSIONS}
-        self._errors = functools.partial(errors, bearing), none
-        self._thinner = Thinner(None, *self._errors)
+        self._bearing, self._thinner = bearing, Thinner(None, bearing)
         self._disk: RowsOnDisk | None = None
         # rows as they came, the last of which may be replaced; settled ones, thinned or on their way to the file
         self._rows: list[np.ndarray] = []
@@ -68,7 +70,7 @@ class Record:
 
     def thin(self, rule: Every | Period) -> None:
         """Drop rows by a rule from now on."""
-        self._thinner = Thinner(rule, *self._errors)
+        self._thinner = Thinner(rule, self._bearing)
 
     def keep_on_disk(self, path: pathlib.Path, joint: str) -> None:
         """Let all rows but the last ones go to a file of this joint."""

@@ -4,9 +4,8 @@ Module map
 ----------
 api        `SolveEquilibrium`, `SolveThreshold`, `stability_map`
 result     what was found: coefficients, eigenvalues, unbalance response
-vibrations eigenvalues of a linear system, also with films that follow with a delay
 solve      equilibrium of all films from speed to speed; what the theory asks of a system
 films      the films about a state in which rotors spin
-system     an Exudyn system about such a state, without its films
+system     an Exudyn system about such a state, without its films; eigenvalues of a linear system
 spinning   which nodes turn with a rotor, and about which axis
 """

@@ -14,7 +14,7 @@ from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, ObjectIn
 from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
 from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, State, films_off
 from exudyn_ehd.coupling.rotor.spinning import WHERE
-from exudyn_ehd.coupling.run.solve import joints_of, require_items
+from exudyn_ehd.coupling.run.solve import joints_of
 from exudyn_ehd.status import InputError, require_number, require_plausible
 
 # Speeds at which a threshold is first looked for between its limits.
@@ -221,10 +221,11 @@ def _search(
 ) -> Iterator[EquilibriumSearch]:
     """A search in a system that gets its states and films back."""
     require_system(WHERE, mbs, assembled=True)
-    require_items(mbs)
     joints = joints_of(mbs)
     if not joints:
         raise InputError(f"{WHERE}: the system has no lubricated joint; create its bearings by CreateLubricatedJoint.")
+    for joint in joints:
+        joint.element.presence.require(mbs)
     data = mbs.systemData
     kept = [(c, data.GetSystemState(c), data.GetODE2Coordinates_tt(c), data.GetTime(c)) for c in CONFIGURATIONS]
     try:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.contract import NodeIndex, Side
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
@@ -16,7 +16,7 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import SHARE
+from exudyn_ehd.coupling.run.newton import SHARE
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.newton import (
     FREE_STEP,
@@ -35,13 +35,11 @@ from exudyn_ehd.joint.static.equilibrium import NO_LOAD
 from exudyn_ehd.joint.static.pad_equilibrium import PadSearch
 from exudyn_ehd.joint.static.pads import PadModel
 from exudyn_ehd.joint.static.steady import require_rest
+from exudyn_ehd.joint.thrust import ThrustEvaluation
 from exudyn_ehd.status import FilmError, InputError, Status
 
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.thrust import ThrustEvaluation
 
-
-class SpinningSide:
+class SpinningSide(Side):
     """One side of a joint: its node in the system, None for ground, its frame and its Jacobians.
 
     Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t: dp = Jp dx and
@@ -50,8 +48,8 @@ class SpinningSide:
 
     def __init__(self, side: NodeSide, node: TurningNode | None) -> None:
         self.side, self.node = side, node
-        self.size, self.nodes = (0 if node is None else 6), side.nodes
-        self.frame, self.jac = side.frame.copy(), np.zeros((4, 3, self.size))
+        super().__init__(side.nodes, 0 if node is None else 6)
+        self.frame[:] = side.frame
         self.places = np.arange(self.size) + (0 if node is None else node.own.start)
         self._arm = np.zeros(3)
 

@@ -29,9 +29,8 @@ from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
-# Unbalance over the loads of the films that counts as none, steps of Newton's method that may pass, and rounding of
-# places over their distance from the origin.
-TOLERANCE, STEPS, EXACT = 1e-8, 40, 1e-15
+# Unbalance over the loads of the films that counts as none, and steps of Newton's method that may pass.
+TOLERANCE, STEPS = 1e-8, 40
 FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
 # Angle by which rotors are turned to see that they are the same in all directions, rad, and how far they may differ.
 TURN, ISOTROPIC = 1.0, 1e-4
@@ -211,7 +210,9 @@ class EquilibriumSearch:
         scale = max(math.sqrt(size), 1e-300)
         residual = float(np.abs(self.weights * (free @ (free.T @ r))).max()) / scale
         reach = max(float(np.abs(node.position(system.q)).max()) for node in system.nodes.values())
-        rounding = EXACT * reach * float(np.abs(np.outer(self.weights, self.weights) * K).max()) / scale
+        rounding = (
+            np.finfo(float).resolution * reach * float(np.abs(np.outer(self.weights, self.weights) * K).max()) / scale
+        )
         return ForceBalance(r, K, r_u, free, mend, -inverse.T @ r, residual, rounding)
 
     def _step(self, balance: ForceBalance) -> np.ndarray:

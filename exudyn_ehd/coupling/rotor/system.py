@@ -21,11 +21,13 @@ Exudyn's elements: its ``RigidBodySpringDamper`` damps velocities in space, whic
 
 Source of the variation of omega: dA = [dphi] A and A_t = [omega] A give [d omega] = d/dt [dphi] + [dphi][omega] -
 [omega][dphi]. The derivatives of r are central differences; films are left out, whose tangents are exact (`films`).
+
+Vibrations of a linear system, also of one whose films follow them with a delay.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias, cast
 
 import exudyn as exu
@@ -33,10 +35,10 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.relative import exponential_map, skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, node_side
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import FilmError, InputError
 
 # Steps of the differences: m or rad, and m/s or rad/s, in which the forces of bodies are quadratic.
 STEP, RATE_STEP = 1e-6, 1e-2
@@ -90,7 +92,8 @@ class TurningNode:
         theta = self.side.reference[3:] + q[self.places[3:]]
         change = self.rates(q, x[3:])[1]
         if self.side.kind == rigid_nodes.ROTATION_VECTOR:
-            change = _rotation_vector_rates(theta, change)
+            # the angular velocity is that in the turned frame
+            change = np.linalg.solve(exponential_map(theta)[1].T, change)
         theta = theta + change
         if self.side.kind == rigid_nodes.EULER_PARAMETERS:
             theta /= np.linalg.norm(theta)
@@ -266,8 +269,7 @@ class SpinningSystem:
         q = self.q.copy()
         for _, node, axis in self.spinning:
             start = node.turn(self.q)
-            a = skew(start @ axis)
-            goal = (np.eye(3) + np.sin(angle) * a + (1.0 - np.cos(angle)) * a @ a) @ start
+            goal = exponential_map(angle * (start @ axis))[0] @ start
             for _ in range(50):
                 rest = goal @ node.turn(q).T
                 x = 0.5 * np.array([0, 0, 0, rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]])
@@ -289,11 +291,79 @@ class SpinningSystem:
         return np.array(self._solver.GetSystemMassMatrix())[:n, :n]
 
 
-def _rotation_vector_rates(theta: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """Rates (3,) of a rotation vector theta (3,) for an angular velocity in the turned frame.
+# Vibrations of films with a memory, as shares of their size: the change that ends a search, the distance up to which
+# the shape decides between two, and how far a step may lead. Smallest step of the films' share, and rounds of one.
+SETTLED, NEAR, FARTHEST, SMALLEST_SHARE, ROUNDS = 1e-7, 0.2, 0.25, 1e-3, 8
+# Step of difference quotients over the speed: their error of 1e-5 slows the rounds, but is none of the result.
+DIFFERENCE = 1e-5
+Stiffness: TypeAlias = Callable[[complex], np.ndarray]
 
-    Inverse of ``omega = (I - (1 - cos t) / t^2 [theta] + (t - sin t) / t^3 [theta]^2) theta_t`` with t = |theta|.
+
+def vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K) y = 0``."""
+    n = len(M)
+    lower = -np.linalg.solve(M, np.hstack((K, D)))
+    values, vectors = np.linalg.eig(np.vstack((np.eye(n, 2 * n, n), lower)))
+    return values.astype(complex), vectors[:n].astype(complex)
+
+
+def delayed_vibrations(
+    M: np.ndarray, D: np.ndarray, K: np.ndarray, beyond: Stiffness, speed: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K + beyond(s)) y = 0`` for films with a memory.
+
+    They are followed from those of the films' K and C at half the speed, as the dynamic stiffness takes their place by
+    and by.
     """
-    t, a = float(np.linalg.norm(theta)), skew(theta)
-    factor = 1.0 / 12.0 if t < 1e-3 else (1.0 - 0.5 * t / np.tan(0.5 * t)) / t**2
-    return omega + 0.5 * a @ omega + factor * a @ a @ omega
+    half = 0.5 * speed
+    there = beyond(1j * half)
+    start = D + there.imag / half, K + there.real
+    values, vectors = vibrations(M, *start)
+    for j in np.flatnonzero(values.imag >= 0.0):
+        twin = np.argmin(np.abs(values - values[j].conj())) if values[j].imag > 0.0 else j
+        share, step = 0.0, 0.25
+        while share < 1.0:
+            larger = min(1.0, share + step)
+
+            def stiffness(s: complex, share: float = larger) -> np.ndarray:
+                """Dynamic stiffness (n, n) without inertia, with a share of the films' own."""
+                return share * (K + s * D + beyond(s)) + (1.0 - share) * (start[1] + s * start[0])
+
+            found = _near(M, stiffness, values[j], vectors[:, j], DIFFERENCE * speed)
+            share, step = (share, 0.5 * step) if found is None else (larger, 1.5 * step)
+            if found is not None:
+                values[j], vectors[:, j] = found
+            elif step < SMALLEST_SHARE:
+                raise FilmError(
+                    f"RotorResult: the vibration near {values[j]:.6g} 1/s at {speed:.6g} rad/s is not found, because "
+                    "its films follow it with a delay; look at speeds beside it, or run it in time."
+                )
+        if twin != j:
+            values[twin], vectors[:, twin] = values[j].conj(), vectors[:, j].conj()
+    return values, vectors
+
+
+def _near(
+    M: np.ndarray, stiffness: Stiffness, s: complex, y: np.ndarray, step: float
+) -> tuple[complex, np.ndarray] | None:
+    """The vibration near s with a shape near y; None if it is lost.
+
+    Every round solves for all vibrations of the damping and stiffness tangent to ``stiffness`` at the one before.
+    """
+    before = s
+    for _ in range(ROUNDS):
+        at = stiffness(s)
+        by_s = (stiffness(s + step) - at) / step
+        values, shapes = vibrations(M, by_s, at - s * by_s)
+        alike = np.abs(y.conj() @ shapes) / np.linalg.norm(shapes, axis=0)
+        # of those that are as near as the nearest, the one with this shape
+        away = np.abs(values - s)
+        best = np.argmax(np.where(away <= away.min() + NEAR * abs(s), alike, -1.0))
+        change, s = abs(values[best] - s), values[best]
+        if abs(s - before) > FARTHEST * abs(before):
+            return None
+        if change <= SETTLED * abs(s):
+            # round-off leaves an imaginary part to motions that only decay
+            s = complex(s.real, s.imag if abs(s.imag) > SETTLED * abs(s) else 0.0)
+            return s, shapes[:, best] / np.linalg.norm(shapes[:, best])
+    return None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
@@ -12,9 +11,9 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, require_system
 from exudyn_ehd.coupling.element.nodal import ModalFilmElement
+from exudyn_ehd.coupling.element.outputs import QUANTITIES, add_sensor, reader
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.element.sensors import add_sensor
-from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
@@ -26,8 +25,6 @@ from exudyn_ehd.status import SMALL, InputError, require_number, require_type, w
 from exudyn_ehd.storage import fingerprint
 
 FILE = "it is that of joint.state(); files of SaveState are for ehd.SolveDynamic(..., restart=path)."
-# Points at which modes of a bore are compared: angles [rad], shares of the length.
-_ANGLES, _PLACES = np.linspace(0.3, 6.1, 7), np.array([-0.43, 0.11, 0.37])
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -89,11 +86,13 @@ class Joint:
         The film between the two frames.
     """
 
-    name: str
-    mbs: exu.MainSystem
-    bearing: JournalBearing
-    objectNumber: Index
-    element: FilmElement
+    _quantities = QUANTITIES
+
+    def __init__(self, mbs: exu.MainSystem, element: FilmElement, numbers: tuple[Index, Index | None]) -> None:
+        self.mbs, self.name = mbs, element.failures.name
+        self.element: FilmElement = element
+        self.bearing: JournalBearing = element.model.bearing
+        self.objectNumber, self.constraintNumber = numbers
 
     @property
     def history(self) -> JointHistory:
@@ -112,12 +111,12 @@ class Joint:
         A new record does not reset wear, oil content and temperature of the film: see `forget`. Before Assemble the
         history is empty, and a warning says so; after it, before a run, it holds the initial state.
         """
-        history = self._recorded()
+        history = self._history()
         if not history.time.size and not np.isfinite(self.element.steps.began):
             warn_user(f"Joint '{self.name}': its history is empty before a run; run a solver first.", UserWarning)
         return history
 
-    def _recorded(self) -> JointHistory:
+    def _history(self) -> JointHistory:
         """Return the record like `history`, without a warning."""
         return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
 
@@ -142,12 +141,12 @@ class Joint:
         """Refuse a system that is not at the end of its run, as it was made for the joint."""
         where = f"{type(self).__name__}.{method}"
         require_system(where, self.mbs, assembled=True, of=f" of joint '{self.name}'")
-        self.element.require_items(self.mbs)
+        self.element.presence.require(self.mbs)
         require_end(where, self.mbs, self.element.steps.solver)
 
     def _audited(self) -> JointHistory:
         """Return the record for an audit, which needs steps, and all of them."""
-        history, where = self._recorded(), f"{type(self).__name__}.audit: joint '{self.name}'"
+        history, where = self._history(), f"{type(self).__name__}.audit: joint '{self.name}'"
         if history.time.size == 0:
             raise InputError(f"{where} has no accepted steps yet; run a solver first.")
         if history.is_thinned:
@@ -206,18 +205,43 @@ class Joint:
         check_owner(self, state)
         self.element.steps.resume(state.time, state.memory, state.rows, state.begin)
 
-    def _add_sensor(
+    def AddSensor(
         self,
-        title: str,
-        read: Callable[[exu.MainSystem], np.ndarray],
-        file_name: str,
-        name: str,
-        write_to_file: bool | None,
+        quantity: Quantity | exu.OutputVariableType | str,
+        *,
+        fileName: str = "",
+        name: str = "",
+        writeToFile: bool | None = None,
     ) -> Index:
-        """Number of a new sensor of what ``read`` gives."""
-        write = bool(file_name) if write_to_file is None else write_to_file
-        self.element.require_items(self.mbs)
-        return add_sensor(self.mbs, self.element, read, name or f"{self.name} {title}", file_name, write)
+        """Add an Exudyn sensor of one quantity, e.g. for ``mbs.PlotSensor`` and ``mbs.GetSensorStoredData``.
+
+        Parameters
+        ----------
+        quantity : Quantity, exudyn.OutputVariableType or str
+            A quantity of the film, by its name in `JointHistory` or as a `Quantity`: vectors are in the joint frame,
+            loads act on the journal. Of a ball ``eccentricity_ratio``, ``force`` (on the ball, socket's frame),
+            ``minimum_gap``, ``peak_pressure``, ``power_loss`` or ``contact_load``. Or an output of Exudyn's joints, as
+            of one with the markers [housing, journal], film, end faces and constraint together: in the housing's joint
+            frame ForceLocal, TorqueLocal, DisplacementLocal, VelocityLocal, Rotation (Tait-Bryan angles),
+            AngularVelocityLocal, HomogeneousTransformationLocal; global Force, Torque, Displacement, AngularVelocity,
+            and Position, Velocity, HomogeneousTransformation of the housing's joint point. Forces and torques of these
+            outputs act from the journal on the housing, torques about the bearing's centre.
+        fileName : str, default ""
+            File to write to, as in Exudyn's sensors.
+        name : str, default ""
+            Name of the sensor; by default joint and quantity.
+        writeToFile : bool or None, default None
+            Write the file; None: if a file name is given. The sensor stores its values in any case.
+
+        Returns
+        -------
+        exudyn.SensorIndex
+        """
+        where = f"{type(self).__name__}.AddSensor"
+        title, read = reader(self.element, self.constraintNumber, quantity, self._quantities, where)
+        self.element.presence.require(self.mbs)
+        write = bool(fileName) if writeToFile is None else writeToFile
+        return add_sensor(self.mbs, self.element, read, name or f"{self.name} {title}", fileName, write)
 
 
 def digest(bearing: JournalBearing) -> str:
@@ -237,8 +261,9 @@ def bore_modes_of(element: FilmElement) -> np.ndarray | None:
     """
     if not isinstance(element, ModalFilmElement):
         return None
-    places = element.model.bearing.length * _PLACES
-    return np.vstack((element.bore.radial(_ANGLES, places).reshape(-1, element.stiffness.size), element.stiffness))
+    # any angles, rad, and shares of the length tell modes apart
+    angles, places = np.linspace(0.3, 6.1, 7), element.model.bearing.length * np.array([-0.43, 0.11, 0.37])
+    return np.vstack((element.bore.radial(angles, places).reshape(-1, element.stiffness.size), element.stiffness))
 
 
 def check_owner(joint: Joint, state: JointState) -> None:

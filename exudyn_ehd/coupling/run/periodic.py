@@ -20,7 +20,7 @@ import exudyn as exu
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.relative import JOURNAL
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.watch.solver_state import hooked
@@ -131,7 +131,7 @@ class Closing:
         if not joints:
             raise InputError(f"{where}: the system has no lubricated joints whose orbits could close.")
         for joint in joints:
-            if joint.element.kinematics is not relative or getattr(joint.bearing, "thrust", None) is joint.bearing:
+            if joint.element.kinematics is not JOURNAL or getattr(joint.bearing, "thrust", None) is joint.bearing:
                 raise InputError(
                     f"{where}: joint '{joint.name}' holds a ball or a thrust pad, whose record has no orbit; leave out "
                     "until_periodic."

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, JointModel, require_system
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, JointModel, Side, require_system
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
@@ -185,48 +185,68 @@ def _part(arrays: dict[str, np.ndarray], prefix: str, kind: type[Part]) -> Part 
 _WHERE = "LubricatedJoint.place_in_equilibrium"
 
 
+def equilibrium_task(
+    where: str, journal: Side, subject: str, motion: np.ndarray, load: Sequence[float] | np.ndarray, speed: float | None
+) -> tuple[NodeSide, tuple[float, float], float]:
+    """A journal that can be placed, the load (2,) on it and its speed, checked; its motion (10,) has the default."""
+    if not isinstance(journal, NodeSide) or not journal.nodes:
+        raise InputError(
+            f"{where}: the journal of {subject} must be a rigid body or node that moves; place other bodies by a "
+            "static solve (ehd.SolveStatic)."
+        )
+    x, y = require_vector(f"{where}: load", load, 2, "N")
+    spin = float(motion[8]) if speed is None else require_number(f"{where}: speed", speed, "rad/s")
+    if spin == 0.0:
+        raise InputError(
+            f"{where}: {subject} does not turn in the initial state, and a film without speed carries no steady load; "
+            "give speed=..., or the bodies an initial angular velocity."
+        )
+    return journal, (x, y), spin
+
+
+def shift_journal(
+    mbs: exu.MainSystem,
+    journal: NodeSide,
+    state: tuple[np.ndarray, np.ndarray],
+    frame: np.ndarray,
+    position: np.ndarray,
+    motion: np.ndarray,
+) -> None:
+    """Bring a journal of a motion (10,) in a frame (3, 3) to a position (2,) and to rest across the axis there.
+
+    ``state``: coordinates and rates of the system, changed in place.
+    """
+    places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])))[: rigid_nodes.translations(journal.kind)]
+    # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
+    for values, change in zip(state, (position - motion[:2], -motion[4:6]), strict=True):
+        values[places] += (frame[:, :2] @ change)[: places.size]
+
+
 def place(
     mbs: exu.MainSystem, element: FilmElement, name: str, load: Sequence[float] | np.ndarray, speed: float | None
 ) -> EquilibriumResult:
     """Move the journal's node to its equilibrium; see `LubricatedJoint.place_in_equilibrium`."""
-    journal = element.sides[1]
     require_system(_WHERE, mbs, assembled=True, of=f" of joint '{name}'")
-    if not isinstance(journal, NodeSide) or not journal.nodes:
-        raise InputError(
-            f"{_WHERE}: the journal of joint '{name}' must be a rigid body or node that moves; place other bodies by a "
-            "static solve (ehd.SolveStatic)."
-        )
     if getattr(element, "bush", None) is not None:
         raise InputError(
             f"{_WHERE}: joint '{name}' has a nodal bush, whose nodes would have to move too; place the journal's body "
             "before the joint is created (initialDisplacement), at ehd.equilibrium(...).position: the bush then "
             "starts in equilibrium with its film."
         )
-    force = require_vector(f"{_WHERE}: load", load, 2, "N")
     motion = element.motion(mbs, INITIAL)[:MOTION_SIZE]
-    if speed is not None:
-        motion[8] = require_number(f"{_WHERE}: speed", speed, "rad/s")
-    if motion[8] == 0.0:
-        raise InputError(
-            f"{_WHERE}: joint '{name}' does not turn in the initial state, and a film without speed carries no steady "
-            "load; give speed=..., or the bodies an initial angular velocity."
-        )
+    journal, force, motion[8] = equilibrium_task(_WHERE, element.sides[1], f"joint '{name}'", motion, load, speed)
     bearing = element.model.bearing
     result = equilibrium(
         bearing,
         speed=float(motion[8]),
-        load=(force[0], force[1]),
+        load=force,
         tilt=(motion[2], motion[3]),
         axial_position=0.0 if element.faces is None else float(element.faces_motion(motion)[-1]),
     )
     housing = element.sides[0].frame[:, :3]
     coordinates = np.array(mbs.systemData.GetODE2Coordinates(INITIAL), dtype=float)
     rates = np.array(mbs.systemData.GetODE2Coordinates_t(INITIAL), dtype=float)
-    places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])), dtype=int)
-    size = rigid_nodes.translations(journal.kind)
-    coordinates[places[:size]] += (housing[:, :2] @ (result.position - motion[:2]))[:size]
-    # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
-    rates[places[:size]] -= (housing[:, :2] @ motion[4:6])[:size]
+    shift_journal(mbs, journal, (coordinates, rates), housing, result.position, motion)
     bore = np.zeros(0) if result.film.bore_coordinates is None else result.film.bore_coordinates
     for node in element.bore_nodes:
         where = np.array(mbs.systemData.GetNodeLTGODE2(int(node)), dtype=int)

@@ -14,8 +14,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.kinematics.relative import levers_of
-from exudyn_ehd.coupling.watch.long_steps import USUAL_RADIUS
-from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.coupling.watch.doubts import USUAL_RADIUS
+from exudyn_ehd.coupling.watch.solver_state import StepControl
 from exudyn_ehd.status import (
     InputError,
     PlausibilityWarning,

@@ -13,14 +13,12 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton_limits import free_bushes
+from exudyn_ehd.coupling.run.newton import StartGuess, free_bushes, refuse
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
 from exudyn_ehd.coupling.run.restart import SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time, warn_of_misfit
-from exudyn_ehd.coupling.run.start_guess import StartGuess, refuse
 from exudyn_ehd.coupling.run.step_size import steps_by_error
-from exudyn_ehd.coupling.watch.solver_state import hooked
-from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.coupling.watch.solver_state import StepControl, hooked
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
 JOINTS = "lubricatedJoints"
@@ -57,10 +55,12 @@ def require_new(where: str, mbs: exu.MainSystem, name: str) -> None:
         )
 
 
-def require_items(mbs: exu.MainSystem) -> None:
-    """Refuse a system of which items were deleted that a joint was made on."""
+def require_run(where: str, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> None:
+    """Refuse what is no system or no settings, and a system of which items were deleted that a joint was made on."""
+    require_system(where, mbs)
+    require_settings(where, settings)
     for joint in joints_of(mbs):
-        joint.element.require_items(mbs)
+        joint.element.presence.require(mbs)
 
 
 @overload
@@ -152,14 +152,12 @@ def SolveDynamic(
     >>> round(float(1e6 * joint.history.minimum_gap[-1]), 2)  # um
     23.72
     """
-    require_system("SolveDynamic", mbs)
-    require_settings("SolveDynamic", simulationSettings)
+    require_run("SolveDynamic", mbs, simulationSettings)
     state = None
     if restart is not None:
         state = restart if isinstance(restart, SystemState) else load_state(restart)
     else:
         require_time("SolveDynamic", simulationSettings)
-    require_items(mbs)
     time, kind = simulationSettings.timeIntegration, options.get("solverType")
     implicit = (time.solverType if kind is None else kind) in _IMPLICIT
     require_control("SolveDynamic", simulationSettings, stepControl, implicit=implicit)
@@ -224,9 +222,7 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     >>> round(joint.history.force[-1, 1])  # N, along y
     500
     """
-    require_system("SolveStatic", mbs)
-    require_settings("SolveStatic", simulationSettings)
-    require_items(mbs)
+    require_run("SolveStatic", mbs, simulationSettings)
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **options | {"storeSolver": True}))
 

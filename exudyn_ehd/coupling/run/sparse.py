@@ -48,14 +48,11 @@ from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.coupling.contract import require_system
-from exudyn_ehd.coupling.run.newton_limits import state_of
-from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time
-from exudyn_ehd.coupling.run.solve import joints_of, require_items, running
-from exudyn_ehd.coupling.run.start_guess import StartGuess
+from exudyn_ehd.coupling.run.newton import StartGuess, state_of
+from exudyn_ehd.coupling.run.settings import require_control, require_time
+from exudyn_ehd.coupling.run.solve import joints_of, require_run, running
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
-from exudyn_ehd.coupling.watch.solver_state import idle, user_function
-from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.coupling.watch.solver_state import StepControl, idle, user_function
 from exudyn_ehd.solid.linear import solve_by_products, sparse_factor
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer
 
@@ -194,12 +191,10 @@ def SolveDynamicSparse(
     >>> joint.history.time.shape
     (21,)
     """
-    require_system("SolveDynamicSparse", mbs)
     settings = exu.SimulationSettings() if simulationSettings is None else simulationSettings
-    require_settings("SolveDynamicSparse", settings)
+    require_run("SolveDynamicSparse", mbs, settings)
     require_time("SolveDynamicSparse", settings)
     _require_offered(settings.timeIntegration)
-    require_items(mbs)
     require_control("SolveDynamicSparse", settings, stepControl)
     if not mbs.systemIsConsistent:
         mbs.Assemble()

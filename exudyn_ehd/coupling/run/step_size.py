@@ -41,12 +41,10 @@ SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 KEPT = 0.94
 # Allowed error of steps over the error asked for: errors of successive steps cancel in part. Larger: longer steps.
 CANCELLED = 1.5
-# Shares of a step in which a repeated one ends that has a jump in its middle.
-LEAST_OF_STEP, MOST_OF_STEP = 0.25, 0.75
+# Least share of a step, at its beginning and its end, in which none ends that is repeated for a jump in its middle.
+END_OF_STEP = 0.25
 # Least share of the error asked for that a jump may make beside the error that is left from earlier ones.
 LEAST_OF_ERROR = 0.5
-# Steps that Exudyn never takes before it doubles one of itself.
-NEVER = 10**9
 
 
 _StepState: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np.ndarray | None]
@@ -96,7 +94,7 @@ class _JointError:
             jump = jump if math.isfinite(loads[-1, OFFSET]) else share * moved[2]
             asked = max(asked - moved[3], LEAST_OF_ERROR * asked)
             if jump > asked:
-                most = step * min(MOST_OF_STEP, max(LEAST_OF_STEP, math.sqrt(asked / jump)))
+                most = step * min(1.0 - END_OF_STEP, max(END_OF_STEP, math.sqrt(asked / jump)))
                 # a whole number of steps and a half to the jump, so that the last one has it in its middle
                 centred = (place - start) / (max(1.0, math.ceil((place - start) / most + 0.5)) - 0.5)
                 self.wanted = max(centred, min(most, 0.5 * step * asked / jump))
@@ -213,7 +211,8 @@ def steps_by_error(
     control = StepSize(settings, films, error, sensors=mbs.systemData.NumberOfSensors() > 0)
     run = settings.timeIntegration
     kept = run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize
-    run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = NEVER, True
+    # Exudyn itself never doubles a step
+    run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = 10**9, True
     with (
         hooked(mbs, "PostNewton", control.look),
         hooked(mbs, "PostStep", control.choose),

@@ -12,8 +12,7 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
-from exudyn_ehd.coupling.element.presence import force_owner
-from exudyn_ehd.coupling.items.object_mass import as_sparse, hidden_mass, is_hidden
+from exudyn_ehd.coupling.items.objects import as_sparse, force_owner, hidden_mass, is_hidden
 from exudyn_ehd.status import InputError
 
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
@@ -31,8 +30,8 @@ _CONSTRAINTS = (
     "JointRollingDisc",
     "JointSpherical",
 )
-# Exudyn's steps of numerical differentiation: settings.timeIntegration.newton.numericalDifferentiation.
-RELATIVE_STEP, SMALLEST_COORDINATE = 1e-7, 1e-2
+# Exudyn's steps of numerical differentiation.
+_STEPS = exu.SimulationSettings().timeIntegration.newton.numericalDifferentiation
 
 
 class Factors(NamedTuple):
@@ -272,7 +271,7 @@ def _differences(mbs: exu.MainSystem, item: Index, places: np.ndarray, fK: float
         # a coordinate that an object has twice moves once
         for column, place in zip(*np.unique(places, return_index=True)[::-1], strict=True):
             moved = state.copy()
-            step = RELATIVE_STEP * (SMALLEST_COORDINATE + abs(state[place]))
+            step = _STEPS.relativeEpsilon * (_STEPS.minimumCoordinateSize + abs(state[place]))
             moved[place] += step
             write(moved.tolist())
             out[:, column] += factor / step * (np.array(mbs.ComputeItem(item, kind)) - still)

@@ -2,8 +2,7 @@
 
 Module map
 ----------
-solver_state  which solver runs, with which step
-step_control  implicit steps too coarse for a film, rejected
-long_steps    explicit steps beyond their stability limit; meshes on absolute coordinates that turn too far in a step
-poor_films    films that run dry, are thinner than the surfaces are rough, or carry less than Newton's tolerance
+solver_state  which solver runs, with which step; implicit steps too coarse for a film, rejected
+doubts        explicit steps beyond their stability limit; meshes that turn too far in a step; films that run dry, are
+              too thin, too steep or too light; a run in one line
 """

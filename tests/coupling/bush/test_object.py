@@ -429,7 +429,7 @@ def test_unusable_input_is_refused_with_the_next_step():
     ground = model.mbs.CreateGround()
     with pytest.raises(InputError, match="use FixedOuter"):
         CreateFlexibleBush(model.mbs, bush=bush, outer=CarriedOuter(itemNumber=ground))
-    with pytest.raises(InputError, match="rotationMatrix must be a rotation matrix"):
+    with pytest.raises(InputError, match="rotationMatrix must be orthonormal and right-handed"):
         CreateFlexibleBush(model.mbs, bush=bush, outer=FreeOuter(), rotationMatrix=2 * np.eye(3))
     with pytest.raises(InputError, match=r"Support.nodes must be mesh nodes"):
         CreateFlexibleBush(model.mbs, bush=bush, outer=FreeOuter(), supports=[Support(nodes=np.array([99999]))])

@@ -17,6 +17,7 @@ from rods import JOURNAL, PUSH, RING, rod, total
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.bush.object import CarriedOuter, CreateFlexibleBush
 from exudyn_ehd.coupling.items.markers import resolve
+from exudyn_ehd.coupling.items.reduced_bodies import positions, velocities
 from tests.sampling import sample
 
 SOFT = ehd.SaintVenantKirchhoff(youngs_modulus=1e8, poisson_ratio=0.3, density=2000.0)
@@ -68,18 +69,18 @@ def test_slaved_nodes_move_as_their_jacobian_and_accelerations_say(kind, measure
     carrier.move(q, q_t)
     speed = (carrier.jacobian() @ q_t).reshape(-1, 3)
     scale = np.abs(speed).max()
-    measured("velocity", np.abs(speed - carrier.velocities()).max() / scale, 1e-12)
+    measured("velocity", np.abs(speed - velocities(carrier.side.frame, carrier.local)).max() / scale, 1e-12)
     acceleration = carrier.point_accelerations(carrier.frame_accelerations(q, q_t))
     whole, rates = mbs.systemData.GetODE2Coordinates(), mbs.systemData.GetODE2Coordinates_t()
-    places, velocities, step = [], [], 1e-5
+    places, rates_there, step = [], [], 1e-5
     for s in (1.0, -1.0):
         put(mbs, whole + s * step * rates, rates)
         carrier.move(*state(bush))
-        places.append(carrier.positions())
-        velocities.append(carrier.velocities())
+        places.append(positions(carrier.side.frame, carrier.local))
+        rates_there.append(velocities(carrier.side.frame, carrier.local))
     by_place = np.abs((places[0] - places[1]) / (2 * step) - speed).max() / scale
     measured("place", by_place, LOOSE.get(kind, 1e-8))
-    change = (velocities[0] - velocities[1]) / (2 * step)
+    change = (rates_there[0] - rates_there[1]) / (2 * step)
     size = max(np.abs(change).max(), scale)
     measured("acceleration", np.abs(change - acceleration).max() / size, LOOSE.get(kind, 1e-8))
 

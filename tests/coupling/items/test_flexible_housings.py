@@ -21,7 +21,7 @@ from rods import RING, total
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.items.markers import resolve
-from exudyn_ehd.coupling.items.object_mass import as_sparse
+from exudyn_ehd.coupling.items.objects import as_sparse
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 
 SPEED, LOAD, PERIODS = 314.0, 4000.0, 3

@@ -13,7 +13,7 @@ from exudyn.advancedUtilities import NumericalJacobian
 from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.items.object_mass import object_mass
+from exudyn_ehd.coupling.items.objects import object_mass
 from exudyn_ehd.status import InputError
 from tests.finite_elements import fem_of
 

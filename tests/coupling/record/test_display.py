@@ -11,7 +11,7 @@ from rotor import CLEARANCE, LENGTH, RADIUS, rotor, run, steel_bush
 from springs import joined
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.element.display import GREY, ring_triangles
+from exudyn_ehd.coupling.element.outputs import GREY, ring_triangles
 
 TURN = scenes.rotation([0.4, -0.3, 0.5])
 

@@ -13,8 +13,8 @@ from exudyn.utilities import InertiaCylinder
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record import history as rows_of
 from exudyn_ehd.coupling.record.history import make_row
-from exudyn_ehd.coupling.record.on_disk import HEAD, RowsOnDisk
 from exudyn_ehd.coupling.record.record import Record
+from exudyn_ehd.coupling.record.rows import HEAD, RowsOnDisk
 from exudyn_ehd.joint.step_error import LOADS, MASS, MOMENTUM
 
 ROOT = Path(__file__).parents[3]

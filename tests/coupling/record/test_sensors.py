@@ -8,7 +8,7 @@ import scenes
 from exudyn.utilities import InertiaCuboid
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.element.sensors import OUTPUTS
+from exudyn_ehd.coupling.element.outputs import OUTPUTS
 
 OUTPUT = exu.OutputVariableType
 BEARING = ehd.JournalBearing(

@@ -15,7 +15,7 @@ import scenes
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record import summary
+from exudyn_ehd.coupling.watch import doubts
 from exudyn_ehd.joint.step_error import enough_steps
 
 
@@ -25,7 +25,7 @@ def lines():
     said = []
     handler = logging.Handler()
     handler.emit = lambda record: said.append(record.getMessage())
-    logger = summary.LOGGER
+    logger = doubts.LOGGER
     logger.addHandler(handler)
     logger.setLevel(logging.INFO)
     logger.propagate = False
@@ -231,7 +231,7 @@ def test_steps_that_are_too_coarse_are_named(lines):
     coarse.step_error[40] = 0.08
     needed = enough_steps(coarse.time, coarse.motion[:, 8], coarse.step_error)
     said = f"error of the time steps 8 % of the minimum film thickness at {history.time[40]:.6g} s: take {needed}"
-    assert said in summary.line("bearing", joint.bearing, coarse)
+    assert said in doubts.line("bearing", joint.bearing, coarse)
 
 
 @pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])
@@ -245,7 +245,7 @@ def test_number_of_steps_that_would_do(spin, needed):
 
 
 def test_one_switch_turns_the_lines_off(lines):
-    summary.LOGGER.setLevel(logging.WARNING)
+    doubts.LOGGER.setLevel(logging.WARNING)
     mbs, joint = scene()
     ehd.SolveDynamic(mbs, scenes.settings(0.002, 10, tolerance=1e-8))
     assert joint.history.time.size == 11
@@ -257,13 +257,13 @@ import logging, sys
 if "configured" in sys.argv:
     logging.basicConfig(stream=sys.stdout, level=logging.INFO, format="own %(message)s")
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record import summary
+from exudyn_ehd.coupling.watch import doubts
 if "off" in sys.argv:
     logging.getLogger("exudyn_ehd").setLevel("WARNING")
-if summary.is_on():
-    summary.LOGGER.info("line")
-if summary.is_on():
-    summary.LOGGER.info("second")
+if doubts.is_on():
+    doubts.LOGGER.info("line")
+if doubts.is_on():
+    doubts.LOGGER.info("second")
 """
 
 

@@ -11,8 +11,8 @@ from turning import spinning_ring
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
-from exudyn_ehd.coupling.run import newton_limits
-from exudyn_ehd.coupling.run.newton_limits import SHARE, SMALLEST_GAP_SHARE, allowed_part
+from exudyn_ehd.coupling.run import newton
+from exudyn_ehd.coupling.run.newton import SHARE, SMALLEST_GAP_SHARE, allowed_part
 
 C, LENGTH, CYCLE = 25e-6, 0.02, 0.02
 BEARING = ehd.JournalBearing(
@@ -71,10 +71,10 @@ def test_a_step_of_any_size_leaves_the_integrators_formulas(monkeypatch):
         d = rng.normal(size=3) * size
         new = [old[0] + d, old[1] + 2.0 * d / h, old[2] + 4.0 * d / h**2, old[3] + 1e9 * d]
 
-        limit, states = newton_limits.GapLimit([Axis(old, new)]), [[values.copy() for values in old], new]
-        monkeypatch.setattr(newton_limits, "state_of", lambda _, states=states: states[0])
+        limit, states = newton.GapLimit([Axis(old, new)]), [[values.copy() for values in old], new]
+        monkeypatch.setattr(newton, "state_of", lambda _, states=states: states[0])
         limit.start(None)
-        monkeypatch.setattr(newton_limits, "state_of", lambda _, states=states: states[1])
+        monkeypatch.setattr(newton, "state_of", lambda _, states=states: states[1])
         limit.shorten(None, np.array([1.0, 1.0, 1.0]))
         gaps = [smallest_gap(Axis.of(values)) for values in (old, new)]
         assert gaps[1] == pytest.approx((1.0 - SHARE) * gaps[0], rel=1e-6)
@@ -132,7 +132,7 @@ def test_steps_are_not_halved_for_newtons_method(planar_rotor, monkeypatch):
     """A step that would go through the wall is not halved; where no step goes there nothing changes."""
     coarse, fine = thrown(planar_rotor, 100), thrown(planar_rotor, 400)
     assert coarse.minimum_gap.min() == pytest.approx(fine.minimum_gap.min(), rel=0.02)
-    monkeypatch.setattr(newton_limits, "allowed_part", lambda *_: 1.0)
+    monkeypatch.setattr(newton, "allowed_part", lambda *_: 1.0)
     halved, same = thrown(planar_rotor, 100), thrown(planar_rotor, 400)
     # 200 steps; without the limit sixty are added
     assert coarse.time.size < 225 < 250 < halved.time.size

@@ -10,7 +10,7 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.run.start_guess import coordinates_of, lasting
+from exudyn_ehd.coupling.run.newton import coordinates_of, lasting
 from tests.mechanisms.exudyn_data.spatial import spatial_crank
 from tests.sampling import sample
 

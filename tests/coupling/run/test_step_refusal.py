@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scenes
 
-from exudyn_ehd.coupling.run.start_guess import refuse
+from exudyn_ehd.coupling.run.newton import refuse
 
 
 def falling(before, largest, own):

@@ -10,7 +10,7 @@ import scenes
 from exudyn.utilities import RigidBodyInertia
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch import poor_films
+from exudyn_ehd.coupling.watch import doubts
 from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 
@@ -98,7 +98,7 @@ def test_it_is_seen_before_the_load_has_fallen(eccentricity):
         evaluation = model.evaluate(motion, history, 1e-3)
         history = evaluation.history()
         loads.append(math.hypot(*evaluation.wrench[:2]))
-        lost = poor_films.lost_share(history)
+        lost = doubts.lost_share(history)
     assert loads[-1] > 0.8 * loads[0]
     for _ in range(60):
         evaluation = model.evaluate(motion, history, 1e-3)
@@ -106,4 +106,4 @@ def test_it_is_seen_before_the_load_has_fallen(eccentricity):
     assert math.hypot(*evaluation.wrench[:2]) < 0.75 * loads[0]
     groove = ehd.AxialGroove(angle=math.pi, width_angle=0.4, length=0.04, pressure=1e5)
     supplied = build_model(bearing(cavitation=VENTED, supply=(groove,)))
-    assert poor_films.lost_share(supplied.evaluate(motion).history()) == 0.0
+    assert doubts.lost_share(supplied.evaluate(motion).history()) == 0.0

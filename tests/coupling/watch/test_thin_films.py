@@ -6,7 +6,7 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch import poor_films
+from exudyn_ehd.coupling.watch import doubts
 
 
 def run(load, speed=300.0, **options):
@@ -33,8 +33,8 @@ def test_a_smooth_film_below_the_roughness_of_good_surfaces_warns_once():
     (text,) = [str(w.message) for w in told if w.category is ehd.ThinFilmWarning]
     assert "'bearing': at t = " in text
     assert "asperity=GreenwoodTripp" in text
-    assert history.minimum_gap.min() < poor_films.GOOD_SURFACE
-    first = history.time[history.minimum_gap < poor_films.GOOD_SURFACE][0]
+    assert history.minimum_gap.min() < doubts.GOOD_SURFACE
+    first = history.time[history.minimum_gap < doubts.GOOD_SURFACE][0]
     assert float(text.split("t = ")[1].split(" s ")[0]) == pytest.approx(first)
 
 
@@ -57,4 +57,4 @@ def test_small_bearings_have_finer_surfaces():
     bearing = ehd.JournalBearing(
         journal_radius=5e-4, length=5e-4, radial_clearance=1e-6, lubricant=ehd.Lubricant(viscosity=0.02)
     )
-    assert poor_films.smooth_limit(bearing) == pytest.approx(0.05e-6)
+    assert doubts.smooth_limit(bearing) == pytest.approx(0.05e-6)

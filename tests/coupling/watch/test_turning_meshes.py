@@ -11,7 +11,7 @@ from bodies import section
 from turning import BEARING, free_ring, spinning_ring
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch.long_steps import largest_turn, lost_share
+from exudyn_ehd.coupling.watch.doubts import largest_turn, lost_in_a_turn
 
 SPEED = 300.0
 
@@ -96,4 +96,4 @@ def test_loss_in_the_first_turn(radius, per_turn, measured):
     first = ring.momentum()[1][2]
     turn(mbs, per_turn, per_turn, radius)
     lost = 1.0 - ring.momentum()[1][2] / first
-    measured("loss", abs(lost / (lost_share(radius) * (2.0 * np.pi / per_turn) ** 2) - 1.0), 0.15)
+    measured("loss", abs(lost / (lost_in_a_turn(radius) * (2.0 * np.pi / per_turn) ** 2) - 1.0), 0.15)

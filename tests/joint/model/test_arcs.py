@@ -8,7 +8,7 @@ import pytest
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.element.display import ring_triangles
+from exudyn_ehd.coupling.element.outputs import ring_triangles
 from exudyn_ehd.joint.model.build import build_model
 from tests.reference.arc_film import arc_film
 from tests.sampling import sample

@@ -8,29 +8,39 @@ Exudyn asks for the picture only while a renderer runs, or for an image of its r
 (``SC.renderer.RedrawAndGetImage(True)``, which needs no display). The first time it does, the film element begins to
 hand over the pressure of every accepted step; before that nothing is stored. Within a run, drawing never evaluates the
 film, whose last evaluation belongs to the solver; outside of one it shows the film of the present state.
+
+Exudyn sensors that read a joint: quantities of its film, and what Exudyn's own joints give.
+
+The latter are those of a joint whose first marker is on the housing and whose second is on the journal: what is local
+is in the housing's joint frame A0, loads are those that the journal hands on to the housing (minus those on the
+journal), of films, thrust faces and constraint together. Torques are vectors about the bearing's centre, as Exudyn's
+spring-dampers have them; ``TorqueLocal`` of its ideal joints holds multipliers, of ``CreateRevoluteJoint``
+(-M_y, M_x).
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import exudyn as exu
 import exudyn.graphics
+import exudyn.itemInterface as eii
 import numpy as np
+from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Data, Side, Trial
+from exudyn_ehd.coupling.contract import Data, Index, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.objects import Presence
+from exudyn_ehd.coupling.record.history import COLUMNS, WIDTH, Quantity
 from exudyn_ehd.solid.elements.element import face_of
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import InputError, Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization
 # Colour of the housing's ring or the bush, through which the film is seen.
 GREY = [0.72, 0.74, 0.78, 0.2]
-# Thickness of the housing's ring, and the clearance as drawn: shares of the journal's radius.
-WALL, CLEARANCE = 0.2, 0.1
 
 
 class FilmDisplay:
@@ -52,7 +62,7 @@ class FilmDisplay:
     def __init__(self, element: FilmElement) -> None:
         self.element = element
         self.wanted = False
-        self.clearance = CLEARANCE
+        self.clearance = 0.1
         self.pressure: np.ndarray | None = None
         self.gap: np.ndarray | None = None
         self.largest = 0.0
@@ -114,7 +124,8 @@ class FilmDisplay:
             surface(np.column_stack([journal[:, 0], bore[:, 0]]), z[[0, 0]], ends)
             surface(np.column_stack([bore[:, -1], journal[:, -1]]), z[[-1, -1]], ends)
         if self.bush is None:
-            wall = np.full(len(bore), bore.max() + WALL * model.bearing.journal_radius)
+            # the housing's ring is a fifth of the journal's radius thick
+            wall = np.full(len(bore), bore.max() + 0.2 * model.bearing.journal_radius)
             surface(np.column_stack([bore[:, 0], wall, wall, bore[:, -1]]), z[[0, 0, -1, -1]], GREY)
         else:
             mesh = model.bore.modes.mesh
@@ -146,6 +157,24 @@ class FilmDisplay:
         return self._housing.frame
 
 
+def add_element(mbs: exu.MainSystem, display: FilmDisplay, show: bool, color: Sequence[float], **more: object) -> Index:
+    """Add the object of a display's element to a system; ``more``: further arguments of ObjectGenericODE2."""
+    element = display.element
+    name, shown = element.failures.name, {"show": show, "color": list(color)}
+    number = mbs.AddObject(
+        eii.ObjectGenericODE2(
+            name=name,
+            nodeNumbers=element.nodes,
+            forceUserFunction=element.force,
+            jacobianUserFunction=element.jacobian,
+            visualization=eii.VObjectGenericODE2(graphicsDataUserFunction=display.graphics, **shown),
+            **more,
+        )
+    )
+    element.presence = Presence(mbs, name, element, number, element.sides)
+    return number
+
+
 def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Global points (n, k, 3) of radii (n, k) at the angles theta (n,) and the axial places (k,) of a frame (3, 6)."""
     z = np.broadcast_to(places, radii.shape)
@@ -171,3 +200,129 @@ def pressure_colours(pressure: np.ndarray) -> np.ndarray:
     low, high = float(pressure.min()), float(pressure.max())
     share = (pressure - low) / (high - low) if high > low else np.zeros_like(pressure)
     return matplotlib.colormaps["viridis"](share)
+
+
+_NO_ROW = np.full(WIDTH, np.nan)
+QUANTITIES = tuple(member.value for member in Quantity)
+
+
+def _turn(h: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Rotation (3, 3) of the journal against the housing, for their frames (3, 6)."""
+    return h[:, :3].T @ j[:, :3]
+
+
+def _local(h: np.ndarray, j: np.ndarray, column: int) -> np.ndarray:
+    """Difference of a column of the frames, in the housing's."""
+    return h[:, :3].T @ (j[:, column] - h[:, column])
+
+
+def _transformation(rotation: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """The 16 components of a homogeneous transformation, row by row."""
+    return np.vstack([np.column_stack([rotation, place]), [0.0, 0.0, 0.0, 1.0]]).ravel()
+
+
+OUTPUTS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]] = {
+    "Position": lambda h, j, load: h[:, 3],
+    "Velocity": lambda h, j, load: h[:, 4],
+    "HomogeneousTransformation": lambda h, j, load: _transformation(h[:, :3], h[:, 3]),
+    "HomogeneousTransformationLocal": lambda h, j, load: _transformation(_turn(h, j), _local(h, j, 3)),
+    "Displacement": lambda h, j, load: j[:, 3] - h[:, 3],
+    "DisplacementLocal": lambda h, j, load: _local(h, j, 3),
+    "VelocityLocal": lambda h, j, load: _local(h, j, 4),
+    "Rotation": lambda h, j, load: RotationMatrix2RotXYZ(_turn(h, j)),
+    "AngularVelocity": lambda h, j, load: j[:, 5] - h[:, 5],
+    "AngularVelocityLocal": lambda h, j, load: _local(h, j, 5),
+    "Force": lambda h, j, load: h[:, :3] @ load[:3],
+    "ForceLocal": lambda h, j, load: load[:3],
+    "Torque": lambda h, j, load: h[:, :3] @ load[3:],
+    "TorqueLocal": lambda h, j, load: load[3:],
+}
+"""Functions that read a sensor's value, by the names of Exudyn's OutputVariableType.
+
+They take the frames (3, 6) of housing and journal, and the load (6,) on the housing in its frame.
+"""
+
+
+def reader(
+    element: FilmElement,
+    constraint: Index | None,
+    quantity: Quantity | exu.OutputVariableType | str,
+    known: Sequence[str],
+    where: str,
+) -> tuple[str, Callable[[exu.MainSystem], np.ndarray]]:
+    """Name of a quantity, and the function that reads it at a system's current state; nan without a film.
+
+    Raises
+    ------
+    InputError
+        In the name of ``where``, for what is none of the ``known`` quantities.
+    """
+    asked = getattr(quantity, "name" if isinstance(quantity, exu.OutputVariableType) else "value", quantity)
+    if isinstance(asked, str) and asked in OUTPUTS:
+        output = OUTPUTS[asked]
+        return asked, lambda mbs: output(*_sensed(mbs, element, constraint))
+    if not isinstance(asked, str) or asked not in known:
+        raise InputError(
+            f"{where}: quantity must be a member of Quantity or its name, one of {', '.join(known)}, or an "
+            f"exu.OutputVariableType or its name, one of {', '.join(OUTPUTS)}; got {quantity!r}."
+        )
+
+    def read(mbs: exu.MainSystem) -> np.ndarray:
+        row = element.row(*element.current(mbs))
+        return np.atleast_1d((_NO_ROW if row is None else row)[COLUMNS[asked]])
+
+    return asked, read
+
+
+def _sensed(
+    mbs: exu.MainSystem, element: FilmElement, constraint: Index | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Frames (3, 6) of housing and journal, which are there once the film was asked, and the load (6,)."""
+    trial = element.current(mbs)[1]
+    load = np.full(6, np.nan) if trial.status is not Status.CONVERGED else -trial.found.wrench
+    if trial.faces is not None:
+        load -= trial.faces.wrench
+    if constraint is not None:
+        output = exu.OutputVariableType
+        load[:3] += mbs.GetObjectOutput(constraint, output.ForceLocal)
+        multipliers = mbs.GetObjectOutput(constraint, output.TorqueLocal)
+        load[3:] += [multipliers[1], -multipliers[0], 0.0]
+    housing, journal = (side.frame.copy() for side in element.sides)
+    return housing, journal, load
+
+
+def add_sensor(
+    mbs: exu.MainSystem,
+    element: FilmElement,
+    read: Callable[[exu.MainSystem], np.ndarray],
+    name: str,
+    file_name: str,
+    write_to_file: bool,
+) -> Index:
+    """Add a sensor of what a `reader` reads; its values are stored in the sensor.
+
+    The sensor looks at the state Exudyn shows it, which after an accepted step is exactly the state the record gets, so
+    that both agree bit for bit.
+    """
+
+    def values(
+        mbs: exu.MainSystem,
+        t: float,
+        sensorNumbers: list[int],
+        factors: list[float],
+        configuration: exu.ConfigurationType,
+    ) -> list[float]:
+        element.presence.require(mbs)
+        return read(mbs).tolist()
+
+    return mbs.AddSensor(
+        eii.SensorUserFunction(
+            name=name,
+            sensorNumbers=[],
+            factors=[],
+            sensorUserFunction=values,
+            storeInternal=True,
+            fileName=file_name,
+            writeToFile=write_to_file,
+        )
+    )

@@ -6,11 +6,13 @@ Exudyn differentiates that object by differences, by each of its coordinates and
 (``computeFFRFterms=False``) it has neither forces nor mass, and its differences cost next to nothing, while its
 markers, sensors, loads and drawing go on. An ObjectGenericODE2 on the same two nodes has the equations instead
 (`exudyn_ehd.coupling.kinematics.floating_body`).
+
+Check that the items of a joint still exist in its system, under the same numbers.
 """
 
 from __future__ import annotations
 
-import warnings
+import weakref
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,11 +21,11 @@ import exudyn.itemInterface as eii
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix, issparse
 
-from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
+from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
-from exudyn_ehd.coupling.kinematics.sides import node_side
-from exudyn_ehd.status import ROUNDING, SMALL, InputError
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, node_side
+from exudyn_ehd.status import ROUNDING, SMALL, InputError, warn_user
 
 
 def own_equations(mbs: exu.MainSystem, body: Index) -> Index:
@@ -127,8 +129,7 @@ def object_mass(mbs: exu.MainSystem, item: Index) -> np.ndarray | csc_matrix | N
     """Mass matrix (n, n) of an object in its own coordinates; None if Exudyn returns none and it is not constant."""
     data = mbs.GetObject(item)
     if data["objectType"] == "GenericODE2":
-        function: Any = data["massMatrixUserFunction"]
-        body = getattr(function["function"], "__self__", None) if isinstance(function, dict) else None
+        body = force_owner(mbs, int(item), "massMatrixUserFunction")
         if isinstance(body, ReducedBody):
             q = np.asarray(mbs.systemData.GetODE2Coordinates())[mbs.systemData.GetObjectLTGODE2(int(item))]
             return body.mass(mbs, 0.0, int(item), q.tolist(), [])
@@ -219,9 +220,79 @@ def warn_if_indefinite(
     moved = size > ROUNDING * size.max()
     scaled = (whole + change)[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
     if np.linalg.eigvalsh(scaled)[0] < -SMALL:
-        warnings.warn(
+        warn_user(
             f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the {kind} of "
             f"{own:.4g} kg is lighter than it there, or has less rotary inertia, but must contain the bush's: add them "
             f"to the housing, or {remedy}.",
-            stacklevel=2,
+            UserWarning,
         )
+
+
+class Presence:
+    """Items of one joint as they were when it was created.
+
+    Exudyn's DeleteObject, DeleteNode and DeleteMarker renumber what is left, and its Reset leaves nothing; a joint that
+    went on with its numbers would hold other bodies.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    name : str
+        Name of the joint.
+    owner : object
+        Object whose method is the force function of the joint's object.
+    number : exudyn.ObjectIndex
+        The joint's object.
+    sides : pair of Side
+    """
+
+    def __init__(self, mbs: exu.MainSystem, name: str, owner: object, number: Index, sides: tuple[Side, Side]) -> None:
+        self.name, self.owner, self.number = name, weakref.ref(owner), int(number)
+        self.nodes = _nodes(mbs, self.number)
+        self.markers = [(side.marker, _marker(mbs, side.marker)) for side in sides if isinstance(side, MarkerSide)]
+
+    def found(self, mbs: exu.MainSystem) -> int | None:
+        """Number of the joint's object in the system; None if it is not there."""
+        count = mbs.systemData.NumberOfObjects()
+        for number in (self.number, *range(count)):
+            if number < count and force_owner(mbs, number) is self.owner():
+                return number
+        return None
+
+    def require(self, mbs: exu.MainSystem) -> None:
+        """Raise `InputError` unless the joint is in the system, on the items that it was made on."""
+        number = self.found(mbs)
+        if number is None:
+            raise InputError(
+                f"LubricatedJoint '{self.name}': its object is no longer in the system, after mbs.Reset() or "
+                "mbs.DeleteObject(...); create the joint again."
+            )
+        same = number == self.number and _nodes(mbs, number) == self.nodes
+        for marker, as_made in self.markers:
+            same = same and int(marker) < mbs.systemData.NumberOfMarkers() and _marker(mbs, marker) == as_made
+        if same:
+            return
+        raise InputError(
+            f"LubricatedJoint '{self.name}': items of the system were deleted after the joint was created, and Exudyn "
+            f"has renumbered the others: the joint's object {self.number} on nodes {self.nodes} is now object {number} "
+            f"on nodes {_nodes(mbs, number)}; delete items before CreateLubricatedJoint."
+        )
+
+
+def force_owner(mbs: exu.MainSystem, number: int, name: str = "forceUserFunction") -> object:
+    """Return the object whose method is the force function of an Exudyn object, or another; None without such one."""
+    item = ObjectIndex(number)
+    # only some objects have a force function
+    if mbs.GetObject(item)["objectType"] != "GenericODE2":
+        return None
+    function: Any = mbs.GetObjectParameter(item, name)
+    return getattr(function["function"], "__self__", None) if isinstance(function, dict) else None
+
+
+def _nodes(mbs: exu.MainSystem, number: int) -> list[int]:
+    return [int(node) for node in mbs.GetObjectParameter(ObjectIndex(number), "nodeNumbers")]
+
+
+def _marker(mbs: exu.MainSystem, number: Index) -> str:
+    values = mbs.GetMarker(number)
+    return repr({key: value for key, value in values.items() if key != "name" and not key.startswith("V")})
