@@ -73,12 +73,15 @@ def _own_speed(width, carrier, h_a, h_b, up, by_own):
         by_own[c] = width[c] * flow * up[c]
 
 
-@njit(cache=True, fastmath=_FAST)
-def _other_speed(P_a, P_b, metric, g_v, by_vx):
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _other_speed(P_a, P_b, metric, h_a, h_b, E_a, E_b, g_v, by_vx):
     """Add the derivative of the pressure flow to vx."""
     if g_v is not None:
         for c in range(by_vx.size):
-            by_vx[c] -= metric[c] * g_v[c] * (P_b[c] - P_a[c])
+            lean = 0.0
+            if E_a is not None:
+                lean = (E_b[c] - E_a[c]) / (h_a[c] + h_b[c])
+            by_vx[c] -= metric[c] * g_v[c] * (1.0 + lean * lean) * (P_b[c] - P_a[c])
 
 
 @njit(cache=True)
@@ -116,7 +119,7 @@ def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
 
 
 @njit(cache=True)
-def speed_derivatives(P, H, HF, up, flux, metric, by):
+def speed_derivatives(P, H, HF, E, up, flux, metric, by):
     """Set derivatives ``by`` (3, n m) of the links' flows: in theta to vx, in z to vz and to vx; the rest as for
     `gap_derivatives`."""
     m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
@@ -124,11 +127,12 @@ def speed_derivatives(P, H, HF, up, flux, metric, by):
     _, _, g_v, carrier, _ = _of_axis(flux, 0)
     _own_speed(by_metric[2], part(carrier, _0, size), h_x, h_x, up[0], by[0])
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        along, slower = by_metric[0, start:stop], part(g_v, start, stop)
-        _other_speed(p[start:stop], p[there:end], along, slower, by[0, start:stop])
+        at, leans, slower = h_x[start:stop], both(E, start, stop, there, end), part(g_v, start, stop)
+        _other_speed(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, slower, by[0, start:stop])
     _, _, g_v, carrier, _ = _of_axis(flux, 1)
     _own_speed(by_metric[3, :e], part(carrier, _0, e), h[:e], h[1:], up[1, :e], by[1, :e])
     for c in range(size):
         by[2, c] = 0.0
-    _other_speed(p[:e], p[1:], by_metric[1, :e], part(g_v, _0, e), by[2, :e])
+    leans = both(E, _0, e, _1, size)
+    _other_speed(p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], *leans, part(g_v, _0, e), by[2, :e])
     by[1, e] = 0.0

@@ -132,7 +132,7 @@ class FilmAnswers(FilmArrays):
         carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
         at_links = s.linear_pressure, self.H, self.HF
         up = upstream(s.fx, s.fz, carried, rho)
-        speed_derivatives(*at_links, up, self.flux, self.metric, by_speed)
+        speed_derivatives(*at_links, None if e is None else e.gaps.E, up, self.flux, self.metric, by_speed)
         if not self.axial:
             by_speed[1] = 0.0
         if e is None:

@@ -91,7 +91,7 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shape
     columns, whole = np.zeros((10, count)), np.empty((10, count))
     up = np.ones((2, H.size))
     gap_derivatives(P, H, HF, None, up, None, metric, vx, vz, by_links)
-    speed_derivatives(P, H, HF, up, None, metric, by_speed)
+    speed_derivatives(P, H, HF, None, up, None, metric, by_speed)
     link_rows(order, count, H.shape[1], by_links, by_speed, None, (by_rate, by_gap), whole)
     add_columns(np.arange(count), order[:count], whole, shapes, columns)
     if line is not None:
