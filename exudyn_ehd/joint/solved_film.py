@@ -59,6 +59,8 @@ class History:
         Scaled deflection of an elastic liner.
     density : (n, m) array or None
         Density ratio of a compressible film (mass-conserving closures with a heat balance).
+    pockets : (k,) array or None
+        Pressure of every supply area with a restrictor, Pa (restrictors with a compressible volume).
     """
 
     void: np.ndarray | None = None
@@ -68,6 +70,7 @@ class History:
     temperature: float | np.ndarray | None = None
     deflection: np.ndarray | None = None
     density: np.ndarray | None = None
+    pockets: np.ndarray | None = None
 
 
 class ContactFields:

@@ -112,13 +112,18 @@ class FilmAnswers(FilmArrays):
         self._couple(rhs, False)
 
     def matrix(self) -> csc_matrix:
-        """A (count, count) of a film that is not symmetric."""
+        """A (count, count)."""
         self.factor_solution()
-        (lower, upper), count = self._bands(), self.work.count
-        bands = range(1, upper.shape[1])
+        w, count = self.work, self.work.count
+        lower, upper = (w.band * w.inv_diag[: len(w.band), None], w.band) if self.symmetric else self._bands()
+        bands = range(1, w.width + 1)
         L = diags_array([lower[: count - k, k] for k in bands], offsets=[-k for k in bands], shape=(count, count))
         U = diags_array([upper[: count - k, k] for k in (0, *bands)], offsets=[0, *bands], shape=(count, count))
         A = csc_matrix(U + L @ U)
+        if self.system.column_line is not None:
+            coupling = np.eye(count)
+            self._couple(coupling, False)
+            A = A @ csc_matrix(2.0 * np.eye(count) - coupling)  # the inverse of the coupling
         if self.reservoirs is None:
             return A
         r, (B, C, D) = self.reservoirs, self.border()
@@ -166,6 +171,21 @@ class FilmAnswers(FilmArrays):
         if e is None:
             return content, self.nothing
         return content * e.gap_slopes.rate_t, content * e.gap_slopes.rate_r
+
+    def surroundings(self) -> np.ndarray:
+        """Derivatives (count + k,) of the balances to the rates of the unknowns, through what the film's surroundings
+        store: a liner's deflection, and oil in supply areas with a restrictor."""
+        stored, r = self.nothing, self.reservoirs
+        if self.elements is not None:
+            stored = self.storage_weights()[0] * self.elements.deflection_by_pressure
+        own = stored.reshape(-1)[self.work.order[: self.work.count]]
+        return own if r is None else np.append(own, r.storage())
+
+    @property
+    def pockets(self) -> np.ndarray | None:
+        """Pressures (k,) that supply areas with a restrictor remember, Pa; None without a compressible volume."""
+        r = self.reservoirs
+        return r.pressures.copy() if r is not None and r.compliance.any() else None
 
     def _at_line(self) -> AtLine:
         """The film at its rupture line."""

@@ -114,6 +114,8 @@ class FilmSolver(FilmAnswers):
         """
         if self.reservoirs is None:
             return self._solve_film(vx, vz, cavity_pressure, mass_old, step)
+        self.vx, self.vz = vx, vz
+        self.reservoirs.inverse_step = 1.0 / step if step > 0.0 else self.inverse_instant()
         solve = partial(self._solve_film, vx, vz, cavity_pressure, mass_old, step)
         return self._balance(self.reservoirs, solve, cavity_pressure * self.pressure_scale)
 

@@ -21,7 +21,13 @@ S, the derivative of the film's flows to the pressures of the areas, is an M-mat
 solution, which Newton's method finds. No pressure is below the cavity's: an area from which the film takes more than
 comes through its restrictor has the cavity pressure and no balance. Derivatives are those of u and p together.
 
-The oil in an area and its restrictor is incompressible: the pressure follows without a delay.
+The oil between restrictor and film is incompressible, unless a restrictor has a ``compressible_volume`` V. With the
+bulk modulus K the restrictor then passes
+
+    Q_r = Q + V / K dp/dt
+
+in place of Q in its balance, by backward Euler over the accepted steps. A steady film has Q_r = Q. An area at the
+cavity pressure fills again without a delay.
 
 Seals at the ends of the film are restrictors all around: their flow per length is ``C (p_end - p_outside)``, and the
 pressure at the end one more unknown of the film (`sealed_grid`).
@@ -39,11 +45,25 @@ import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
+
+
+class _Feed(Checked):
+    """Base of restrictors: checks of their arguments."""
+
+    checks: ClassVar = {
+        "diameter": POSITIVE,
+        "length": POSITIVE,
+        "supply_pressure": require_number,
+        "discharge_coefficient": partial(POSITIVE, at_most=1.0, hint="a sharp edge has some 0.6."),
+        "flow": NOT_NEGATIVE,
+        "compressible_volume": NOT_NEGATIVE,
+        "bulk_modulus": POSITIVE,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
-class Orifice(Checked):
+class Orifice(_Feed):
     """Sharp-edged orifice between a supply of constant pressure and a supply area.
 
     Parameters
@@ -54,6 +74,13 @@ class Orifice(Checked):
         Gauge pressure in front of it, Pa.
     discharge_coefficient : float, default 0.6
         C_d, above 0 and up to 1.
+    compressible_volume : float, default 0.0
+        V of the oil between restrictor and film, that is in pocket and line, m3: in joints and in small motions about
+        an equilibrium it takes ``V / K dp/dt``, and large ones make the bearing unstable. 0: the pressure follows
+        without a delay.
+    bulk_modulus : float, default 1.7e9
+        K of that oil, Pa: 1.4e9 to 1.8e9 without air. Bubbles of the volume share x at an absolute pressure p lower it
+        to ``1 / (1 / K + x / p)``, 1 % of them at 1 MPa to 1e8.
 
     Examples
     --------
@@ -68,12 +95,8 @@ class Orifice(Checked):
     diameter: float
     supply_pressure: float
     discharge_coefficient: float = 0.6
-
-    checks: ClassVar = {
-        "diameter": POSITIVE,
-        "supply_pressure": require_number,
-        "discharge_coefficient": partial(POSITIVE, at_most=1.0, hint="a sharp edge has some 0.6."),
-    }
+    compressible_volume: float = 0.0
+    bulk_modulus: float = 1.7e9
 
     def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
         """Coefficients a, b, k, c of the balance for an oil, Pa s and kg/m3."""
@@ -82,7 +105,7 @@ class Orifice(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Capillary(Checked):
+class Capillary(_Feed):
     """Laminar capillary between a supply of constant pressure and a supply area.
 
     Its oil has the viscosity of the supply temperature at ambient pressure. It should be at least 100 diameters long,
@@ -94,6 +117,8 @@ class Capillary(Checked):
         m.
     supply_pressure : float
         Gauge pressure in front of it, Pa.
+    compressible_volume, bulk_modulus : float, default 0.0, 1.7e9
+        As for `Orifice`.
 
     Examples
     --------
@@ -108,8 +133,8 @@ class Capillary(Checked):
     diameter: float
     length: float
     supply_pressure: float
-
-    checks: ClassVar = {"diameter": POSITIVE, "length": POSITIVE, "supply_pressure": require_number}
+    compressible_volume: float = 0.0
+    bulk_modulus: float = 1.7e9
 
     def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
         """Coefficients a, b, k, c of the balance for an oil, Pa s and kg/m3."""
@@ -117,13 +142,15 @@ class Capillary(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class GivenFlow(Checked):
+class GivenFlow(_Feed):
     """Constant flow into a supply area, whatever its pressure: a pump or a flow regulator of its own.
 
     Parameters
     ----------
     flow : float
         m3/s; 0: a closed recess.
+    compressible_volume, bulk_modulus : float, default 0.0, 1.7e9
+        As for `Orifice`.
 
     Examples
     --------
@@ -135,8 +162,8 @@ class GivenFlow(Checked):
     """
 
     flow: float
-
-    checks: ClassVar = {"flow": partial(require_number, at_least=0.0)}
+    compressible_volume: float = 0.0
+    bulk_modulus: float = 1.7e9
 
     def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
         """Coefficients a, b, k, c of the balance for any oil."""
@@ -256,6 +283,11 @@ class Reservoirs:
         Of the last solution, Pa; the next one starts from them.
     live : (k,) bool array
         Areas that have a balance.
+    compliance : (k,) array
+        V / K of the areas' oil, m3/Pa.
+    before, inverse_step : (k,) array or None, float
+        Pressures at the start of the step, Pa, None for a steady film, and the inverse of the step, 1/s; set by the
+        caller before a film is solved.
     by_pressure, by_flow, size : (k,) arrays
         Derivatives of g to the area's pressure, Pa, and to the film's flow, m3/s; size of its terms.
     """
@@ -273,6 +305,9 @@ class Reservoirs:
         a, _, _, c = self.coefficients
         self.pressures = 0.5 * a * c
         self.live = np.ones(len(masks), dtype=bool)
+        self.compliance = np.array([r.compressible_volume / r.bulk_modulus for r in restrictors])
+        self.before: np.ndarray | None = None
+        self.inverse_step = 0.0
         self.by_pressure, self.by_flow, self.size = np.zeros((3, len(masks)))
 
     def transformed(self) -> tuple[np.ndarray, np.ndarray]:
@@ -292,6 +327,10 @@ class Reservoirs:
         weights: np.ndarray = self.by_flow[self.live] * self.flow_scale
         return weights
 
+    def storage(self) -> np.ndarray:
+        """Derivatives of g to the rates of the pressures, of the areas with a balance."""
+        return (self.by_flow * self.compliance)[self.live]
+
     def derivatives(self, by_pressure: np.ndarray) -> np.ndarray:
         """Derivatives (., .) of g to the pressures, Pa, of the areas with a balance, from those of the scaled flows."""
         out: np.ndarray = self.weights()[:, None] * by_pressure + np.diag(self.by_pressure[self.live])
@@ -306,8 +345,14 @@ class Reservoirs:
         flows, sizes = np.zeros((2, p.size))
         for q, at in enumerate(self.masks):
             flows[q], sizes[q] = self.flow_scale * inflow[at].sum(), self.flow_scale * np.abs(inflow[at]).sum()
-        self.by_pressure, self.by_flow = a, b + 2.0 * k * np.abs(flows)
+        store = np.zeros(p.size)
+        if self.before is not None:
+            store = self.compliance * self.inverse_step
+            flows += store * (p - self.before)
+        self.by_flow = b + 2.0 * k * np.abs(flows)
+        self.by_pressure = a + self.by_flow * store
         g = a * p + (b + k * np.abs(flows)) * flows - c
+        sizes += store * np.abs(p)
         self.size = np.abs(a * p) + (b + k * np.abs(flows)) * sizes + np.abs(c) + 1e-300
         self.live = ((p > cavity_pressure) | (g < 0.0)) & [bool(at.any()) for at in self.masks]
         balance: np.ndarray = g[self.live]

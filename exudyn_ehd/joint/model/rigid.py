@@ -133,15 +133,14 @@ class BearingModel:
     flexible = False
 
     def __init__(self, bearing: JournalBearing, *, start_angle: float = 0.0, effects: Effects | None = None) -> None:
-        self.bearing = bearing
-        self.effects = Effects() if effects is None else effects
+        self.bearing, self.effects = bearing, Effects() if effects is None else effects
         self.parts = p = film_parts(bearing, self.effects, start_angle)
         self.grid, self.solver = p.grid, p.solver
         self.needs_spin = p.supply is not None and p.supply.rotating
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
         self.remembers_density = self.remembers_mass and p.compressible is not None and self.effects.thermal is not None
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
-        self.remembers = self.remembers_mass or self.remembers_deflection
+        self.remembers = self.remembers_mass or self.remembers_deflection or p.solver.pockets is not None
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
         self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure, *bearing.edge_pressures])
         self._scale = p.motion_scale[:8]
@@ -178,16 +177,17 @@ class BearingModel:
         thermal = self.effects.thermal
         self.parts.evaluations.count += 1
         self._set_gap(self._journal(motion, 0.0), None)
-        found = self.remembers_deflection and self.evaluate(motion).film is not None
         s, remembers, liner, wear = self.solver, self.remembers_mass, self.parts.liner, self.effects.wear
+        found = (self.remembers_deflection or s.pockets is not None) and self.evaluate(motion).film is not None
         return History(
             void=s.nothing if remembers else None,
             mass=s.H.copy() if remembers else None,
             outflow=np.array([s.ones, s.nothing, s.nothing]) if remembers else None,
             wear=None if wear is None else wear.field(None).copy(),
-            deflection=liner.deflection if found and liner is not None else None,
+            deflection=liner.deflection if found and self.remembers_deflection and liner is not None else None,
             temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
             density=s.ones if self.remembers_density else None,
+            pockets=s.pockets if found else None,
         )
 
     def next_history(self, film: SolvedFilm) -> History | None:
@@ -205,6 +205,7 @@ class BearingModel:
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             temperature=None if effects.thermal is None else effects.thermal.advance(film),
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
+            pockets=s.pockets,
         )
         if void is not None and film.history is not None:
             for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
@@ -357,7 +358,7 @@ class BearingModel:
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
         """Solve for the gaps in the solver's buffers, with the known pressures."""
         p, law = self.parts, self.effects.pressure_law
-        P = self.solver.pressure
+        P, past = self.solver.pressure, History() if history is None else history
         P[:, 0], P[:, -1], cavity, *edges = self._prescribed.tolist()
         if edges:
             P[p.grid.edges.ravel()] = np.array(edges)[:, None]
@@ -365,10 +366,12 @@ class BearingModel:
             fed = p.supply.pressures()
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
         if p.liner is not None:
-            p.liner.delta_old = None if history is None else history.deflection
-        kept = None if history is None or history.void is None else self.solver.keep(history.void, step)
+            p.liner.delta_old = past.deflection
+        if self.solver.reservoirs is not None:
+            self.solver.reservoirs.before = past.pockets
+        kept = None if past.void is None else self.solver.keep(past.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
-        self.solver.lag(None if history is None else history.outflow, step)
+        self.solver.lag(past.outflow, step)
         status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
         if status is Status.NOT_CONVERGED and self.solver.lagging:
             # flows that grow manifold within a step may take more than there was

@@ -15,7 +15,6 @@ from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.sensitivity import functional_gradients, integral_weights, motion_columns, wrench_gradient
-from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
@@ -56,8 +55,8 @@ def film_gradient(film: SolvedFilm, rows: np.ndarray, slow_motion: bool) -> np.n
     s.solve_transposed(rows)
     columns = balance_gradients(film)
     functional_gradients(rows, columns, gradient)
-    if slow_motion and p.liner is not None:
-        gradient[:, 4:8] += _following_deflection(film, p.liner, s.fields_of(rows), columns)
+    if slow_motion and (p.liner is not None or s.reservoirs is not None):
+        gradient[:, 4:8] += _following_storage(film, rows, columns)
     return gradient
 
 
@@ -100,18 +99,19 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
     return out
 
 
-def _following_deflection(film: SolvedFilm, liner: LinerFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Gradient (k, 4) of adjoint functionals lam (k, n, m) to the scaled rates through the deflection's rate.
+def _following_storage(film: SolvedFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Gradient (k, 4) of adjoint functionals lam (k, .) to the scaled rates through `FilmAnswers.surroundings`.
 
     A second adjoint solve. ``columns``: `balance_gradients`. The rupture line adds nothing, since its liner rests.
     """
-    p, s, w = film.parts, film.solver, film.solver.work
-    by_rate, gradient = -lam * s.storage_weights()[0], np.empty((len(lam), MOTION_SIZE))
-    rows = (by_rate * liner.deflection_by_pressure).reshape(len(lam), -1)[:, w.order[: w.count]].copy()
+    p, s, gradient = film.parts, film.solver, np.empty((len(lam), MOTION_SIZE))
+    rows = -lam * s.surroundings()
     s.solve_transposed(rows)
     functional_gradients(rows, columns, gradient)
     out = gradient[:, :4].copy()
-    contract_pose(by_rate * liner.gap_slopes.D_r, p.directions.cos_x, p.directions.sin_x, film.grid.z, out)
+    if p.liner is not None:
+        by_rate = -s.fields_of(lam) * s.storage_weights()[0] * p.liner.gap_slopes.D_r
+        contract_pose(by_rate, p.directions.cos_x, p.directions.sin_x, film.grid.z, out)
     return out
 
 
