@@ -437,7 +437,8 @@ low = ehd.Hole(angle=0.0, diameter=0.006, supply=ehd.Orifice(diameter=5e-4, supp
 ehd.JournalBearing(**plain, supply=(low,))
 
 fed = ehd.Hole(angle=0.0, diameter=0.006, supply=orifice)
-ehd.JournalBearing(**plain, supply=(fed,), bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9, poisson_ratio=0.4))
+sump = ehd.Sump(conductance=5.0, ambient=293.15)
+ehd.JournalBearing(**plain, supply=(fed,), thermal=ehd.LumpedThermal(supply_temperature=sump))
 
 ehd.JournalBearing(**plain, end_seals=1e-10)
 

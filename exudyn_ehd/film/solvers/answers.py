@@ -12,13 +12,14 @@ from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line
 from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links
 from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
-from exudyn_ehd.film.supply.restrictors import Reservoirs
+from exudyn_ehd.film.supply.restrictors import Reservoirs, add_border
 
 
 class FilmAnswers(FilmArrays):
@@ -58,18 +59,34 @@ class FilmAnswers(FilmArrays):
 
     def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p in Pa, Q scaled."""
-        s, r = self.system, self.reservoirs
+        s, r, w = self.system, self.reservoirs, self.work
         assert r is not None
         self.factor_solution()
-        E, at = r.fields(self.grid.shape), self.work.order[: self.work.count]
-        slopes = (s.kx, -s.kx, s.kz, -s.kz) if self.symmetric else self.work.slopes[:4].reshape(4, *self.grid.shape)
-        flows = [slopes[2 * q] * E + slopes[2 * q + 1] * np.roll(E, -1, q + 1) for q in range(2)]
-        balances = sum(flow - np.roll(flow, 1, q + 1) for q, flow in enumerate(flows))
-        taken = [E - np.roll(E, -1, q + 1) for q in range(2)]
-        drawn = sum(slopes[2 * q] * t + np.roll(slopes[2 * q + 1] * t, 1, q + 1) for q, t in enumerate(taken))
-        B, C, E = (np.reshape(x, (len(E), self.area.size)) for x in (balances, drawn, E))
-        B *= r.transformed()[1][r.live, None] / self.pressure_scale
-        return B[:, at], np.ascontiguousarray(C[:, at]), E @ B.T
+        slopes = np.array((s.kx, -s.kx, s.kz, -s.kz, self.nothing)) if self.symmetric else w.slopes
+        live = np.where(r.live, np.cumsum(r.live) - 1, -1)
+        (B, C), D = np.zeros((2, r.live.sum(), w.count)), np.zeros((r.live.sum(), r.live.sum()))
+        add_border(np.append(live, -1)[r.areas], w.number, slopes.reshape(5, *self.grid.shape), B, C, D)
+        thin = None if self.elements is None else self.elements.thin
+        if thin is not None:
+            E = np.zeros((len(D), *self.grid.shape))
+            E.reshape(len(D), -1)[:, r.at] = r.within().T
+            self._add_corners(thin, E, B, C, D)
+        to_unknown = r.transformed()[1][r.live] / self.pressure_scale
+        return B * to_unknown[:, None], C, D * to_unknown
+
+    def _add_corners(self, thin: ShearThinning, E: np.ndarray, B: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
+        """Add to `border` of areas E (k, n, m) what flows over links follow the gradients across them."""
+        s, (_, across, *_), at, flat = self.system, thin.response(), self.work.order[: self.work.count], (len(E), -1)
+        unknown = s.fixed | self.work.active if self.closure.conserves_mass else self.ones
+        for q, k in enumerate((s.kx, s.kz)):
+            gradient, by = thin.operators[1 - q], -0.5 * k * across[q]
+            mean = (gradient @ E.reshape(flat).T).T.reshape(E.shape)
+            flow, taken = by * (mean + np.roll(mean, -1, q + 1)), by * (E - np.roll(E, -1, q + 1))
+            balance = (flow - np.roll(flow, 1, q + 1)).reshape(flat)
+            drawn = (taken + np.roll(taken, 1, q + 1)).reshape(flat) @ gradient * unknown.ravel()
+            B += balance[:, at]
+            C += drawn[:, at]
+            D += E.reshape(flat) @ balance.T
 
     def reduced(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """B^T, ``C A^-1`` of the film alone, and S, with shapes and units as of `border`."""
@@ -179,7 +196,10 @@ class FilmAnswers(FilmArrays):
         if self.elements is not None:
             stored = self.storage_weights()[0] * self.elements.deflection_by_pressure
         own = stored.reshape(-1)[self.work.order[: self.work.count]]
-        return own if r is None else np.append(own, r.storage())
+        if r is None:
+            return own
+        deflects = (r.sums(stored) * r.transformed()[1])[r.live] / self.pressure_scale
+        return np.append(own, r.storage() + r.weights() * deflects)
 
     @property
     def pockets(self) -> np.ndarray | None:

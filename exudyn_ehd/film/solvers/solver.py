@@ -89,6 +89,8 @@ class FilmSolver(FilmAnswers):
         """Hand a change of ``grid.fixed`` and of its cuts on to the film's parts."""
         if self.elements is not None:
             self.elements.cut_links()
+        if self.reservoirs is not None:
+            self.reservoirs.place()
         self.work.ready = False
 
     def solve(
@@ -125,10 +127,13 @@ class FilmSolver(FilmAnswers):
         balance grows."""
         base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
         weights, S, live = base, np.zeros((0, 0)), r.live
+        gaps = None if self.is_rigid else np.array((self.H, self.HF, self.H_t))
         for _ in range(MOST_BALANCES):
             r.pressures, error = np.maximum(base + change, floor), np.inf
             for at, p in zip(r.masks, r.transformed()[0], strict=True):
                 self.pressure[at] = p / self.pressure_scale
+            if gaps is not None:  # a film on a liner leaves deformed ones
+                self.H[:], self.HF[:], self.H_t[:] = gaps
             status, count = solve()
             steps += count
             if status is Status.CONVERGED:

@@ -42,8 +42,10 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
+from numba import njit
 
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
 
@@ -301,6 +303,7 @@ class Reservoirs:
         law: PressureTransform | None = None,
     ) -> None:
         self.masks, self.flow_scale, self.law = masks, flow_scale, law
+        self.place()
         self.coefficients = np.array([restrictor.coefficients(*oil) for restrictor in restrictors]).T
         a, _, _, c = self.coefficients
         self.pressures = 0.5 * a * c
@@ -310,17 +313,30 @@ class Reservoirs:
         self.inverse_step = 0.0
         self.by_pressure, self.by_flow, self.size = np.zeros((3, len(masks)))
 
+    def place(self) -> None:
+        """Take over the vertices of the areas from their masks."""
+        areas = np.full(self.masks[0].shape, -1)
+        for q, mask in enumerate(self.masks):
+            areas[mask] = q
+        self.at = np.flatnonzero(areas >= 0)
+        self.areas, self.of_vertices = areas, areas.reshape(-1)[self.at]
+
+    def sums(self, field: np.ndarray) -> np.ndarray:
+        """Sums (k,) of a field (n, m) over the vertices of every area."""
+        return np.bincount(self.of_vertices, field.reshape(-1)[self.at], len(self.masks))
+
     def transformed(self) -> tuple[np.ndarray, np.ndarray]:
         """Pressures (k,) as the film's unknown, Pa, and their derivatives to the pressures."""
         if self.law is None:
             return self.pressures, np.ones(self.pressures.size)
-        q, (ratio, rest) = self.law.transform(self.pressures)[None], np.empty((2, 1, self.pressures.size))
-        self.law.inverse(q, np.empty(q.shape), ratio, rest)
-        return q[0], 1.0 / ratio[0]
+        to_pressure = self.law.pressure if isinstance(self.law, CompressibleLaw) else self.law.inverse
+        q, (slope, rest) = self.law.transform(self.pressures)[None], np.empty((2, 1, self.pressures.size))
+        to_pressure(q, np.empty(q.shape), slope, rest)
+        return q[0], 1.0 / slope[0]
 
-    def fields(self, shape: tuple[int, int]) -> np.ndarray:
-        """Fields (., n, m) of the areas with a balance, one at their vertices."""
-        return np.array([self.masks[q] for q in np.flatnonzero(self.live)], dtype=float).reshape(-1, *shape)
+    def within(self) -> np.ndarray:
+        """Return 1 for vertices ``at`` within areas with a balance (., .), else 0."""
+        return (self.of_vertices[:, None] == np.flatnonzero(self.live)).astype(float)
 
     def weights(self) -> np.ndarray:
         """Derivatives of g to the scaled flows, of the areas with a balance."""
@@ -342,9 +358,7 @@ class Reservoirs:
         ``inflow`` (n, m): scaled, from the vertices into the film; ``cavity_pressure`` in Pa.
         """
         (a, b, k, c), p = self.coefficients, self.pressures
-        flows, sizes = np.zeros((2, p.size))
-        for q, at in enumerate(self.masks):
-            flows[q], sizes[q] = self.flow_scale * inflow[at].sum(), self.flow_scale * np.abs(inflow[at]).sum()
+        flows, sizes = self.flow_scale * self.sums(inflow), self.flow_scale * self.sums(np.abs(inflow))
         store = np.zeros(p.size)
         if self.before is not None:
             store = self.compliance * self.inverse_step
@@ -354,7 +368,7 @@ class Reservoirs:
         g = a * p + (b + k * np.abs(flows)) * flows - c
         sizes += store * np.abs(p)
         self.size = np.abs(a * p) + (b + k * np.abs(flows)) * sizes + np.abs(c) + 1e-300
-        self.live = ((p > cavity_pressure) | (g < 0.0)) & [bool(at.any()) for at in self.masks]
+        self.live = ((p > cavity_pressure) | (g < 0.0)) & (self.sums(np.ones(inflow.shape)) > 0.0)
         balance: np.ndarray = g[self.live]
         return balance
 
@@ -364,3 +378,42 @@ class Reservoirs:
         left = c - a * self.pressures
         through = np.sign(left) * np.sqrt(np.abs(left) / np.maximum(k, 1e-300))
         return np.where(b > 0.0, left / np.maximum(b, 1e-300), through)
+
+
+@njit(cache=True)
+def add_border(areas, number, slopes, B, C, D):
+    """Add the symbols of `Reservoirs` from the derivatives of the links' flows and of the storage.
+
+    Parameters
+    ----------
+    areas : (n, m) int array
+        Area with a balance of every vertex, -1 without.
+    number : (n, m) int array
+        Unknown of every vertex, -1 without.
+    slopes : (5, n, m) array
+        As `exudyn_ehd.film.banded.assemble.assemble` takes them.
+    B, C, D : (k, count), (k, count), (k, k) arrays
+        B^T, C and D, changed in place.
+    """
+    n, m = areas.shape
+    for i in range(n):
+        for j in range(m):
+            p = areas[i, j]
+            if p >= 0:
+                D[p, p] += slopes[4, i, j]
+            for axis in range(2):
+                if axis == 1 and j + 1 == m:
+                    continue
+                u, v = ((i + 1) % n, j) if axis == 0 else (i, j + 1)
+                q = areas[u, v]
+                if p < 0 and q < 0:
+                    continue
+                by_a, by_b, a, b = slopes[2 * axis, i, j], slopes[2 * axis + 1, i, j], number[i, j], number[u, v]
+                for area, by, own, other, at, sign in ((p, by_a, q, by_b, b, 1.0), (q, by_b, p, by_a, a, -1.0)):
+                    if area >= 0:
+                        D[area, area] += sign * by
+                        if own >= 0:
+                            D[own, area] -= sign * by
+                        elif at >= 0:
+                            B[area, at] -= sign * by
+                            C[area, at] += sign * other

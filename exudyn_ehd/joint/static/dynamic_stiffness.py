@@ -117,7 +117,9 @@ class FilmResponse:
         self._rest_of(*slow_motions(tangent))
         if liner is not None:  # the tangent knows no rate of its deflection, and neither does the rupture line
             line, follows = s.line_gradients(), liner.gap_slopes.D_r.reshape(-1)[order]
-            resting = 0.0 if line is None else (line_by_motion(film, line, w.count) * scale)[PLACES : 2 * PLACES]
+            resting = (
+                0.0 if line is None else (line_by_motion(film, line, w.count + areas) * scale)[PLACES : 2 * PLACES]
+            )
             self.by_rate = self.by_rate + (self.by_rate - resting) * np.append(follows, np.zeros(areas))
 
     def _rest_of(self, stiffness: np.ndarray, damping: np.ndarray) -> None:

@@ -78,22 +78,9 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
     if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
     out = np.empty((6, MOTION_SIZE))
-    wrench_gradient(
-        gradient[:4],
-        shear,
-        extra,
-        _boundary_gradients(film),
-        w.pose,
-        film.loads.integrals,
-        p.pose_scale,
-        p.grid.reference_length,
-        scales.force,
-        scales.shear,
-        w.omega,
-        w.axial_speed,
-        film.loads.couette,
-        out,
-    )
+    known = w.pose, film.loads.integrals, p.pose_scale, p.grid.reference_length, scales.force, scales.shear
+    sliding = w.omega, w.axial_speed, film.loads.couette
+    wrench_gradient(gradient[:4], shear, extra, _boundary_gradients(film), *known, *sliding, out)
     if film.pressing is not None:
         _add_contacts(film, film.pressing, out)
     return out
@@ -117,28 +104,31 @@ def _following_storage(film: SolvedFilm, lam: np.ndarray, columns: np.ndarray) -
 
 def balance_gradients(film: SolvedFilm) -> np.ndarray:
     """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz)."""
-    s, w, at = film.solver, film.solver.work, film.grid.directions
+    s, w = film.solver, film.solver.work
     if isinstance(s, ClassicSolver):
         return _difference_columns(film, s)
-    out = np.empty((MOTION_SIZE, w.count))
-    if film.parts.liner is not None:
-        film.parts.liner.motion_columns(*s.storage_weights(), at, out)
-    else:
-        motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
+    out = _columns_at(film, w.order[: w.count])
     if (line := true_line(film)) is not None:
-        add_line_columns(tuple(line), at, out)
+        add_line_columns(tuple(line), film.grid.directions, out)
     return out if s.reservoirs is None else np.hstack((out, _reservoir_gradients(film, s.reservoirs)))
+
+
+def _columns_at(film: SolvedFilm, places: np.ndarray) -> np.ndarray:
+    """Return `balance_gradients` of the balances at flat vertices (k,), but for the rupture line's part."""
+    out, liner = np.empty((MOTION_SIZE, places.size)), film.parts.liner
+    if liner is not None:
+        liner.motion_columns(places, *film.solver.storage_weights(), film.grid.directions, out)
+    else:
+        motion_columns(places, places.size, *gap_derivatives(film), film.grid.directions, out)
+    return out
 
 
 def _reservoir_gradients(film: SolvedFilm, reservoirs: Reservoirs) -> np.ndarray:
     """`balance_gradients` (10, k) of the areas with an unknown pressure, from the balances at their vertices."""
-    s, fields = film.solver, reservoirs.fields(film.grid.shape).reshape(-1, film.grid.area.size)
-    places = np.flatnonzero(fields.any(axis=0))
-    out = np.empty((MOTION_SIZE, places.size))
-    motion_columns(places, places.size, *gap_derivatives(film), film.grid.directions, out)
-    if s.oil_line is not None and (line := true_line(film, places)) is not None:
+    out = _columns_at(film, reservoirs.at)
+    if film.solver.oil_line is not None and (line := true_line(film, reservoirs.at)) is not None:
         add_line_columns(tuple(line), film.grid.directions, out)
-    flows: np.ndarray = reservoirs.weights() * (out @ fields[:, places].T)
+    flows: np.ndarray = reservoirs.weights() * (out @ reservoirs.within())
     return flows
 
 
@@ -210,69 +200,73 @@ def wrench_rows(film: SolvedFilm) -> np.ndarray:
 
 
 def adjoint_rows(film: SolvedFilm) -> np.ndarray:
-    """Weights of the unknowns in the integrals that they enter, (k, count)."""
-    p, g, w, P_q = film.parts, film.grid, film.solver.work, film.oil.P_q
-    shear, extra = shear_needs_adjoint(film), has_extra_rows(film)
-    pressed = p.liner is not None and film.pressing is not None
-    own, at, directions = 4 + shear + 2 * extra, w.order[: w.count], (p.directions.cos_x, p.directions.sin_x, g.z)
-    rows = np.empty((own + 5 * pressed, w.count))
-    load_adjoint_rhs(w.order, w.count, g.weight, *directions, w.active, rows)
-    slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
+    """Weights of the unknowns in the integrals that they enter, (k, count); those of supply areas come last."""
+    s, w = film.solver, film.solver.work
+    rows = _rows_at(film, w.order[: w.count], s.system.continued)
+    if (r := s.reservoirs) is None:
+        return rows
+    by_unknown = _rows_at(film, r.at, None) @ r.within() / s.pressure_scale
+    return np.hstack((rows, by_unknown * r.transformed()[1][r.live]))
+
+
+def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> np.ndarray:
+    """Return `adjoint_rows` of flat vertices ``at``, by the solver's unknown; ``continued`` as for `FilmSystem`."""
+    p, g, s, y, oil, liner = film.parts, film.grid, film.solver, film.solver.system, film.oil, film.parts.liner
+    active, shear, extra = s.work.active | g.fixed, shear_needs_adjoint(film), has_extra_rows(film)
+    pressed = liner is not None and film.pressing is not None
+    own, directions = 4 + shear + 2 * extra, (p.directions.cos_x, p.directions.sin_x, g.z)
+    rows = np.zeros((own + 5 * pressed, at.size))
+    load_adjoint_rhs(at, at.size, g.weight, *directions, active, rows)
     if extra:
+        slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
         if film.extra is not None:
             slopes = slopes + g.weight * np.stack((film.extra.slope_x, film.extra.slope_z))
-        rows[own - 2 : own] = (slopes * w.active).reshape(2, -1)[:, at]
-    if P_q is not None:
-        rows[:4] *= P_q.ravel()[at]
-        rows[own - 2 * extra : own] *= P_q.ravel()[at]
+        rows[own - 2 : own] = (slopes * active).reshape(2, -1)[:, at]
+    if oil.P_q is not None:
+        rows[:4] *= oil.P_q.ravel()[at]
+        rows[own - 2 * extra : own] *= oil.P_q.ravel()[at]
     if shear:
-        _shear_row(film, rows[4])
-    y = film.solver.system
-    if y.continued is not None:
-        rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        rows[4] = _shear_weights(film, active).ravel()[at]
+    if continued is not None:
+        rows_of_linear(continued, y.fixed, y.linked, y.cavity_pressure, s.work.active, s.work.number, rows)
     # what follows the pressure of a vertex itself
     if shear:
-        _add_shear_of_vertices(film, rows[4])
-    if p.liner is not None and film.loads.drag is not None:
-        rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, at]
-    if p.liner is not None and film.pressing is not None:
-        by_pressure = g.weight * p.liner.contact_by_pressure
-        load_adjoint_rhs(w.order, w.count, by_pressure, *directions, w.active, rows[own:])
+        rows[4] += _shear_of_vertices(film, active).ravel()[at]
+    if liner is not None and film.loads.drag is not None:
+        rows[own - 2 : own] += drag_by_deflection(film, liner).reshape(2, -1)[:, at]
+    if liner is not None and pressed:
+        by_pressure = g.weight * liner.contact_by_pressure
+        load_adjoint_rhs(at, at.size, by_pressure, *directions, active, rows[own:])
         rows[own + 4] = by_pressure.ravel()[at]
-    if film.solver.reservoirs is None:
-        return rows
-    whole, fields = np.zeros((own, g.area.size)), film.solver.reservoirs.fields(g.shape)
-    load_adjoint_rhs(np.arange(g.area.size), g.area.size, g.weight, *directions, p.solver.ones > 0.0, whole)
-    whole[own - 2 * extra :] = slopes.reshape(2, -1)[: 2 * extra]
-    if film.oil.ratio_q is not None and film.oil.P_q is not None:  # the shear of its land's share
-        whole[4] = (g.shear_weight / p.solver.H * film.oil.ratio_q / film.oil.P_q).ravel()
-    return np.hstack((rows, whole @ fields.reshape(-1, g.area.size).T / film.scales.pressure))
+    return rows
 
 
-def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
-    """Weights of the Couette integral at the unknowns.
+def _shear_weights(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
+    """Weights of the Couette integral at the vertices (n, m).
 
     Through the oil's pressure where they are pressures, through fill elsewhere.
     """
-    s, g, w, oil = film.solver, film.grid, film.solver.work, film.oil
+    s, g, oil = film.solver, film.grid, film.oil
     ratio, by_pressure = ratio_of(film), s.nothing if oil.ratio_q is None else oil.ratio_q
     by_fill = ratio if s.closure.conserves_mass else s.nothing
     if s.oil_line is not None:
         # at the line the fill follows the pressure
         by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
-    row[:] = (g.shear_weight / s.H * np.where(w.active, by_pressure, by_fill)).ravel()[w.order[: w.count]]
+    return g.shear_weight / s.H * np.where(active, by_pressure, by_fill)
 
 
-def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
-    """Add to `_shear_row` what follows the liner's deflection, the pressure's gradients, and fills beside the ends."""
-    p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
+def _shear_of_vertices(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
+    """Return what in `_shear_weights` follows the liner's deflection, the pressure's gradients, and fills beside the
+    ends."""
+    p, s, g, oil, out = film.parts, film.solver, film.grid, film.oil, np.zeros(film.grid.shape)
     if p.liner is not None:
-        row += (couette_slopes(film)[0] * p.liner.gap_slopes.H_P * w.active).ravel()[w.order[: w.count]]
+        out += couette_slopes(film)[0] * p.liner.gap_slopes.H_P * active
     if oil.ratio_g is not None:
-        row += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H).reshape(-1)[w.order[: w.count]]
+        out += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H)
     if s.closure.conserves_mass:
         rise = 0.0 if s.oil_line is None else s.oil_line.rise
-        row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
+        out += shear_of_ends(film) * np.where(active, rise, 1.0)
+    return out
 
 
 def couette_slopes(film: SolvedFilm) -> tuple[np.ndarray, float]:

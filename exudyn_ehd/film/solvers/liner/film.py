@@ -245,15 +245,16 @@ class LinerFilm(WinklerElements):
         find_slopes(self.P, fill, rho, self.film_fields, *self._seen)
 
     def motion_columns(
-        self, by_rate: np.ndarray, by_gap: np.ndarray, at: tuple[np.ndarray, ...], out: np.ndarray
+        self, places: np.ndarray, by_rate: np.ndarray, by_gap: np.ndarray, at: tuple[np.ndarray, ...], out: np.ndarray
     ) -> None:
-        """Derivatives (10, count) of the balances to the motion of a rigid journal, but for the rupture line's, as for
-        `exudyn_ehd.film.sensitivity.motion_columns`; ``by_rate``, ``by_gap``: `FilmSolver.storage_weights`."""
-        f, w, by_speed = self.film, self.film.work, np.empty((3, *self.P.shape))
+        """Derivatives (10, .) of the balances at flat vertices to the motion of a rigid journal, but for the rupture
+        line's, as for `exudyn_ehd.film.sensitivity.motion_columns`; ``by_rate``, ``by_gap``:
+        `FilmSolver.storage_weights`."""
+        f, by_speed = self.film, np.empty((3, *self.P.shape))
         oil = (f.carried if self.kind == OIL else None), self.oil_fields[1]
         rest = self.term_fields, f.grid.fixed, self.gap_fields, f.flux, self.metric
         speed_gradients(self.P, *oil, *rest, by_speed)
-        gap_columns(w.order, w.count, self.by, by_speed, self.slope_fields, by_rate, by_gap, at, out)
+        gap_columns(places, places.size, self.by, by_speed, self.slope_fields, by_rate, by_gap, at, out)
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
