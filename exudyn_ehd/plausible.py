@@ -208,7 +208,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "specific heat of a solid": ("Conduction.specific_heat",),
     "temperature": (
         "Lubricant.temperature",
-        "Sump.ambient",
+        *("Sump.ambient", "Sump.initial_temperature"),
         *(f"LumpedThermal.{of}_temperature" for of in ("supply", "housing", "initial")),
         *(f"FilmEnergy.{of}_temperature" for of in ("supply", "bush", "journal", "initial")),
         *(f"Conduction.{of}_temperature" for of in ("ambient", "initial", "clearance")),
@@ -293,7 +293,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "line force": ("LineLoad.force_per_length",),
     "heat conductance": ("LumpedThermal.housing_conductance", "Conduction.conductance", "Sump.conductance"),
-    "heat capacity": ("LumpedThermal.capacity",),
+    "heat capacity": ("LumpedThermal.capacity", "Sump.heat_capacity"),
     "heat transfer": ("FilmEnergy.bush_coefficient", "FilmEnergy.journal_coefficient"),
     "conductivity": ("FilmEnergy.conductivity", "Conduction.conductivity"),
 }

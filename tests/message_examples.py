@@ -666,9 +666,6 @@ ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing, record=ehd.Fil
 
 ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**plain, inlet=ehd.MaximumGap()))
 
-heat = ehd.LumpedThermal(supply_temperature=ehd.Sump(conductance=10.0, ambient=293.15))
-ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, ehd.JournalBearing(**plain, thermal=heat))
-
 high = mbs.CreateRigidBody(inertia=cube, initialDisplacement=[0, 0, 1e-4])
 ehd.CreateLubricatedJoint(mbs, "main", [ground, high], centre, z, faced)
 

@@ -263,4 +263,5 @@ def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) ->
         temperature=temperature,
         density=last.density,
         pockets=last.pockets,
+        sump=last.sump,
     )

@@ -188,24 +188,28 @@ class BearingModel:
             temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
             density=s.ones if self.remembers_density else None,
             pockets=s.pockets if found else None,
+            sump=None if thermal is None else thermal.initial_sump,
         )
 
     def next_history(self, film: SolvedFilm) -> History | None:
         """History at the end of a solved film's step."""
         if not self.remembers:
             return None
-        p, s, effects = self.parts, self.solver, self.effects
+        p, s, effects, heat = self.parts, self.solver, self.effects, self.effects.thermal
         old = History() if film.history is None else film.history
         void, mass = s.stored(old.mass, film.step) if self.remembers_mass else (None, None)
+        temperature = None if heat is None else heat.advance(film)
+        sump = None if heat is None or heat.initial_sump is None else heat.balance(film, temperature)
         new = History(
             void=void,
             mass=mass,
             outflow=s.outflow() if self.remembers_mass else None,
             wear=None if effects.wear is None else effects.wear.grown(film),
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
-            temperature=None if effects.thermal is None else effects.thermal.advance(film),
+            temperature=temperature,
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
             pockets=s.pockets,
+            sump=None if sump is None else sump["supply_temperature"],
         )
         if void is not None and film.history is not None:
             for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
@@ -263,25 +267,9 @@ class BearingModel:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
         recess = recess_of(p, self.scales, journal, self.effects.thermal, temperature)
         loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited, recess)
-        film = SolvedFilm(
-            p,
-            self.grid,
-            self.solver,
-            self.scales,
-            journal,
-            history,
-            step,
-            temperature,
-            extra,
-            pressing,
-            limited,
-            oil,
-            loads,
-            c * smallest,
-            self._bore_state(journal, oil, pressing, loads.wrench),
-            p.evaluations.count,
-            walls,
-        )
+        state = p, self.grid, self.solver, self.scales, journal, history, step, temperature
+        bore, fields = self._bore_state(journal, oil, pressing, loads.wrench), (extra, pressing, limited)
+        film = SolvedFilm(*state, *fields, oil, loads, c * smallest, bore, p.evaluations.count, walls)
         return self._result(status, journal, loads.wrench, iterations, c * smallest, film)
 
     def _result(

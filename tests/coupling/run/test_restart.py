@@ -27,6 +27,10 @@ BEARINGS = {
     "plain": PLAIN,
     "oil content": dataclasses.replace(PLAIN, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)),
     "temperature": dataclasses.replace(PLAIN, thermal=ehd.LumpedThermal(supply_temperature=313.15, capacity=5.0)),
+    "sump": dataclasses.replace(
+        PLAIN,
+        thermal=ehd.LumpedThermal(supply_temperature=ehd.Sump(conductance=5.0, ambient=293.15, heat_capacity=0.1)),
+    ),
     "temperature field": dataclasses.replace(PLAIN, thermal=ehd.FilmEnergy(supply_temperature=313.15)),
     "compressed oil": dataclasses.replace(
         PLAIN,
