@@ -33,6 +33,8 @@ class FilmAnswers(FilmArrays):
     reservoirs: Reservoirs | None = None
     # of `fill_gradients`, once they are asked for
     _fills: tuple[LineGradients, LineGradients] | None = None
+    # of `reduced`: areas with a balance, B^T, C A^-1 and S
+    _reduced: tuple[np.ndarray, ...] | None = None
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
@@ -58,7 +60,8 @@ class FilmAnswers(FilmArrays):
         return fields
 
     def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p in Pa, Q scaled."""
+        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p as the film's unknown,
+        Q scaled."""
         s, r, w = self.system, self.reservoirs, self.work
         assert r is not None
         self.factor_solution()
@@ -71,8 +74,7 @@ class FilmAnswers(FilmArrays):
             E = np.zeros((len(D), *self.grid.shape))
             E.reshape(len(D), -1)[:, r.at] = r.within().T
             self._add_corners(thin, E, B, C, D)
-        to_unknown = r.transformed()[1][r.live] / self.pressure_scale
-        return B * to_unknown[:, None], C, D * to_unknown
+        return B, C, D
 
     def _add_corners(self, thin: ShearThinning, E: np.ndarray, B: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
         """Add to `border` of areas E (k, n, m) what flows over links follow the gradients across them."""
@@ -89,10 +91,16 @@ class FilmAnswers(FilmArrays):
             D += E.reshape(flat) @ balance.T
 
     def reduced(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """B^T, ``C A^-1`` of the film alone, and S, with shapes and units as of `border`."""
-        B, C, D = self.border()
-        self._solve_film_transposed(C)
-        return B, C, D - C @ B.T
+        """B^T, ``C A^-1`` of the film alone, and S, with shapes as of `border`; p in Pa."""
+        r = self.reservoirs
+        assert r is not None
+        if self._reduced is None or not np.array_equal(self._reduced[0], r.live):
+            B, C, D = self.border()
+            self._solve_film_transposed(C)
+            self._reduced = r.live, B, C, D - C @ B.T
+        _, B, C, S = self._reduced
+        by_pressure = r.transformed()[1][r.live] / self.pressure_scale
+        return B * by_pressure[:, None], C, S * by_pressure
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every row of rhs (k, count), in place."""
@@ -144,7 +152,10 @@ class FilmAnswers(FilmArrays):
         if self.reservoirs is None:
             return A
         r, (B, C, D) = self.reservoirs, self.border()
-        return csc_matrix(block_array([[A, B.T], [r.weights()[:, None] * C, r.derivatives(D)]]))
+        by_pressure = r.transformed()[1][r.live] / self.pressure_scale
+        return csc_matrix(
+            block_array([[A, B.T * by_pressure], [r.weights()[:, None] * C, r.derivatives(D * by_pressure)]])
+        )
 
     def _couple(self, x: np.ndarray, transposed: bool) -> None:
         """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""

@@ -320,6 +320,7 @@ class Reservoirs:
             areas[mask] = q
         self.at = np.flatnonzero(areas >= 0)
         self.areas, self.of_vertices = areas, areas.reshape(-1)[self.at]
+        self.sizes = np.bincount(self.of_vertices, minlength=len(self.masks))
 
     def sums(self, field: np.ndarray) -> np.ndarray:
         """Sums (k,) of a field (n, m) over the vertices of every area."""
@@ -359,18 +360,23 @@ class Reservoirs:
         """
         (a, b, k, c), p = self.coefficients, self.pressures
         flows, sizes = self.flow_scale * self.sums(inflow), self.flow_scale * self.sums(np.abs(inflow))
-        store = np.zeros(p.size)
-        if self.before is not None:
-            store = self.compliance * self.inverse_step
-            flows += store * (p - self.before)
+        store, old = (p * 0.0, p) if self.before is None else (self.compliance * self.inverse_step, self.before)
+        self.taken, flows = (a, b, k, c, store, old, p, flows), flows + store * (p - old)
         self.by_flow = b + 2.0 * k * np.abs(flows)
         self.by_pressure = a + self.by_flow * store
         g = a * p + (b + k * np.abs(flows)) * flows - c
         sizes += store * np.abs(p)
         self.size = np.abs(a * p) + (b + k * np.abs(flows)) * sizes + np.abs(c) + 1e-300
-        self.live = ((p > cavity_pressure) | (g < 0.0)) & (self.sums(np.ones(inflow.shape)) > 0.0)
+        self.live = ((p > cavity_pressure) | (g < 0.0)) & (self.sizes > 0)
         balance: np.ndarray = g[self.live]
         return balance
+
+    def change(self, S: np.ndarray, cavity_pressure: float) -> np.ndarray:
+        """Return the change (k,) of the pressures of the last `balance` that evens it with flows of the slope S."""
+        change, at = np.zeros(self.pressures.size), self.live
+        even = even_balances(*(part[at] for part in self.taken), S * self.flow_scale, cavity_pressure)
+        change[at] = even - self.pressures[at]
+        return change
 
     def flows(self) -> np.ndarray:
         """Flow through every restrictor (k,), m3/s, at the present pressures."""
@@ -378,6 +384,27 @@ class Reservoirs:
         left = c - a * self.pressures
         through = np.sign(left) * np.sqrt(np.abs(left) / np.maximum(k, 1e-300))
         return np.where(b > 0.0, left / np.maximum(b, 1e-300), through)
+
+
+@njit(cache=True)
+def even_balances(a, b, k, c, store, old, start, taken, S, lowest):
+    """Pressures (k,) at which areas have even balances, or the ``lowest``, with flows ``taken + S (p - start)``.
+
+    ``a``, ``b``, ``k``, ``c``: coefficients of the balances; ``store``, ``old``: V / K over the step, and pressures at
+    its start.
+    """
+    p = start.copy()
+    for _ in range(30):  # far more than Newton's method takes; what is left is for the caller to see
+        through = taken + S @ (p - start) + store * (p - old)
+        by_flow, g = b + 2.0 * k * np.abs(through), a * p + (b + k * np.abs(through)) * through - c
+        J = by_flow.reshape(-1, 1) * S + np.diag(a + by_flow * store)
+        for i in range(p.size):
+            if p[i] <= lowest and g[i] >= 0.0:
+                J[i], J[i, i], g[i] = 0.0, 1.0, 0.0
+        before, p = p, np.maximum(p - np.linalg.solve(J, g), lowest)
+        if np.all(np.abs(p - before) <= 1e-15 * np.abs(p)):
+            break
+    return p
 
 
 @njit(cache=True)
