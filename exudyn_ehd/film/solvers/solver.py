@@ -28,6 +28,7 @@ from exudyn_ehd.status import Status
 # Trials of Newton's method for the pressures of reservoirs.
 MOST_BALANCES = 40
 # Largest balance of a reservoir over its terms: round-off, and what counts as round-off where it does not fall further.
+# The first also of a step of Newton's method, over the peak pressure.
 EVEN, ROUNDED = 1e-13, 1e-9
 
 
@@ -127,7 +128,7 @@ class FilmSolver(FilmAnswers):
         pressures: it is solved once, and superposed.
         """
         base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
-        weights = known = base
+        weights, known, stride = base, base, np.inf
         gaps = None if self.is_rigid else np.array((self.H, self.HF, self.H_t))
         for _ in range(MOST_BALANCES):
             r.pressures, error = np.maximum(base + change, floor), np.inf
@@ -142,10 +143,12 @@ class FilmSolver(FilmAnswers):
                 g = r.balance(self.inflow(linear=True), floor)
                 weights = 1.0 / r.size if least == np.inf else weights
                 error, left = (float(np.max(np.abs(g) * w[r.live], initial=0.0)) for w in (weights, 1.0 / r.size))
-                if left <= EVEN or (left <= ROUNDED and error > 0.5 * least):
+                rounded = stride <= EVEN * self.pressure_scale * float(np.abs(self.pressure).max())
+                if left <= EVEN or ((left <= ROUNDED or rounded) and error > 0.5 * least):
                     return status, steps
             if error < least:
                 base, change, least = r.pressures, r.change(self.reduced()[2], floor), error
+                stride = float(np.abs(change).max())
             elif least < np.inf:
                 change = 0.5 * change
             else:
