@@ -336,11 +336,12 @@ def test_stiffness_of_equilibrium():
     [
         {"lubricant": DENSE},
         {"lubricant": THIN},
+        {"cavitation": ehd.ElrodAdams()},
         {"bush": LINER},
         {"bush": LINER, "cavitation": ehd.ElrodAdams()},
         {"bush": LINER, "lubricant": dataclasses.replace(DENSE, shear_law=THIN.shear_law)},
     ],
-    ids=["density law", "shear law", "liner", "liner, elrod", "liner, thinning density"],
+    ids=["density law", "shear law", "elrod", "liner", "liner, elrod", "liner, thinning density"],
 )
 def test_films_that_follow_their_pressure_in_time(options):
     """Small motions: the dynamic stiffness is that of steps in time, extrapolated to none."""
