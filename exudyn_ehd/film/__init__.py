@@ -3,6 +3,7 @@
 Module map
 ----------
 grid         vertices (theta, z), control volumes, weights
+gradients    derivatives of balances and other sums to the gaps around their vertices, to a pose, to a bore
 arcs         bores on parts of the circle: lobes, pads and dams, their columns and rows
 differences  differences over the links of a grid, sums over links by vertices
 combinations options of a bearing that exclude or need each other
@@ -15,7 +16,6 @@ surfaces     what lies on the walls: profile, roughness, contact, wear, liner
 cavitation   closures: where the film is full, and what it carries where it is not
 banded       factors of banded matrices and their right-hand sides
 solvers      from gap and rates to pressure and fill
-sensitivity  derivatives of loads with respect to pose and bore
 heat         temperature of the film
 thrust       films on the end faces of a joint
 """

@@ -25,7 +25,7 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid, axial_metric, axial_vertices, rows_between, tensor_grid
-from exudyn_ehd.film.sensitivity import gap_slopes
+from exudyn_ehd.film.reynolds.gap import gap_slopes
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number, require_type
 
 TURN = 2.0 * math.pi

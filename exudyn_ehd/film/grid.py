@@ -145,16 +145,22 @@ class FilmGrid:
         return np.concatenate((around * flat, around * self.z, flat[None]))
 
     @cached_property
+    def gap_shapes(self) -> np.ndarray:
+        """Scaled gap (2, n, m, 4) by the scaled pose of a bearing's journal, at vertices and on links in theta."""
+        normals = -np.array(self.directions[:4]).reshape(2, 2, -1).transpose(0, 2, 1)[:, :, None, None, :]
+        heights = np.stack((np.ones_like(self.z), self.z), axis=1)[None, None, :, :, None]
+        return np.ascontiguousarray((normals * heights).reshape(2, *self.shape, 4))
+
+    def by_pose(self, fields: np.ndarray, on_links: int = 0) -> np.ndarray:
+        """Sums (k, 4) of fields (k, n, m) times the derivatives of the gap at vertices, 1: on links in theta."""
+        by_pose: np.ndarray = fields.reshape(len(fields), -1) @ self.gap_shapes[on_links].reshape(-1, 4)
+        return by_pose
+
+    @cached_property
     def link_widths(self) -> np.ndarray:
         """Widths (2, n, m) of the links in theta and z; 0 where there is none."""
         across = np.append(self.link_z != 0.0, False)
         return np.array((np.outer(self.link_x != 0.0, self.width_z), np.outer(self.width_x, across)))
-
-    def cut(self, kx: np.ndarray, kz: np.ndarray) -> None:
-        """Multiply conductances (n, m) by ``cuts``, in place."""
-        if self.cuts is not None:
-            kx *= self.cuts[0]
-            kz *= self.cuts[1]
 
 
 def axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -13,7 +13,8 @@ part, summed by parts, is ``sum (h/2) dp/dx = -(1/2) sum p dh/dx`` (+ the ends' 
 two surfaces: the torque on the journal about its own axis carries +, that on the bush about its own carries - of half
 of it.
 
-Largest pressure of a film, between its vertices too.
+Derivatives of the wrench to the motion of a rigid journal and to an elastic bore. Largest pressure of a film, between
+its vertices too.
 """
 
 from __future__ import annotations
@@ -21,25 +22,23 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.reynolds.gap import transposed_slopes
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True, fastmath=_FAST)
-def pressure_integrals(P, weight, cos_x, sin_x, z, out):
-    """S_c, S_s, S_zc, S_zs -> out (4,)."""
-    n, m = P.shape
-    out[:] = 0.0
-    for i in range(n):
-        s0 = 0.0
-        s1 = 0.0
-        for j in range(m):
-            pw = P[i, j] * weight[i, j]
-            s0 += pw
-            s1 += pw * z[j]
-        out[0] += s0 * cos_x[i]
-        out[1] += s0 * sin_x[i]
-        out[2] += s1 * cos_x[i]
-        out[3] += s1 * sin_x[i]
+def pressure_integrals(P, weight, shapes, out):
+    """S_c, S_s, S_zc, S_zs -> out (4,); ``shapes``: `FilmGrid.gap_shapes`."""
+    by_pose, p, w = shapes[0].reshape(-1, 4), P.reshape(-1), weight.reshape(-1)
+    x = y = bx = by = 0.0
+    for c in range(p.size):
+        pressed = p[c] * w[c]
+        x += pressed * by_pose[c, 0]
+        y += pressed * by_pose[c, 1]
+        bx += pressed * by_pose[c, 2]
+        by += pressed * by_pose[c, 3]
+    out[0], out[1], out[2], out[3] = -x, -y, -bx, -by
 
 
 @njit(cache=True, inline="always")
@@ -120,31 +119,16 @@ def couette_gradient(H, weight, active, fixed, cavity_share, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, rhs_out):
-    """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped."""
-    m = z.size
-    i = 0
+def load_adjoint_rhs(order, count, weight, shapes, active, rhs_out):
+    """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped.
+
+    ``shapes``: `FilmGrid.gap_shapes`.
+    """
+    by_pose, w, free = shapes[0].reshape(-1, 4), weight.reshape(-1), active.reshape(-1)
     for r in range(count):
-        j = order[r] - i * m
-        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
-            i = order[r] // m
-            j = order[r] - i * m
-        w = weight[i, j] if active[i, j] else 0.0
-        rhs_out[0, r] = w * cos_x[i]
-        rhs_out[1, r] = w * sin_x[i]
-        rhs_out[2, r] = w * cos_x[i] * z[j]
-        rhs_out[3, r] = w * sin_x[i] * z[j]
-
-
-@njit(cache=True)
-def scatter(values, order, count, out):
-    """Unknowns (k, count) -> fields (k, n, m), zero elsewhere."""
-    flat = out.reshape(out.shape[0], -1)
-    for k in range(values.shape[0]):
-        row = flat[k]
-        row[:] = 0.0
-        for r in range(count):
-            row[order[r]] = values[k, r]
+        c = order[r]
+        for q in range(4):
+            rhs_out[q, r] = -w[c] * by_pose[c, q] if free[c] else 0.0
 
 
 @njit(cache=True)
@@ -222,3 +206,92 @@ def _crest(before, value, after, h0, h1):
     d0, d1 = (value - before) / h0, (after - value) / h1
     second, slope = (d1 - d0) / (h0 + h1), (d0 * h1 + d1 * h0) / (h0 + h1)
     return (-0.25 * slope * slope / second, -0.5 * slope / second) if second < 0.0 else (0.0, 0.0)
+
+
+@njit(cache=True)
+def wrench_gradient(ds, dc, extra, ends, pose, sums, pose_scale, R, force, shear, omega, w, couette, out):
+    """d wrench / d motion (6, 10) in SI units from the gradients of the integrals of `exudyn_ehd.film.loads`.
+
+    Parameters
+    ----------
+    ds, dc, extra : (4, 10), (10,), (2, 10) arrays
+        Gradients of (S_c, S_s, S_zc, S_zs), of C, and of the integrals over the slopes of gap terms, to (scaled pose,
+        scaled rates, vx, vz).
+    ends : (2, 4) array
+        Gradients of the pressure force of the ends, and of an arc's edges, to the scaled pose.
+    pose, sums, pose_scale : (4,) arrays
+        Scaled pose, the four integrals, scale of the pose.
+    R, force, shear, omega, w, couette : float
+        Radius, scales of force and shear, spin, axial speed, C.
+    """
+    x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
+    for q in range(10):
+        theta = x * ds[1, q] - y * ds[0, q] + bx * ds[3, q] - by * ds[2, q] - extra[0, q]
+        z = -(bx * ds[0, q] + by * ds[1, q]) - extra[1, q]
+        if q == 0:
+            theta += sums[1]
+        elif q == 1:
+            theta -= sums[0]
+        elif q == 2:
+            theta += sums[3]
+            z -= sums[0]
+        elif q == 3:
+            theta -= sums[2]
+            z -= sums[1]
+        out[0, q] = -force * ds[0, q]
+        out[1, q] = -force * ds[1, q]
+        out[2, q] = -shear * (6.0 * R * z + w * dc[q])
+        out[3, q] = force * R * ds[3, q]
+        out[4, q] = -force * R * ds[2, q]
+        out[5, q] = -shear * R * R * (6.0 * theta + omega * dc[q])
+        if q < 4:
+            out[2, q] += 6.0 * shear * R * ends[0, q]
+            out[5, q] += 6.0 * shear * R * R * ends[1, q]
+        scale = 0.5
+        if q < 8:
+            scale = pose_scale[q % 4]
+        elif q == 9:
+            scale = 0.5 / R
+        for r in range(6):
+            out[r, q] *= scale
+    out[2, 9] -= shear * couette
+    out[5, 8] -= shear * R * R * couette
+
+
+@njit(cache=True)
+def integral_weights(pose, R, force, shear, omega, w, out):
+    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench.
+
+    Symbols as in `wrench_gradient`.
+    """
+    x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
+    out[:] = 0.0
+    out[0, 0] = out[1, 1] = -force
+    out[3, 3], out[4, 2] = force * R, -force * R
+    axial, turning = -6.0 * shear * R, -6.0 * shear * R * R
+    out[2, 0], out[2, 1], out[2, 4], out[2, 6], out[2, 7] = -axial * bx, -axial * by, -shear * w, -axial, -axial
+    out[5, 0], out[5, 1], out[5, 2], out[5, 3] = -turning * y, turning * x, -turning * by, turning * bx
+    out[5, 4], out[5, 5] = -shear * R * R * omega, -turning
+
+
+@njit(cache=True, fastmath=_FAST)
+def shear_fields(P, weight, width, z, couette, ends, factors, out):
+    """Combinations (2, n, m) of the fields that shear owes to an elastic gap.
+
+    Parameters
+    ----------
+    P, weight : (n, m) arrays
+        Pressure and integration weights: slopes of the gap act on their product.
+    couette, ends : (n, m) arrays
+        Gradients of the Couette shear and of the ends' pressure force to the gap.
+    factors : (2, 4) array
+        Of couette, slopes in theta, slopes in z, ends.
+    """
+    n, m = P.shape
+    along_x, along_z = np.empty((n, m)), np.empty((n, m))
+    transposed_slopes(P * weight, width, z, along_x, along_z)
+    for r in range(2):
+        a, b, c, d = factors[r, 0], factors[r, 1], factors[r, 2], factors[r, 3]
+        for i in range(n):
+            for j in range(m):
+                out[r, i, j] = a * couette[i, j] + b * along_x[i, j] + c * along_z[i, j] + d * ends[i, j]

@@ -14,7 +14,7 @@ from exudyn_ehd.film.cavitation.linear_film import extend_film
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
-from exudyn_ehd.film.reynolds.links import set_links
+from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, OilFields, Scales, SolvedFilm
@@ -58,10 +58,10 @@ def solve_plain(
         motion,
         parts.motion_scale,
         known,
-        (scales.force, scales.shear, g.reference_length, parts.half_length, s.flow_x, s.closure.cavity_shear),
+        (scales.force, scales.shear, g.reference_length, parts.half_length, s.closure.cavity_shear),
         (s.squeeze, line is not None, work.warm),
-        g.directions,
-        g.mesh,
+        (g.directions, g.gap_shapes),
+        (g.mesh, s.metric),
         g.weight,
         y.fields,
         (g.fixed, work.active),
@@ -102,19 +102,18 @@ def solve_plain(
 
 
 @njit(cache=True, nogil=True)
-def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, sets, line, columns, work, out):
+def _plain_film(motion, scale, known, sizes, kinds, normals, links, weight, fields, sets, line, columns, work, out):
     """Returns (found, steps, count, width, smallest gap, integral of the Couette shear, s_theta).
 
     ``kinds``: whether there is a squeeze, whether the line lies inside the cells, and whether the start is warm;
     ``columns``: `ColumnLine` or None; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
-    force, shear, radius, half_length, flow_x, cavity_shear = sizes
-    squeeze, in_cells, warm = kinds
-    pc = known[2]
+    force, shear, radius, half_length, cavity_shear = sizes
+    (squeeze, in_cells, warm), (mesh, metric), pc = kinds, links, known[2]
     vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
     kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[10]
     H, HF, H_t, P = fields[11], fields[12], fields[13], fields[14]
-    (fixed, active), (factor, x) = sets, work
+    (fixed, active), (factor, x), (at, shapes) = sets, work, normals
     for q in range(8):
         out[10 + q] = motion[q] * scale[q]
     pose, rate, integrals = out[10:14], out[14:], out[6:10]
@@ -124,12 +123,13 @@ def _plain_film(motion, scale, known, sizes, kinds, at, mesh, weight, fields, se
         return False, 0, np.int64(0), np.int64(1), smallest, 0.0, 0.0
     for i in range(P.shape[0]):
         P[i, 0], P[i, -1] = known[0], known[1]
-    set_links(H, HF, H_t, squeeze, None, vx, vz, flow_x, mesh, kx, kz, fx, fz, b)
+    set_links(H, HF, None, metric, vx, vz, fields)
+    right_hand_side(fx, fz, squeeze, H_t, fields[7], b)
     forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
     ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, warm, line, active, factor, x, P)
     if columns is not None:
         count = extend_film(columns, b, sets, pc, factor, count, P)
-    pressure_integrals(P, weight, at[0], at[1], at[4], integrals)
+    pressure_integrals(P, weight, shapes, integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     ends = end_forces(H, mesh[0], known)
     speeds = motion[8], motion[9]

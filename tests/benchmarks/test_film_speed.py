@@ -17,7 +17,7 @@ from numba import njit
 import exudyn_ehd as ehd
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gap
-from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
 from exudyn_ehd.joint.model.build import build_model
 from tests.benchmarks.accuracy.costs import effects
 
@@ -125,13 +125,11 @@ class _RelaxedFilm:
         rigid_gap(pose, m.directions.cos_f, m.directions.sin_f, g.z, 1.0, s.HF)
         rigid_gap(rate, m.directions.cos_x, m.directions.sin_x, g.z, 0.0, s.H_t)
         y = s.system
-        conductances(s.H, s.HF, None, 1.0, g.mesh, y.kx, y.kz)
-        couette_fluxes(s.H, s.HF, None, vx, vz, g.mesh, y.fx, y.fz)
-        right_hand_side(y.fx, y.fz, y.b)
-        add_squeeze(s.H_t, g.width_x, g.width_z, y.b)
+        set_links(s.H, s.HF, None, s.metric, vx, vz, y.term_fields)
+        right_hand_side(y.fx, y.fz, True, s.H_t, s.area, y.b)
         sweeps = _sor(y.kx, y.kz, y.b, 0.0, self.relax, self.tolerance, P)
         out = np.empty(4)
-        pressure_integrals(P, g.weight, m.directions.cos_x, m.directions.sin_x, g.z, out)
+        pressure_integrals(P, g.weight, g.gap_shapes, out)
         return out * self.model.scales.force, sweeps
 
     def __call__(self):

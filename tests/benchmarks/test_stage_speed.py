@@ -8,7 +8,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.cavitation.closures import solve_sets
 from exudyn_ehd.film.reynolds.gap import rigid_gap
-from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.loads import film_loads
 from tests.benchmarks.accuracy import order
@@ -32,7 +32,7 @@ def _stage_runs(grid):
     states = growth.motions()
     evaluation = model.evaluate(states[0])
     film = evaluation.film
-    s, g, y, z, p, w = film.solver, film.grid, film.solver.system, film.grid.z, film.parts, film.journal
+    s, y, z, p, w = film.solver, film.solver.system, film.grid.z, film.parts, film.journal
     vx = 0.5 * w.omega
 
     def gap():
@@ -41,10 +41,8 @@ def _stage_runs(grid):
         rigid_gap(w.rate, p.directions.cos_x, p.directions.sin_x, z, 0.0, s.H_t)
 
     def coefficients():
-        conductances(s.H, s.HF, None, 1.0, g.mesh, y.kx, y.kz)
-        couette_fluxes(s.H, s.HF, None, vx, 0.0, g.mesh, y.fx, y.fz)
-        right_hand_side(y.fx, y.fz, y.b)
-        add_squeeze(s.H_t, g.width_x, g.width_z, y.b)
+        set_links(s.H, s.HF, None, s.metric, vx, 0.0, y.term_fields)
+        right_hand_side(y.fx, y.fz, True, s.H_t, s.area, y.b)
 
     return {
         "gap": gap,

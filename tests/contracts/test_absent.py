@@ -82,7 +82,6 @@ EFFECTS = {
             "film.solvers.liner.film",
             "film.solvers.liner.winkler",
             "film.solvers.liner.elements",
-            "film.solvers.liner.gap_response",
             "film.solvers.liner.steps",
         ),
         {"bush": LINER},
@@ -145,6 +144,7 @@ EFFECTS = {
 # Modules that every film uses, that describe a scene, or (the last line) whose
 # kernels only other kernels of their effect call.
 SHARED = {
+    "gradients",
     "combinations",
     "cavitation.closures",
     "cavitation.linear_film",
@@ -166,7 +166,6 @@ SHARED = {
     "solvers.answers",
     "solvers.film",
     "solvers.solver",
-    "sensitivity",
     "supply.areas",
     "supply.rows",
     "reynolds.link_derivatives",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,8 @@ class Film(NamedTuple):
     vx: float
     vz: float
     flow_x: float
+    metric: np.ndarray
+    terms: np.ndarray
     kx: np.ndarray
     kz: np.ndarray
     fx: np.ndarray
@@ -44,12 +47,11 @@ def make_film() -> Callable[..., Film]:
             link_x[-1] = 0.0
         mesh = Mesh(width_x, width_z, link_x, link_z)
         vx, vz = rng.normal(size=2)
-        kx, kz, fx, fz, b = (np.full((n, m), np.nan) for _ in range(5))
-        reynolds.conductances(H, HF, None, flow_x, mesh, kx, kz)
-        reynolds.couette_fluxes(H, HF, None, vx, vz, mesh, fx, fz)
-        reynolds.right_hand_side(fx, fz, b)
-        reynolds.add_squeeze(H_t, width_x, width_z, b)
-        return Film(H, HF, H_t, mesh, vx, vz, flow_x, kx, kz, fx, fz, b)
+        grid = SimpleNamespace(**mesh._asdict(), cuts=None)
+        metric, terms, b = reynolds.link_metric(grid, flow_x), np.zeros((10, n, m)), np.full((n, m), np.nan)
+        reynolds.set_links(H, HF, None, metric, vx, vz, terms)
+        reynolds.right_hand_side(terms[2], terms[3], True, H_t, np.outer(width_x, width_z), b)
+        return Film(H, HF, H_t, mesh, vx, vz, flow_x, metric, terms, *terms[:4], b)
 
     return make
 

@@ -16,25 +16,18 @@ from tests.sampling import sample
 @pytest.fixture
 def field():
     rng = np.random.default_rng(0)
-    theta, z = rng.uniform(0, 6, 9), np.linspace(-1, 1, 5)
-    return rng, theta, z, rng.random((9, 5)), rng.normal(size=(9, 5))
+    return rng, rng.normal(size=(2, 9, 5, 4)), rng.random((9, 5)), rng.normal(size=(9, 5))
 
 
 def test_pressure_integrals(field):
-    _, theta, z, weight, P = field
+    _, shapes, weight, P = field
     out = np.empty(4)
-    loads.pressure_integrals(P, weight, np.cos(theta), np.sin(theta), z, out)
-    shapes = [
-        np.cos(theta)[:, None] + 0 * z,
-        np.sin(theta)[:, None] + 0 * z,
-        np.cos(theta)[:, None] * z,
-        np.sin(theta)[:, None] * z,
-    ]
-    np.testing.assert_allclose(out, [(P * weight * s).sum() for s in shapes], rtol=1e-12)
+    loads.pressure_integrals(P, weight, shapes, out)
+    np.testing.assert_allclose(out, -np.tensordot(P * weight, shapes[0], 2), rtol=1e-12)
 
 
 def test_couette_integral_and_gradient(field):
-    rng, _, _, weight, _ = field
+    rng, _, weight, _ = field
     H, active, fixed = 0.2 + rng.random((9, 5)), rng.random((9, 5)) < 0.5, rng.random((9, 5)) < 0.2
     share = np.where(active | fixed, 1.0, 0.3)
     # the half control volume of a prescribed end is as full as the vertex beside it
@@ -46,19 +39,13 @@ def test_couette_integral_and_gradient(field):
     np.testing.assert_allclose(gradient, -share * weight / H**2, rtol=1e-13)
 
 
-def test_adjoint_right_hand_sides_and_scatter(field):
-    rng, theta, z, weight, _ = field
+def test_adjoint_right_hand_sides(field):
+    rng, shapes, weight, _ = field
     order = np.sort(rng.choice(45, 20, replace=False))
-    active = rng.random((9, 5)) < 0.7
-    rhs = np.empty((4, 20))
-    loads.load_adjoint_rhs(order, 20, weight, np.cos(theta), np.sin(theta), z, active, rhs)
-    fields = np.full((4, 9, 5), np.nan)
-    loads.scatter(rhs, order, 20, fields)
-    numbered = np.zeros(45, dtype=bool)
-    numbered[order] = True
-    w = np.where(numbered.reshape(9, 5) & active, weight, 0.0)
-    c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
-    np.testing.assert_allclose(fields, [w * c, w * s, w * c * z, w * s * z], rtol=1e-14)
+    active, rhs = rng.random((9, 5)) < 0.7, np.empty((4, 20))
+    loads.load_adjoint_rhs(order, 20, weight, shapes, active, rhs)
+    whole = -((weight * active)[..., None] * shapes[0]).reshape(-1, 4).T
+    np.testing.assert_allclose(rhs, whole[:, order], rtol=1e-14)
 
 
 @pytest.mark.parametrize("centre", (3.1, 0.02, 6.25))

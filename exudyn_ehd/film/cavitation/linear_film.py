@@ -31,7 +31,7 @@ from exudyn_ehd.film.banded.factors import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients
+from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.links import LinkFlux, lacks
 
@@ -191,10 +191,10 @@ class ColumnLine(NamedTuple):
         """Couple rows (count, k) of p and u: with ``-dr/dp`` over D, from p to u or ``transposed``."""
         couple_columns(self, work.active, work.factor, work.count, x, transposed)
 
-    def gradients(self, work: Workspace, pc: float, H: np.ndarray, flux: LinkFlux | None) -> LineGradients:
-        """`LineGradients` of ``D u`` at fixed u, of the last solution."""
+    def gradients(self, work: Workspace, pc: float, H: np.ndarray, flux: LinkFlux | None) -> Gradients:
+        """`Gradients` of ``D u`` at fixed u, of the last solution."""
         flow = None if flux is None else (flux.gz, flux.gz_h, flux.gz_v)
-        return LineGradients(*column_gradients(self, work.active, work.factor, work.count, pc, H, flow))
+        return Gradients(*column_gradients(self, work.active, work.factor, work.count, pc, H, flow))
 
 
 def column_line(grid: FilmGrid, kz: np.ndarray) -> ColumnLine:
@@ -257,7 +257,7 @@ def column_gradients(line, active, factor, count, pc, H, flow):
     """`ColumnLine.gradients`; ``flow``: conductances of the links in z, their derivatives to gap and speed, or None."""
     (stiffness, _, kz, _, u), order = line, factor[0]
     m, found = H.shape[1], 0
-    rows, places, by = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64), np.zeros((8, count))
+    rows, places, by = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64), np.zeros((10, count))
     for r in range(count):
         i = order[r] // m
         j = order[r] - i * m

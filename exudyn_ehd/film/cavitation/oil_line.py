@@ -37,7 +37,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line, line_gradients
+from exudyn_ehd.film.cavitation.rupture_line import line_gradients
+from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux
@@ -126,7 +127,7 @@ class OilLine:
         flow_x: float,
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
-    ) -> tuple[LineGradients, LineGradients]:
+    ) -> tuple[Gradients, Gradients]:
         """Derivatives, at fixed pressure, of the fills that flows carry from the vertices at the line, and of the
         vertices' fills.
 
@@ -137,25 +138,25 @@ class OilLine:
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
         out = []
         for end in (1.0, FILLED):
-            by, weights = np.zeros((8, places.size)), np.empty((3, places.size))
+            by, weights = np.zeros((10, places.size)), np.empty((3, places.size))
             _curve_weights(places, self.fields, end, weights)
             weights[::2] *= self.density
             line_gradients(places, weights[:2], *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
             _outflow_gradients(places, weights[2], *gaps, slopes, *speeds, mesh, by)
             by[6] += weights[1] * self.lift_by_speed[places % self.lift_by_speed.size]
-            out.append(LineGradients(places, places, by))
+            out.append(Gradients(places, places, by))
         return out[0], out[1]
 
     def balance_gradients(
-        self, fills: tuple[LineGradients, LineGradients], film: FilmTerms, store: np.ndarray, unknowns: np.ndarray
-    ) -> LineGradients:
+        self, fills: tuple[Gradients, Gradients], film: FilmTerms, store: np.ndarray, unknowns: np.ndarray
+    ) -> Gradients:
         """Derivatives of the balances of the ``unknowns`` (count,), flat vertices, through the fills of `gradients`:
         one entry for every balance and vertex at the line. ``film`` and ``store``: of `FilmSolver.fill_weights`."""
         carried, full = fills
         rows, places = np.empty((2, 5 * full.places.size), dtype=np.int64)
         by = np.empty((len(full.by), 5 * full.places.size))
         count = _spread_fills(full.places, carried.by, full.by, film, store, unknowns, rows, places, by)
-        return LineGradients(rows[:count], places[:count], by[:, :count])
+        return Gradients(rows[:count], places[:count], by[:, :count])
 
 
 @njit(cache=True)
@@ -297,25 +298,3 @@ def _spread_fills(fills, by_carried, by_fill, film, store, unknowns, rows, place
                     by[d, count] = shares[e] * by_carried[d, q] + (store[i, j] * by_fill[d, q] if e == 0 else 0.0)
                 count += 1
     return count
-
-
-def contract_fills(
-    lam: np.ndarray,
-    fills: tuple[LineGradients, LineGradients],
-    film: FilmTerms,
-    store: np.ndarray,
-    fields: tuple[np.ndarray, ...],
-) -> None:
-    """Add the adjoint gradients through the fills of `OilLine.gradients`, as `contract_line` does. ``film`` and
-    ``store``: of `FilmSolver.fill_weights`."""
-    for weighed, line in zip((weigh_flows(lam, film), lam * store), fills, strict=True):
-        contract_line(weighed, line, *fields)
-
-
-def weigh_flows(lam: np.ndarray, film: FilmTerms) -> np.ndarray:
-    """Derivatives (k, n, m) of adjoint functionals lam (k, n, m) to the fills that flows carry from vertices."""
-    out = np.zeros_like(lam)
-    for axis, f in ((1, film.fx), (2, film.fz)):
-        on, back = np.maximum(f, 0.0), np.roll(np.maximum(-f, 0.0), 1, axis - 1)
-        out += film.prompt * (on * (lam - np.roll(lam, -1, axis)) + back * (lam - np.roll(lam, 1, axis)))
-    return out

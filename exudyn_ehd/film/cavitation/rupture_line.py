@@ -27,34 +27,16 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.grid import Directions, Mesh
+from exudyn_ehd.film.gradients import Gradients
+from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
 # Smallest s of a vertex in the film, as dp/ds vanishes at 0: what lies below is the rounding of its neighbours'
 # pressures.
 LEAST = 1e-8
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-
-
-class LineGradients(NamedTuple):
-    """Derivatives of what N, f and k add to the balances of c unknowns, at fixed pressure.
-
-    Attributes
-    ----------
-    rows, places : (c,) int arrays
-        Unknowns and their flat vertices.
-    by : (8, c) array
-        To the gap on the links behind and before it in theta, to the gap at the vertex itself and at those behind and
-        before it in z, to the vertex' own rate, to vx and vz; (10, c) where a link's gap follows those of its ends:
-        also to the gap at the vertices behind and before in theta.
-    """
-
-    rows: np.ndarray
-    places: np.ndarray
-    by: np.ndarray
 
 
 class LineFields(NamedTuple):
@@ -106,15 +88,15 @@ class RuptureLine:
         flow_x: float,
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
-    ) -> LineGradients:
-        """`LineGradients` of the last solution at vertices ``places`` (c,) with their `weights`.
+    ) -> Gradients:
+        """`Gradients` of the last solution at vertices ``places`` (c,) with their `weights`.
 
         They are derivatives to the film's ``gaps`` at vertices and links.
         """
-        rows, by = work.number.reshape(-1)[places], np.zeros((8, places.size))
+        rows, by = work.number.reshape(-1)[places], np.zeros((10, places.size))
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
         line_gradients(places, weights, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
-        return LineGradients(rows, places, by)
+        return Gradients(rows, places, by)
 
     def weights(self, places: np.ndarray) -> np.ndarray:
         """Derivatives (2, c) of -N at vertices (c,) to their right-hand side b and to their mean conductance k."""
@@ -168,7 +150,7 @@ def line_weights(places, f, k, s, out):
 
 @njit(cache=True)
 def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by):
-    """`LineGradients` of the last solution at ``places`` (c,) into zeros ``by`` (8, c).
+    """`Gradients.by` of the last solution at ``places`` (c,) into zeros ``by`` (10, c).
 
     ``weights``: of `RuptureLine.weights`; ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
     `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`.
@@ -203,87 +185,3 @@ def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squ
                 by[7, found] += side * source * wx * carrier
         if squeeze:
             by[5, found] = -source * wx * wz
-
-
-def contract_line(
-    lam: np.ndarray, line: LineGradients | None, cell: np.ndarray, face: np.ndarray, rate: np.ndarray, speed: np.ndarray
-) -> None:
-    """Add the line's part of ``-lam . dr`` for adjoints lam (k, n, m) to the film's gradients (k, n, m) and (k, 2)."""
-    if line is None:
-        return
-    n, m = lam.shape[1:]
-    i, j = np.divmod(line.places, m)
-    weights = -lam[:, i, j]
-    # no two of the vertices share a place; what wraps around in z has no weight
-    for field, at, row, by in (
-        (face, i, j, 0), (face, (i - 1) % n, j, 1), (cell, i, j, 2), (cell, i, (j + 1) % m, 3),
-        (cell, i, (j - 1) % m, 4), (rate, i, j, 5), (cell, (i + 1) % n, j, 8), (cell, (i - 1) % n, j, 9),
-    )[: 6 + len(line.by) - 8]:  # fmt: skip
-        field[:, at, row] += weights * line.by[by]
-    speed += weights @ line.by[6:8].T
-
-
-@njit(cache=True)
-def add_line_columns(line, at, out):
-    """Add the line's part of the balances' derivatives (10, count) to a rigid journal's motion.
-
-    ``line``: `LineGradients`; otherwise as for `exudyn_ehd.film.sensitivity.motion_columns`.
-    """
-    rows, places, by = line
-    at = Directions(*at)
-    n, m = at.cos_x.size, at.z.size
-    for c in range(rows.size):
-        r, i = rows[c], places[c] // m
-        j = places[c] - i * m
-        prv = i - 1 if i > 0 else n - 1
-        z, whole, tilted = at.z[j], by[2, c], by[2, c] * at.z[j]
-        if j + 1 < m:
-            whole += by[3, c]
-            tilted += by[3, c] * at.z[j + 1]
-        if j > 0:
-            whole += by[4, c]
-            tilted += by[4, c] * at.z[j - 1]
-        x = by[0, c] * at.cos_f[i] + by[1, c] * at.cos_f[prv]
-        y = by[0, c] * at.sin_f[i] + by[1, c] * at.sin_f[prv]
-        cos, sin, rate = at.cos_x[i], at.sin_x[i], by[5, c]
-        if by.shape[0] > 8:
-            on, behind, before = i + 1 if i + 1 < n else 0, by[8, c], by[9, c]
-            x += behind * at.cos_x[on] + before * at.cos_x[prv]
-            y += behind * at.sin_x[on] + before * at.sin_x[prv]
-        out[0, r] -= x + whole * cos
-        out[1, r] -= y + whole * sin
-        out[2, r] -= x * z + tilted * cos
-        out[3, r] -= y * z + tilted * sin
-        out[4, r] -= rate * cos
-        out[5, r] -= rate * sin
-        out[6, r] -= rate * cos * z
-        out[7, r] -= rate * sin * z
-        out[8, r] += by[6, c]
-        out[9, r] += by[7, c]
-
-
-def line_matrices(line: LineGradients, shape: tuple[int, int], count: int) -> tuple[csr_matrix, csr_matrix]:
-    """Derivatives (count, n m) to gap and rate at all vertices, of gaps whose links are the mean of their columns."""
-    n, m = shape
-    i, j = np.divmod(line.places, m)
-    half_on, half_back, own, above, below, rate = line.by[:6]
-    size = n * m
-    # there is nothing behind the ends
-    at = line.places, (i + 1) % n * m + j, (i - 1) % n * m + j, (line.places + 1) % size, (line.places - 1) % size
-    values = np.concatenate((0.5 * (half_on + half_back) + own, 0.5 * half_on, 0.5 * half_back, above, below))
-    by_gap = csr_matrix((values, (np.tile(line.rows, 5), np.concatenate(at))), shape=(count, size))
-    return by_gap, csr_matrix((rate, (line.rows, line.places)), shape=(count, size))
-
-
-def to_true_gap(line: LineGradients, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> LineGradients:
-    """Convert gradients to the film's gap to gradients to the true gap, with a gap limiter's slopes (n, m)."""
-    n, m = slope.shape
-    i, j = np.divmod(line.places, m)
-    by = line.by.copy()
-    by[0] *= face_slope[i, j]
-    by[1] *= face_slope[(i - 1) % n, j]
-    by[2] = by[2] * slope[i, j] + by[5] * bend[i, j]
-    by[3] *= slope[i, (j + 1) % m]
-    by[4] *= slope[i, (j - 1) % m]
-    by[5] *= slope[i, j]
-    return line._replace(by=by)

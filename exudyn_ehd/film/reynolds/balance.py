@@ -9,7 +9,7 @@ density rho of a link's ends and the fill of its upstream end,
 the balance is what leaves a vertex and what it stores; ``prompt`` and ``late`` are 1 and 0, or those of
 `exudyn_ehd.film.reynolds.links`. Its derivatives to the unknowns (P
 where ``full``, else the fill) are kept per link, the slopes that `banded.assemble` takes: those
-through the density here, those through the gap in `exudyn_ehd.film.solvers.liner.gap_response`.
+through the density here, those through the gap in `exudyn_ehd.film.solvers.liner.elements`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Gap of a tilted rigid journal in a bore, the chain rule from gaps to its pose, and gaps with steps.
+"""Gap of a tilted rigid journal in a bore, slopes of what adds to it, and gaps with steps.
 
 ``H = 1 - (x + bx z) cos theta - (y + by z) sin theta (+ extra)`` in scaled lengths: x, y divided by c; z by R; bx, by
 multiplied by R/c. Paper, Eqs. (3), (5), (7). The gap's rate at fixed theta is the same expression in the rates, without
@@ -69,28 +69,73 @@ def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
 
 
 @njit(cache=True, fastmath=_FAST)
-def contract_pose(field, cos_x, sin_x, z, out):
-    """Add ``sum_ij field_ij dH_ij/dpose`` to out (k, 4) for every field (k, n, m)."""
-    count, n, m = field.shape
-    for k in range(count):
-        ox = 0.0
-        oy = 0.0
-        obx = 0.0
-        oby = 0.0
-        for i in range(n):
-            s0 = 0.0
-            s1 = 0.0
-            for j in range(m):
-                s0 += field[k, i, j]
-                s1 += field[k, i, j] * z[j]
-            ox -= s0 * cos_x[i]
-            oy -= s0 * sin_x[i]
-            obx -= s1 * cos_x[i]
-            oby -= s1 * sin_x[i]
-        out[k, 0] += ox
-        out[k, 1] += oy
-        out[k, 2] += obx
-        out[k, 3] += oby
+def gap_slopes(field, width, links, z, link_out, slope_x_out, slope_z_out):
+    """Mean on the links in theta and slopes of a field (n, m): central differences, one-sided at the ends of z and at
+    columns without a link.
+
+    Second order inside on any spacing of z, first order at its ends, as numpy.gradient. ``width`` and ``links`` (n,):
+    `FilmGrid.width_x` and `FilmGrid.link_x`; behind a column without a link its own values stand for the next ones.
+    """
+    n, m = field.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        prv = prv if links[prv] != 0.0 else i
+        nxt = i + 1 if i + 1 < n else 0
+        nxt = nxt if links[i] != 0.0 else i
+        inverse = 1.0 / (2.0 * width[i])
+        for j in range(m):
+            link_out[i, j] = 0.5 * (field[i, j] + field[nxt, j])
+            slope_x_out[i, j] = (field[nxt, j] - field[prv, j]) * inverse
+        slope_z_out[i, 0] = (field[i, 1] - field[i, 0]) / (z[1] - z[0])
+        slope_z_out[i, m - 1] = (field[i, m - 1] - field[i, m - 2]) / (z[m - 1] - z[m - 2])
+        for j in range(1, m - 1):
+            low, high = z[j] - z[j - 1], z[j + 1] - z[j]
+            slope_z_out[i, j] = (
+                low * low * field[i, j + 1] - high * high * field[i, j - 1] + (high * high - low * low) * field[i, j]
+            ) / (low * high * (low + high))
+
+
+@njit(cache=True, fastmath=_FAST)
+def transposed_slopes(field, width, z, along_x_out, along_z_out):
+    """Fields whose products with any gap term are those of ``field`` with its slopes of `gap_slopes` on a ring of
+    columns of one ``width``."""
+    n, m = field.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            along_x_out[i, j] = (field[prv, j] - field[nxt, j]) / (2.0 * width)
+            along_z_out[i, j] = 0.0
+        first, last = field[i, 0] / (z[1] - z[0]), field[i, m - 1] / (z[m - 1] - z[m - 2])
+        along_z_out[i, 0] -= first
+        along_z_out[i, 1] += first
+        along_z_out[i, m - 2] -= last
+        along_z_out[i, m - 1] += last
+        for j in range(1, m - 1):
+            low, high = z[j] - z[j - 1], z[j + 1] - z[j]
+            share = field[i, j] / (low * high * (low + high))
+            along_z_out[i, j + 1] += low * low * share
+            along_z_out[i, j - 1] -= high * high * share
+            along_z_out[i, j] += (high * high - low * low) * share
+
+
+@njit(cache=True, fastmath=_FAST)
+def add_gap(field, rate, width, links, z, H, HF, H_t, slope_x_out, slope_z_out):
+    """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as in `gap_slopes`.
+
+    Returns the smallest gap.
+    """
+    n, m = field.shape
+    link = np.empty((n, m))
+    gap_slopes(field, width, links, z, link, slope_x_out, slope_z_out)
+    smallest = np.inf
+    for i in range(n):
+        for j in range(m):
+            H[i, j] += field[i, j]
+            HF[i, j] += link[i, j]
+            H_t[i, j] += rate[i, j]
+            smallest = min(smallest, H[i, j], HF[i, j])
+    return smallest
 
 
 class SteppedGap(FluxEffect):

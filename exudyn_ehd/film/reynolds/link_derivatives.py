@@ -1,164 +1,165 @@
-"""Derivatives of the links' flows to gap and speeds at fixed pressure, and their sums with adjoint solutions.
+"""Derivatives of the links' flows to gaps and speeds at fixed pressure.
 
-For an adjoint solution lam the gradient of ``-lam . r``, r the balance of the vertices, is taken either as fields
-(`contract_links`) or, with the chain rule to the journal's pose, from the gradients of the balances
-(`exudyn_ehd.film.sensitivity.motion_columns`).
+Symbols: a, b ends of a link, h its gap; ``up`` the fill that the Couette flow takes along from upstream times the mean
+density; f the Couette flow of a full film with the carrier c(h), ``f = v width c``; E what a liner adds to the film's
+gap at a vertex, ``d = (E_b - E_a) / 2``. The flow over a link is ``up f - k (P_b - P_a)`` with the conductance
 
-Symbols: DX, DZ derivative of the flow of a link in theta, z with respect to the gap that the link sees (with the
-limiter's slope for the true gap), SX, SZ with respect to its own mean speed, SZX of the flow in z with respect to vx;
-all with metric. ``sigma = fill_upstream (rho_a + rho_b) / 2`` on the link a -> b with the density ratio rho: what a
-link carries of a full film's Couette flow.
+    k = metric g(h) (1 + (d / h)^2),    g = h^3 and c = h of a plain film.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.reynolds.balance import part
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+# numpy's integers, since numba compiles kernels anew for each plain one
+_0, _1 = np.int64(0), np.int64(1)
 
 
-@njit(cache=True, inline="always")
-def derivatives_of(d):
-    """DX, DZ, SX, SZ, SZX of their array (5, n, m), see the module's docstring."""
-    return d[0], d[1], d[2], d[3], d[4]
+@njit(cache=True)
+def _of_axis(flux, axis):
+    """Return g, dg/dh, dg/dvx, c and dc/dh of the links in theta (0) or z (1), flat; None for a plain film."""
+    if flux is None:
+        return None, None, None, None, None
+    if axis == 0:
+        return flux.gx, flux.gx_h, flux.gx_v, flux.cx, flux.cx_h
+    return flux.gz, flux.gz_h, flux.gz_v, flux.cz, flux.cz_h
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _pressure_flow(P_a, P_b, metric, h_a, h_b, E_a, E_b, g, g_h, by_h, by_d):
+    """Set the derivatives of the pressure flow to h and d; loops of one result each, which the compiler vectorises."""
+    for c in range(by_h.size):
+        h = 0.5 * (h_a[c] + h_b[c])
+        slope = 3.0 * h * h
+        if g is not None:
+            slope = g_h[c]
+        if E_a is not None:
+            lean = 0.5 * (E_b[c] - E_a[c]) / h
+            square = h * h
+            if g is not None:
+                square = g[c] / h
+            slope += (slope - 2.0 * square) * lean * lean
+        by_h[c] = -metric[c] * (P_b[c] - P_a[c]) * slope
+    if E_a is not None:
+        for c in range(by_d.size):
+            h = 0.5 * (h_a[c] + h_b[c])
+            base = h
+            if g is not None:
+                base = g[c] / (h * h)
+            by_d[c] = -metric[c] * (P_b[c] - P_a[c]) * base * (E_b[c] - E_a[c])
+
+
+@njit(cache=True)
+def _both(x, start, stop, there, end):
+    """Parts of a field at both ends of links; None of None."""
+    return part(x, start, stop), part(x, there, end)
 
 
 @njit(cache=True, fastmath=_FAST)
-def _convected(fill, rho, couette, axis, i, j, p, q):
-    """sigma of the link (i, j) -> (p, q) along ``axis``; arguments as for `link_derivatives`."""
-    sigma = 1.0
-    if rho is not None:
-        sigma = 0.5 * (rho[i, j] + rho[p, q])
-    if fill is not None:
-        sigma *= fill[i, j] if couette[axis][i, j] >= 0.0 else fill[p, q]
-    return sigma
+def _upstream(f, fill_a, fill_b, rho_a, rho_b, up):
+    for c in range(up.size):
+        if fill_a is not None:
+            a, b = fill_a[c], fill_b[c]
+            up[c] = a if f[c] >= 0.0 else b
+        if rho_a is not None:
+            up[c] *= 0.5 * (rho_a[c] + rho_b[c])
+
+
+@njit(cache=True)
+def upstream(fx, fz, fill, rho):
+    """Return ``up`` (2, n m) of the links in theta and z, with the Couette flows fx, fz of full films.
+
+    ``fill`` is what flows carry; it and the density ratio ``rho`` are (n, m), or None where they are one everywhere.
+    """
+    m, size = fx.shape[1], fx.size
+    last, e, up = size - m, size - 1, np.ones((2, size))
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        fills, densities = _both(fill, start, stop, there, end), _both(rho, start, stop, there, end)
+        _upstream(part(fx, start, stop), *fills, *densities, up[0, start:stop])
+    _upstream(part(fz, _0, e), *_both(fill, _0, e, _1, size), *_both(rho, _0, e, _1, size), up[1, :e])
+    return up
 
 
 @njit(cache=True, fastmath=_FAST)
-def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flow_x, mesh, out):
-    """Derivatives of all links' flows, in loops of one result.
+def _add_couette_flow(v, width, c_h, up, by_h):
+    """Add the derivative of the Couette flow to h."""
+    for c in range(by_h.size):
+        slope = v * width[c] * up[c]
+        if c_h is not None:
+            slope *= c_h[c]
+        by_h[c] += slope
+
+
+@njit(cache=True, fastmath=_FAST)
+def _own_speed(width, carrier, h_a, h_b, up, by_own):
+    """Set the derivative of the Couette flow to the link's own speed."""
+    for c in range(by_own.size):
+        flow = 0.5 * (h_a[c] + h_b[c])
+        if carrier is not None:
+            flow = carrier[c]
+        by_own[c] = width[c] * flow * up[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _other_speed(P_a, P_b, metric, g_v, by_vx):
+    """Add the derivative of the pressure flow to vx."""
+    if g_v is not None:
+        for c in range(by_vx.size):
+            by_vx[c] -= metric[c] * g_v[c] * (P_b[c] - P_a[c])
+
+
+@njit(cache=True)
+def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
+    """Set derivatives ``by`` (4, n m) of the links' flows to h and d, in theta, then in z.
 
     Parameters
     ----------
     P, H, HF : (n, m) arrays
-        Pressure, gaps at vertices and on the links i -> i+1.
-    slopes, by_speed : tuples of (n, m) arrays or None
-        `LinkFlux.slopes` and `LinkFlux.by_speed`; None: plain film, conductances that do not depend on the speed.
-    fill, rho : (n, m) arrays or None
-        None: a full film, density ratio 1.
-    couette : (fx, fz) or None
-        Couette fluxes in theta and z; only read where there is a fill.
-    vx, vz, flow_x : float
-        Scaled mean speeds; 0 drops the circumferential pressure flow.
-    mesh : tuple of arrays
-        `Mesh`.
-    out : (5, n, m) array
-        As for `derivatives_of`.
+        Pressure, gaps at vertices and on the links in theta.
+    E : (n, m) array or None
+        None: without a liner; the derivatives to d are not set.
+    up : (2, n m) array
+        Of `upstream`.
+    flux : LinkFlux or None
+    metric : (4, n, m) array
+        `exudyn_ehd.film.reynolds.links.link_metric`.
+    vx, vz : float
+        Scaled mean speeds.
     """
-    n, m = H.shape
-    width_x, width_z, link_x, link_z = mesh
-    DX, DZ, SX, SZ, SZX = derivatives_of(out)
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if link_x[i] != 0.0 else 0.0
-        lx = link_x[i] * flow_x
-        wx = width_x[i]
-        for j in range(m):
-            v = linked * vx * _convected(fill, rho, couette, 0, i, j, nxt, j)
-            if slopes is None:
-                h = HF[i, j]
-                g_h = 3.0 * h * h
-            else:
-                v *= slopes[4][i, j]
-                g_h = slopes[0][i, j]
-            DX[i, j] = (v - g_h * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
-        for j in range(m):
-            carrier = HF[i, j] if slopes is None else slopes[2][i, j]
-            SX[i, j] = linked * carrier * _convected(fill, rho, couette, 0, i, j, nxt, j) * width_z[j]
-        for j in range(m - 1):
-            v = vz * _convected(fill, rho, couette, 1, i, j, i, j + 1)
-            if slopes is None:
-                h = 0.5 * (H[i, j] + H[i, j + 1])
-                g_h = 3.0 * h * h
-            else:
-                v *= slopes[5][i, j]
-                g_h = slopes[1][i, j]
-            DZ[i, j] = (v - g_h * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
-        for j in range(m - 1):
-            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if slopes is None else slopes[3][i, j]
-            SZ[i, j] = carrier * _convected(fill, rho, couette, 1, i, j, i, j + 1) * wx
-        if by_speed is not None:
-            for j in range(m):
-                SX[i, j] -= by_speed[0][i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
-            for j in range(m - 1):
-                SZX[i, j] = -by_speed[1][i, j] * (link_z[j] * (P[i, j + 1] - P[i, j])) * wx
-
-
-@dataclass(eq=False)
-class Sensitivities:
-    """Gradients of k adjoint functionals.
-
-    Attributes
-    ----------
-    cell, face : (k, n, m) arrays
-        With respect to the gap at vertices and on the links i -> i+1.
-    rate : (k, n, m) array
-        With respect to the gap's rate at vertices.
-    speed : (k, 2) array
-        With respect to (vx, vz).
-    """
-
-    cell: np.ndarray
-    face: np.ndarray
-    rate: np.ndarray
-    speed: np.ndarray
+    m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
+    last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
+    g, g_h, _, _, c_h = _of_axis(flux, 0)
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        at, law = h_x[start:stop], (part(g, start, stop), part(g_h, start, stop))
+        leans, out = _both(E, start, stop, there, end), (by[0, start:stop], by[1, start:stop])
+        _pressure_flow(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, *law, *out)
+    _add_couette_flow(vx, by_metric[2], part(c_h, _0, size), up[0], by[0])
+    g, g_h, _, _, c_h = _of_axis(flux, 1)
+    law, leans = (part(g, _0, e), part(g_h, _0, e)), _both(E, _0, e, _1, size)
+    _pressure_flow(p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
+    _add_couette_flow(vz, by_metric[3], part(c_h, _0, size), up[1], by[2])
+    # there are no links behind the last row
+    by[2:, e] = 0.0
 
 
 @njit(cache=True)
-def add_cuts(P, H, HF, flow, slopes, by_speed, cuts, kx, kz, out):
-    """Add to `link_derivatives` what links conduct more because they end at an edge.
-
-    ``cuts`` (2, n, m): `FilmGrid.cuts`, which kx and kz (n, m) contain; ``flow``: `LinkFlux.flow`; the rest as there.
-    """
-    n, m = H.shape
-    DX, DZ, SX, _, SZX = derivatives_of(out)
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            if cuts[0, i, j] != 1.0:
-                more = kx[i, j] * (1.0 - 1.0 / cuts[0, i, j]) * (P[nxt, j] - P[i, j])
-                DX[i, j] -= more * (3.0 / HF[i, j] if slopes is None else slopes[0][i, j] / flow[0][i, j])
-                if by_speed is not None:
-                    SX[i, j] -= more * by_speed[0][i, j] / flow[0][i, j]
-        for j in range(m - 1):
-            if cuts[1, i, j] != 1.0:
-                more = kz[i, j] * (1.0 - 1.0 / cuts[1, i, j]) * (P[i, j + 1] - P[i, j])
-                DZ[i, j] -= more * (
-                    6.0 / (H[i, j] + H[i, j + 1]) if slopes is None else slopes[1][i, j] / flow[1][i, j]
-                )
-                if by_speed is not None:
-                    SZX[i, j] -= more * by_speed[1][i, j] / flow[1][i, j]
-
-
-def contract_links(lam: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m) and the links' derivatives d (5, n, m).
-
-    Returns
-    -------
-    cell, face : (k, n, m) arrays
-        To the gaps at vertices and on the links i -> i+1.
-    speed : (k, 2) array
-        To (vx, vz).
-    """
-    DX, DZ, SX, SZ, SZX = d
-    along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
-    half = -0.5 * across * DZ[:, :-1]
-    cell = np.zeros_like(lam)
-    cell[:, :, :-1] += half
-    cell[:, :, 1:] += half
-    turning = np.sum(along * SX, axis=(1, 2)) + np.sum(across * SZX[:, :-1], axis=(1, 2))
-    sliding = np.sum(across * SZ[:, :-1], axis=(1, 2))
-    return cell, -along * DX, -np.stack([turning, sliding], axis=1)
+def speed_derivatives(P, H, HF, up, flux, metric, by):
+    """Set derivatives ``by`` (3, n m) of the links' flows: in theta to vx, in z to vz and to vx; the rest as for
+    `gap_derivatives`."""
+    m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
+    last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
+    _, _, g_v, carrier, _ = _of_axis(flux, 0)
+    _own_speed(by_metric[2], part(carrier, _0, size), h_x, h_x, up[0], by[0])
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        along, slower = by_metric[0, start:stop], part(g_v, start, stop)
+        _other_speed(p[start:stop], p[there:end], along, slower, by[0, start:stop])
+    _, _, g_v, carrier, _ = _of_axis(flux, 1)
+    _own_speed(by_metric[3, :e], part(carrier, _0, e), h[:e], h[1:], up[1, :e], by[1, :e])
+    for c in range(size):
+        by[2, c] = 0.0
+    _other_speed(p[:e], p[1:], by_metric[1, :e], part(g_v, _0, e), by[2, :e])
+    by[1, e] = 0.0

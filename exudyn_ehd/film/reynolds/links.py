@@ -41,7 +41,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.grid import Mesh
+from exudyn_ehd.film.grid import FilmGrid
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 _unsigned = np.uint64
@@ -192,54 +192,60 @@ def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
             gz_h[i, j] = 3.0 * h * h
 
 
-@njit(cache=True, fastmath=_FAST, inline="always")
-def conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out):
-    """Conductances of the links with their metric, ``H^3 width / distance``.
+def link_metric(grid: FilmGrid, flow_x: float) -> np.ndarray:
+    """Metric (4, n, m) of the links, 0 where there is none.
 
-    ``flow_x`` = 0 drops the circumferential pressure flow.
-
-    ``flow``: `LinkFlux.flow`, or None for a plain film.
+    Width over length of those in theta and in z, times the grid's cuts, and width for the Couette flows in theta and in
+    z. ``flow_x`` = 0 drops the circumferential pressure flow.
     """
-    n, m = H.shape
-    mesh = Mesh(*mesh)
-    for i in range(n):
-        lx = mesh.link_x[i] * flow_x
-        wx = mesh.width_x[i]
-        for j in range(m):
-            if flow is None:
-                h = HF[i, j]
-                g = h * h * h
-            else:
-                g = flow[0][i, j]
-            kx_out[i, j] = g * lx * mesh.width_z[j]
-        for j in range(m - 1):
-            if flow is None:
-                h = 0.5 * (H[i, j] + H[i, j + 1])
-                g = h * h * h
-            else:
-                g = flow[1][i, j]
-            kz_out[i, j] = g * mesh.link_z[j] * wx
-        kz_out[i, m - 1] = 0.0
+    along_z, across_z = np.append(grid.link_z, 0.0), np.append(np.ones(grid.link_z.size), 0.0)
+    x = flow_x * grid.link_x, grid.width_x, grid.link_x != 0.0, grid.width_x
+    metric = np.stack([np.outer(a, b) for a, b in zip(x, (grid.width_z, along_z, grid.width_z, across_z), strict=True)])
+    if grid.cuts is not None:
+        metric[:2] *= grid.cuts
+    return metric
 
 
-@njit(cache=True, fastmath=_FAST, inline="always")
-def couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out):
-    """Couette fluxes of the links; 0 where there is no link. ``flow`` as in `conductances`."""
-    n, m = H.shape
-    mesh = Mesh(*mesh)
-    for i in range(n):
-        v = vx if mesh.link_x[i] != 0.0 else 0.0
-        for j in range(m):
-            fx_out[i, j] = v * (HF[i, j] if flow is None else flow[2][i, j]) * mesh.width_z[j]
-        for j in range(m - 1):
-            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if flow is None else flow[3][i, j]
-            fz_out[i, j] = vz * carrier * mesh.width_x[i]
-        fz_out[i, m - 1] = 0.0
+@njit(cache=True, fastmath=_FAST)
+def _set_along(h_a, h_b, g, carrier, metric, width, v, k_out, f_out):
+    for c in range(k_out.size):
+        h = 0.5 * (h_a[c] + h_b[c])
+        conducts = h * h * h
+        if g is not None:
+            conducts = g[c]
+        k_out[c] = metric[c] * conducts
+    for c in range(f_out.size):
+        carried = 0.5 * (h_a[c] + h_b[c])
+        if carrier is not None:
+            carried = carrier[c]
+        f_out[c] = v * width[c] * carried
 
 
-@njit(cache=True, fastmath=_FAST, inline="always")
-def right_hand_side(fx, fz, b_out):
-    """b = net Couette inflow of every control volume."""
+@njit(cache=True)
+def _flow_along(flow, axis):
+    """Return conductances and carriers of the links in theta (0) or z (1), flat; None for a plain film."""
+    if flow is None:
+        return None, None
+    return flow[axis].reshape(-1), flow[2 + axis].reshape(-1)
+
+
+@njit(cache=True)
+def set_links(H, HF, flow, metric, vx, vz, terms):
+    """Conductances and Couette flows of the links into ``terms``, the first four fields (n, m) of a `FilmTerms`.
+
+    ``flow``: `LinkFlux.flow`, None for a plain film; ``metric``: `link_metric`.
+    """
+    e, h, h_x = H.size - 1, H.reshape(-1), HF.reshape(-1)
+    by, out = metric.reshape(4, H.size), terms.reshape(len(terms), H.size)
+    g, carrier = _flow_along(flow, 0)
+    _set_along(h_x, h_x, g, carrier, by[0], by[2], vx, out[0], out[2])
+    g, carrier = _flow_along(flow, 1)
+    _set_along(h[:e], h[1:], g, carrier, by[1, :e], by[3, :e], vz, out[1, :e], out[3, :e])
+
+
+@njit(cache=True, fastmath=_FAST)
+def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
+    """b = net Couette inflow of every control volume, with a ``squeeze`` less the storage ``dH/dt area``."""
     n, m = fx.shape
     for i in range(n):
         p = i - 1 if i > 0 else n - 1
@@ -248,25 +254,9 @@ def right_hand_side(fx, fz, b_out):
         b_out[i, 0] -= fz[i, 0]
         for j in range(1, m):
             b_out[i, j] += fz[i, j - 1] - fz[i, j]
-
-
-@njit(cache=True, fastmath=_FAST, inline="always")
-def add_squeeze(H_t, width_x, width_z, b_out):
-    """Subtract the storage term ``dH/dt area``."""
-    n, m = H_t.shape
-    for i in range(n):
-        for j in range(m):
-            b_out[i, j] -= H_t[i, j] * width_x[i] * width_z[j]
-
-
-@njit(cache=True, fastmath=_FAST)
-def set_links(H, HF, H_t, squeeze, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz_out, b_out):
-    """Coefficients of the links and right-hand side in one call; without a ``squeeze`` H_t is not read."""
-    conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out)
-    couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out)
-    right_hand_side(fx_out, fz_out, b_out)
-    if squeeze:
-        add_squeeze(H_t, mesh[0], mesh[1], b_out)
+        if squeeze:
+            for j in range(m):
+                b_out[i, j] -= H_t[i, j] * area[i, j]
 
 
 @njit(cache=True, fastmath=_FAST)

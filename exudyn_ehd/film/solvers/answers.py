@@ -7,14 +7,12 @@ from scipy.sparse import block_array, csc_matrix, diags_array
 
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_lu, solve_lu_transposed
-from exudyn_ehd.film.cavitation.oil_line import contract_fills
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, contract_line
 from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
-from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.gradients import Gradients, join, link_rows
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links
+from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives, upstream
 from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
@@ -32,7 +30,7 @@ class FilmAnswers(FilmArrays):
     elements: LinerFilm | None
     reservoirs: Reservoirs | None = None
     # of `fill_gradients`, once they are asked for
-    _fills: tuple[LineGradients, LineGradients] | None = None
+    _fills: tuple[Gradients, Gradients] | None = None
     # of `reduced`: areas with a balance, B^T, C A^-1 and S
     _reduced: tuple[np.ndarray, ...] | None = None
 
@@ -47,17 +45,6 @@ class FilmAnswers(FilmArrays):
         elif self.line is not None:
             refine_factor(self.system, self.line, self.work)
         self.work.exact = True
-
-    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""
-        self.solve_transposed(rhs)
-        return self.fields_of(rhs)
-
-    def fields_of(self, rows: np.ndarray) -> np.ndarray:
-        """Fields (k, n, m) of rows (k, count) at the unknowns; 0 elsewhere."""
-        fields = np.empty((rows.shape[0], *self.grid.shape))
-        scatter(rows, self.work.order, self.work.count, fields)
-        return fields
 
     def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p as the film's unknown,
@@ -166,22 +153,27 @@ class FilmAnswers(FilmArrays):
         w = self.work
         return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
 
-    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """Gradients of the adjoint functionals lam (k, n, m) to gaps, rates and speeds, between rigid surfaces.
+    def gradients(self, places: np.ndarray | None = None) -> Gradients:
+        """Derivatives of the balances at flat vertices, those of the unknowns without ``places``, for the last solution
+        at fixed unknowns.
 
-        Films on liners have `LinerFilm.motion_columns`.
+        To the film's gaps between rigid surfaces, to those of the undeformed surfaces on a liner.
         """
-        assert self.elements is None or self.elements.beta == 0.0, "gradients of a liner: motion_columns"
-        by_rate, by_gap = self.storage_weights()
-        cell, face, speed = contract_links(lam, self.link_derivatives())
-        cell -= lam * by_gap
-        fields = cell, face, -lam * by_rate, speed
-        fills = self.fill_gradients()
-        if fills is None:
-            contract_line(lam, self.line_gradients(), *fields)
-        else:
-            contract_fills(lam, fills, *self.fill_weights(), fields)
-        return Sensitivities(*fields)
+        at, storage = self.work.order[: self.work.count] if places is None else places, self.storage_weights()
+        out, e, s = Gradients(np.arange(at.size), at, np.empty((10, at.size))), self.elements, self.system
+        by, by_speed = np.empty((4, self.area.size)), np.empty((3, self.area.size))
+        carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
+        at_links = s.linear_pressure, self.H, self.HF
+        up = upstream(s.fx, s.fz, carried, rho)
+        speed_derivatives(*at_links, up, self.flux, self.metric, by_speed)
+        if not self.axial:
+            by_speed[1] = 0.0
+        if e is None:
+            gap_derivatives(*at_links, None, up, self.flux, self.metric, self.vx, self.vz, by)
+        by, follows = (by, None) if e is None else (e.by, e.follows())
+        link_rows(at, at.size, self.grid.z.size, by, by_speed, follows, storage, out.by)
+        line = self.line_gradients(places)
+        return out if line is None else join(out, line)
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to the rate and to the gap of
@@ -222,23 +214,25 @@ class FilmAnswers(FilmArrays):
         """The film at its rupture line."""
         return AtLine((self.H, self.HF), self.flux, None) if self.elements is None else self.elements.at_line
 
-    def _to_motion(self, line: LineGradients) -> LineGradients:
+    def _to_motion(self, line: Gradients) -> Gradients:
         """Convert a line's gradients to the film's gaps, in place, to gradients to those of the undeformed surfaces."""
         if not self.axial:
             line.by[7] = 0.0
         return undeformed(line, self._at_line().chain)
 
-    def line_gradients(self, places: np.ndarray | None = None) -> LineGradients | None:
+    def line_gradients(self, places: np.ndarray | None = None) -> Gradients | None:
         """Contribution of the rupture line inside the cells to the derivatives of the balances; None without one.
 
-        For the last solution, at fixed pressure. ``places``: flat vertices of balances in a mass-conserving film, in
-        place of those of the unknowns.
+        For the last solution, at fixed pressure. ``places``: flat vertices of balances in place of those of the
+        unknowns; only a mass-conserving film's line adds to those.
         """
         fills = self.fill_gradients()
         if fills is not None and self.oil_line is not None:
             at = self.work.order[: self.work.count] if places is None else places
             return self.oil_line.balance_gradients(fills, *self.fill_weights(), at)
         s = self.system
+        if places is not None:
+            return None
         if s.column_line is not None:
             return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
         if self.line is None:
@@ -247,7 +241,7 @@ class FilmAnswers(FilmArrays):
         found = self.work, at, self.line.weights(at)
         return self._to_motion(self.line.gradients(*found, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh))
 
-    def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
+    def fill_gradients(self) -> tuple[Gradients, Gradients] | None:
         """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their
         fills; None without.
 

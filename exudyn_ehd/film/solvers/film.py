@@ -36,8 +36,15 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
-from exudyn_ehd.film.reynolds.link_derivatives import add_cuts, link_derivatives
-from exudyn_ehd.film.reynolds.links import FluxEffect, lag_void, link_flux, outflow_of, set_links
+from exudyn_ehd.film.reynolds.links import (
+    FluxEffect,
+    lag_void,
+    link_flux,
+    link_metric,
+    outflow_of,
+    right_hand_side,
+    set_links,
+)
 from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.supply.restrictors import seal_ends
 
@@ -186,7 +193,7 @@ class FilmArrays:
         shape = grid.shape
         self.grid, self.closure, self.squeeze, self.flux_effects = grid, closure, squeeze, flux_effects
         self.flow_x, self.area, self.work = flow_x, grid.area, Workspace(*shape)
-        self.ones, self.nothing, self.link_fields = np.ones(shape), np.zeros(shape), np.zeros((5, *shape))
+        self.ones, self.nothing, self.metric = np.ones(shape), np.zeros(shape), link_metric(grid, flow_x)
         self.vx = self.vz = 0.0
         # whether oil flows in z; without links it does not, the flow by an axially moving surface included
         self.axial = bool(grid.link_z.any())
@@ -255,19 +262,26 @@ class FilmArrays:
         """Let the next solution start from a full film."""
         self.work.warm = False
 
+    def cut_links(self) -> None:
+        """Take the grid's cuts over into the links' metric."""
+        self.metric[:] = link_metric(self.grid, self.flow_x)
+
     def set_links(self) -> None:
-        """Conductances and Couette fluxes of the links, and the right-hand side."""
+        """Conductances and Couette fluxes of the links."""
         s, f = self.system, self.flux
         if f is not None:
             first, *others = self.flux_effects
             first.start(f, self.H, self.vx, self.vz)
             for effect in others:
                 effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
-        speeds, out = (self.vx, self.vz, self.flow_x), (s.kx, s.kz, s.fx, s.fz, s.b)
-        set_links(self.H, self.HF, self.H_t, self.squeeze, None if f is None else f.flow, *speeds, self.grid.mesh, *out)
-        self.grid.cut(s.kx, s.kz)
+        set_links(self.H, self.HF, None if f is None else f.flow, self.metric, self.vx, self.vz, s.term_fields)
         if self.grid.seals is not None:
             seal_ends(self.grid, s.kz, self.pressure_scale)
+
+    def set_right_hand_side(self) -> None:
+        """Net inflow of the links' Couette flows, less the squeeze."""
+        s = self.system
+        right_hand_side(s.fx, s.fz, self.squeeze, self.H_t, self.area, s.b)
 
     def inverse_instant(self) -> float:
         """1 / a step that stands for none, 1/s, for the speeds and rates now stored."""
@@ -325,23 +339,6 @@ class FilmArrays:
     def flow_pressures(self) -> tuple[np.ndarray, np.ndarray]:
         """Pressures (n, m) that drive flows at prescribed vertices, and where the film is full."""
         return flow_pressures(self.system, self.work.active, self.closure.clips)
-
-    def link_derivatives(self) -> np.ndarray:
-        """Derivatives (5, n, m) of the links' flows, or mass flows, with respect to their gaps and the speeds, for the
-        last solution at fixed pressure."""
-        s, f, fill, couette = self.system, self.flux, None, None
-        if self.closure.conserves_mass:
-            fill, couette = self.carried, (s.fx, s.fz)
-        slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
-        rho, speeds = None if self.law is None else self.rho, (self.vx, self.vz, self.flow_x, self.grid.mesh)
-        P = s.linear_pressure
-        link_derivatives(P, self.H, self.HF, slopes, by_speed, fill, rho, couette, *speeds, self.link_fields)
-        if self.grid.cuts is not None:
-            flow = None if f is None else f.flow
-            add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)
-        if not self.axial:
-            self.link_fields[3] = 0.0
-        return self.link_fields
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
         """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed

@@ -140,7 +140,7 @@ def _squeeze_force(s: FilmSolver, eps: float, alpha: float) -> np.ndarray:
     if status is not Status.CONVERGED:
         raise FilmError(f"ImpedanceMap: {status.name} at eccentricity ratio {eps:.4f}: {status.advice}")
     out = np.empty(4)
-    pressure_integrals(s.pressure, s.grid.weight, at[0], at[1], at[4], out)
+    pressure_integrals(s.pressure, s.grid.weight, s.grid.gap_shapes, out)
     return out[:2]
 
 

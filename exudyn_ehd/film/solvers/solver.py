@@ -87,8 +87,7 @@ class FilmSolver(FilmAnswers):
 
     def refresh_fixed(self) -> None:
         """Hand a change of ``grid.fixed`` and of its cuts on to the film's parts."""
-        if self.elements is not None:
-            self.elements.cut_links()
+        self.cut_links()
         if self.reservoirs is not None:
             self.reservoirs.place()
         self.work.ready = False
@@ -202,6 +201,7 @@ class FilmSolver(FilmAnswers):
                 # with the density that its pressure gives it.
                 mass_old = np.minimum(mass_old / self.density.at(s.cavity_pressure), self.H)
         self.set_links()
+        self.set_right_hand_side()
         line = s.line if isinstance(s.line, FilmLine) else s.oil_line
         if line is not None:
             line.take(s.terms, s.b, 1.0 if self.density is None else self.density.at(s.cavity_pressure), self.vx)

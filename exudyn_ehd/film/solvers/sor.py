@@ -130,6 +130,7 @@ class ClassicSolver(FilmSolver):
         self.vx, self.vz = vx, vz
         s.cavity_pressure = cavity_pressure
         self.set_links()
+        self.set_right_hand_side()
         s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
         sweeps = sor_solve(
             self.H,

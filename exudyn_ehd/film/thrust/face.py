@@ -31,7 +31,6 @@ import numpy as np
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.loads import end_flows
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
@@ -262,37 +261,35 @@ class FaceFilm:
     def _gradients(self) -> np.ndarray:
         """Gradients (6, 9) of N, X, Y and E to the motion, SI units; contact included."""
         a = self.annulus
-        sens = self.solver.sensitivities(self._adjoint(np.concatenate((a.moments * a.weight, self.rows))))
-        cell, face = a.link_gradients(self.solver.pressure)
-        sens.cell[3:] += cell
-        sens.face[3:] += face
+        rows = self._adjoint(np.concatenate((a.moments * a.weight, self.rows)))
+        cell, face, rate, speed = self.solver.gradients().fields(rows, a.weight.shape)
+        by_gap, by_link = a.link_gradients(self.solver.pressure)
+        cell[3:] += by_gap
+        face[3:] += by_link
         # from the film's gap and weighed rate to the surfaces' gap and rate
-        sens.rate *= a.square
-        sens.cell[:] = sens.cell * self.slope + sens.rate * self.bend
-        sens.face[:] *= self.face_slope
-        sens.rate *= self.slope
-        sens.cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
-        return self._by_motion(sens)
+        rate *= a.square
+        cell = cell * self.slope + rate * self.bend
+        cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
+        return self._by_motion(cell, face * self.face_slope, rate * self.slope, speed)
 
     def _adjoint(self, fields: np.ndarray) -> np.ndarray:
-        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m)."""
+        """Adjoint rows (k, count) of sums over the pressure with the weights ``fields`` (k, n, m)."""
         s, w, y = self.solver, self.solver.work, self.solver.system
         unknown = w.order[: w.count]
         rows = fields.reshape(len(fields), -1)[:, unknown]
         rows *= w.active.reshape(-1)[unknown]
         if y.continued is not None:
             rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
-        return s.adjoint(rows)
+        s.solve_transposed(rows)
+        return rows
 
-    def _by_motion(self, sens: Sensitivities) -> np.ndarray:
-        """Gradients (k, 9) to the motion, SI units."""
-        rate, k = sens.rate, self.scales
-        pose = products(sens.cell, self.shape) + products(sens.face, self.link_shape)
+    def _by_motion(self, cell: np.ndarray, face: np.ndarray, rate: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """Gradients (k, 9) to the motion, SI units, from those of `Gradients.fields`."""
+        k = self.scales
+        pose = products(cell, self.shape) + products(face, self.link_shape)
         through, whole = products(rate, self.shape), rate.sum(axis=(1, 2))
         # the shift's rate -side u . b / 2 in scaled tilt and shift
         pose[:, 1:] -= 0.5 * self.side * np.outer(whole, self.shift)
         shift = products(rate, self.shifted) - 0.5 * self.side * np.outer(whole, self.pose[1:])
         scale = np.array([1.0, k.R, k.R]) / k.c
-        return np.concatenate(
-            (pose * scale, self.squeeze * through * scale, 0.5 * sens.speed[:, :1], shift / k.R), axis=1
-        )
+        return np.concatenate((pose * scale, self.squeeze * through * scale, 0.5 * speed[:, :1], shift / k.R), axis=1)

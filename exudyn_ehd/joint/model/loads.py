@@ -82,7 +82,7 @@ def film_loads(
     """Loads of the film that ``parts.solver`` holds."""
     s, g, P = parts.solver, parts.grid, oil.P
     integrals = np.empty(4)
-    pressure_integrals(P, g.weight, parts.directions.cos_x, parts.directions.sin_x, g.z, integrals)
+    pressure_integrals(P, g.weight, g.gap_shapes, integrals)
     extra_theta = extra_z = 0.0
     if extra is not None:
         pressed = P * g.weight

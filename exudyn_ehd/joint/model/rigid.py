@@ -16,8 +16,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import Walls
-from exudyn_ehd.film.reynolds.gap import rigid_gaps
-from exudyn_ehd.film.sensitivity import add_gap
+from exudyn_ehd.film.reynolds.gap import add_gap, rigid_gaps
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
 from exudyn_ehd.joint.model.effects import film_parts
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of

@@ -321,11 +321,13 @@ class SphericalModel:
             sheared = np.tensordot(self._drag.reshape(6, 6, 10), speeds, (1, 0)) @ self._moments
             rows = np.concatenate([rows * film.ratio, sheared * (film.ratio_q * share / s.H.ravel())])
         at, k = w.order[: w.count], len(rows)
-        found = s.sensitivities(s.adjoint(np.ascontiguousarray(rows[:, at] * w.active.ravel()[at])))
-        by_gap = found.cell if not self._limits else found.cell * f.slope + found.rate * f.bend * f.rate
+        lam = np.ascontiguousarray(rows[:, at] * w.active.ravel()[at])
+        s.solve_transposed(lam)
+        cell, face, rate, _ = s.gradients().fields(lam, self.grid.shape)
+        by_gap = cell if not self._limits else cell * f.slope + rate * f.bend * f.rate
         by_place = by_gap.reshape(k, -1) @ self._gap_slope.T
-        by_place += (found.face * f.face_slope).reshape(k, -1) @ self._link_slope.T
-        by_entrained = (found.rate * f.slope).reshape(k, -1) @ self._storage.T
+        by_place += (face * f.face_slope).reshape(k, -1) @ self._link_slope.T
+        by_entrained = (rate * f.slope).reshape(k, -1) @ self._storage.T
         entrained = _SPEEDS[:3] + 0.5 * (cross @ _SPEEDS[3:] - skew(motion[SPIN]) @ _PLACE)
         pressed = by_place @ _PLACE + by_entrained @ entrained
         pulled = pressed[n - 3 : n] + (P * f.bend).ravel() * self._vector @ self._gap_slope.T @ _PLACE

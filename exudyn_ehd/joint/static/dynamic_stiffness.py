@@ -34,14 +34,13 @@ from scipy.optimize import brentq
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.cavitation.rupture_line import line_matrices
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.model.centre import evaluate_beside, is_central
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
-from exudyn_ehd.joint.tangent.true_gap import line_by_motion, true_fills, weigh_fills
+from exudyn_ehd.joint.tangent.true_gap import true_fills
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, wrench_rows
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
@@ -109,17 +108,17 @@ class FilmResponse:
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count + areas))
         fills, self.contents = true_fills(film), None
         if fills is not None:  # of a film that conserves mass
-            self.contents = weigh_fills(fills, whole, number)
-            by_fill = line_by_motion(film, self.contents, w.count + areas) * scale
+            self.contents = fills.weighed(whole, number)
+            by_fill = self.contents.columns(film.grid.gap_shapes, w.count + areas) * scale
         # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
         self.by_pose, self.by_rate = by_motion[:PLACES].copy(), by_motion[PLACES : 2 * PLACES]
         self.by_content, self.by_sway = by_fill[:PLACES], by_fill[PLACES : 2 * PLACES]
         self._rest_of(*slow_motions(tangent))
         if liner is not None:  # the tangent knows no rate of its deflection, and neither does the rupture line
             line, follows = s.line_gradients(), liner.gap_slopes.D_r.reshape(-1)[order]
-            resting = (
-                0.0 if line is None else (line_by_motion(film, line, w.count + areas) * scale)[PLACES : 2 * PLACES]
-            )
+            resting: np.ndarray | float = 0.0
+            if line is not None:
+                resting = (line.columns(film.grid.gap_shapes, w.count + areas) * scale)[PLACES : 2 * PLACES]
             self.by_rate = self.by_rate + (self.by_rate - resting) * np.append(follows, np.zeros(areas))
 
     def _rest_of(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
@@ -178,8 +177,9 @@ class FilmOnBoreResponse(FilmResponse):
         place, rate = (-force * balances.times(bore.shapes, *ends).T for ends in ((1.0, 0.0), (0.0, 1.0)))
         sway = content = np.zeros_like(rate)
         if self.contents is not None:
-            parts = line_matrices(self.contents, film.grid.shape, len(balances.places))
-            content, sway = (-force / balances.clearance * dense(part @ bore.shapes).T for part in parts)
+            at, by = (film.grid.shape, len(balances.places)), -force / balances.clearance
+            parts = (self.contents.matrix(*at, *factors) for factors in ((by, 0.0), (0.0, by)))
+            content, sway = (dense(part @ bore.shapes).T for part in parts)
         self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
         self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
 

@@ -7,10 +7,8 @@ film's unknowns u, one film solve for each change,
 
 all in one sweep over the factor; wrench and loads are sums over the unknowns, ``dQ = S^T W du``, and what depends on
 the motion at fixed u, as contacts do. The balances' derivatives to delta are a five-point stencil, since the gap on a
-link is the mean of its two columns; those to the motion are ten columns. What flows carry from the line of a
-mass-conserving film inside its cells follows the gaps around it, also in the balances of its neighbours: a sparse
-matrix besides. What an integrator asks for is one combination of the derivatives to q and q_t, which costs as much as
-one of them.
+link is the mean of its two columns; those to the motion are ten columns. What an integrator asks for is one combination
+of the derivatives to q and q_t, which costs as much as one of them.
 """
 
 from __future__ import annotations
@@ -20,26 +18,19 @@ from scipy.sparse import csc_matrix, csr_matrix
 
 from exudyn_ehd.film.banded.substitution import product
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_matrices
-from exudyn_ehd.film.sensitivity import gap_stencil, motion_columns, shear_fields, sum_rows
+from exudyn_ehd.film.gradients import add_rows
+from exudyn_ehd.film.loads import shear_fields
 from exudyn_ehd.film.surfaces.contact import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.true_gap import drag_by_gap, shear_of_fills, true_fills, true_line, weigh_fills
+from exudyn_ehd.joint.tangent.true_gap import drag_by_gap, shear_of_fills, true_fills, true_gradients
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
     couette_slopes,
-    gap_derivatives,
     integrals_in_wrench,
     motion_tangent,
     wrench_weights,
 )
-
-# Weights of a `gap_stencil` (columns) by the first six derivatives of `LineGradients` (rows), to the gap and its rate:
-# the gap on a link in theta is the mean of its two columns.
-_LINE_BY_GAP, _LINE_BY_RATE = np.zeros((6, 5)), np.zeros((6, 5))
-_LINE_BY_GAP[0, :2] = _LINE_BY_GAP[1, :3:2] = 0.5
-_LINE_BY_GAP[2, 0] = _LINE_BY_GAP[3, 3] = _LINE_BY_GAP[4, 4] = _LINE_BY_RATE[5, 0] = 1.0
 
 
 def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, float]) -> np.ndarray:
@@ -82,40 +73,33 @@ class Balances:
     ----------
     places : (count,) array
         Flat vertices of the unknowns.
+    gradients : Gradients
+        To the scaled true gap.
     motion : (10, count) array
         To (scaled pose, scaled rates, vx, vz).
-    beyond : two csr matrices (count, n m) or None
-        To the scaled gap and its rate at all vertices, from a line inside the cells of a mass-conserving film.
     """
 
     def __init__(self, film: SolvedFilm) -> None:
-        p, work = film.parts, film.solver.work
-        self.film = film
-        self.clearance, self.size = p.bearing.radial_clearance, work.order.size
-        self.places = work.order[: work.count]
-        self.gaps = gap_derivatives(film)
-        self.motion = np.empty((MOTION_SIZE, work.count))
-        motion_columns(self.places, work.count, *self.gaps, p.grid.directions, self.motion)
-        self.line, self.beyond = true_line(film), None
-        if self.line is not None:
-            add_line_columns(tuple(self.line), p.grid.directions, self.motion)
-            if film.solver.oil_line is not None:
-                self.beyond, self.line = line_matrices(self.line, p.grid.shape, work.count), None
+        self.film, self.clearance = film, film.parts.bearing.radial_clearance
+        self.places = film.solver.work.order[: film.solver.work.count]
+        self.gradients = true_gradients(film)
+        self.motion = self.gradients.columns(film.grid.gap_shapes, self.places.size)
 
     def matrix(self, by_place: float, by_rate: float) -> csr_matrix:
         """``by_place d/d delta + by_rate d/d delta_t`` (count, n m) of the bore's displacement delta, SI units."""
-        weight, vertices = self._stencil(by_place, by_rate)
-        starts = np.arange(0, weight.size + 1, 5)
-        near = csr_matrix((weight.ravel(), vertices.ravel(), starts), shape=(len(weight), self.size))
-        return near if self.beyond is None else near + self._beyond(by_place, by_rate)
+        factors = by_place / self.clearance, by_rate / self.clearance
+        return self.gradients.matrix(self.film.grid.shape, self.places.size, *factors)
 
     def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray:
         """Return `matrix` times the shapes (n m, k) of a bore."""
         if not isinstance(shapes, np.ndarray):
             return dense(self.matrix(by_place, by_rate) @ shapes)
-        out = np.empty((len(self.places), shapes.shape[1]))
-        sum_rows(*self._stencil(by_place, by_rate), shapes, out)
-        return out if self.beyond is None else out + self._beyond(by_place, by_rate) @ shapes
+        out, factors = (
+            np.zeros((self.places.size, shapes.shape[1])),
+            (by_place / self.clearance, by_rate / self.clearance),
+        )
+        add_rows(self.gradients.rows, *self.gradients.stencil(self.film.grid.shape, *factors), shapes, out)
+        return out
 
     def changes(self, shapes: np.ndarray | csr_matrix, *combinations: tuple[float, float]) -> np.ndarray:
         """Changes (count, 10 + k * combinations) of the unknowns with the motion, and with coordinates of the shapes.
@@ -130,18 +114,6 @@ class Balances:
         self.film.solver.direct(out)
         return out
 
-    def _stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
-        count, place, rate = len(self.places), by_place / self.clearance, by_rate / self.clearance
-        weight, vertices = np.empty((count, 5)), np.empty((count, 5), dtype=np.int64)
-        gap_stencil(self.places, count, *self.gaps, place, rate, weight, vertices)
-        if self.line is not None:
-            weight[self.line.rows] += self.line.by[:6].T @ (place * _LINE_BY_GAP + rate * _LINE_BY_RATE)
-        return weight, vertices
-
-    def _beyond(self, by_place: float, by_rate: float) -> csr_matrix:
-        assert self.beyond is not None
-        return (by_place * self.beyond[0] + by_rate * self.beyond[1]) / self.clearance
-
 
 def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray | csr_matrix:
     """Weights (count, k) of the unknowns in the film's loads on the bore, one column per coordinate, N.
@@ -154,8 +126,7 @@ def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray | csr_matrix:
     if film.oil.P_q is not None:
         weight *= film.oil.P_q
     if isinstance(bore.shapes, np.ndarray):
-        columns = np.empty((places.size, bore.size))
-        sum_rows(weight.ravel()[places, None], places[:, None], bore.shapes, columns)
+        columns = weight.ravel()[places, None] * bore.shapes[places]
     else:
         columns = at_unknowns(film, weight).T @ bore.shapes
     if y.continued is not None:
@@ -198,7 +169,8 @@ def bore_tangent(film: SolvedFilm, bore: Bore) -> np.ndarray:
     out = np.zeros((2, 6, bore.size))
     fills = true_fills(film)
     if fills is not None:
-        by_gap, by_rate = line_matrices(weigh_fills(fills, shear_of_fills(film)), g.shape, 1)
+        shear = fills.weighed(shear_of_fills(film))
+        by_gap, by_rate = shear.matrix(g.shape, 1, 1.0, 0.0), shear.matrix(g.shape, 1, 0.0, 1.0)
         rows += factors[:, 0, None, None] * by_gap.toarray().reshape(g.shape)
         out[1, 2::3] = np.outer(factors[:, 0], bore.load(by_rate.toarray().reshape(g.shape)))
     out[0, 2::3] = bore.load(rows)

@@ -24,7 +24,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, eye_array
 
 from exudyn_ehd.film.banded.substitution import TILE, product
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, line_matrices
+from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.film import ends_of_cavities
 from exudyn_ehd.joint.bore.shapes import NodalBore
@@ -38,8 +38,8 @@ from exudyn_ehd.joint.tangent.bore import (
     dense,
     pressures_by_unknowns,
 )
-from exudyn_ehd.joint.tangent.true_gap import line_by_motion, ratio_of, true_fills
-from exudyn_ehd.joint.tangent.wrench import motion_tangent, pose_columns, wrench_rows
+from exudyn_ehd.joint.tangent.true_gap import ratio_of, true_fills
+from exudyn_ehd.joint.tangent.wrench import motion_tangent, wrench_rows
 
 
 def complete(x: np.ndarray, wrench: np.ndarray, local: np.ndarray) -> np.ndarray:
@@ -93,7 +93,7 @@ class BoreForces:
 def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
     """Slopes in theta and scaled z of fields (n m,).
 
-    The differences of `exudyn_ehd.film.sensitivity.gap_slopes`.
+    The differences of `exudyn_ehd.film.reynolds.gap.gap_slopes`.
     """
     n, m = grid.shape
     at = np.arange(n * m).reshape(n, m)
@@ -222,9 +222,9 @@ class ShearOfLine:
         assert fills is not None
         spread = _share_by_fills(film)[:, fills.places].tocoo()
         density = scale * (g.shear_weight / film.solver.H).ravel()[spread.row] * spread.data
-        line = LineGradients(spread.row, fills.places[spread.col], fills.by[:, spread.col] * density)
-        self.motion = line_by_motion(film, line, g.fixed.size)
-        self.gap, self.rate = line_matrices(line, g.shape, g.fixed.size)
+        shear = Gradients(spread.row, fills.places[spread.col], fills.by[:, spread.col] * density)
+        self.motion = shear.columns(g.gap_shapes, g.fixed.size)
+        self.gap, self.rate = (shear.matrix(g.shape, g.fixed.size, *factors) for factors in ((1.0, 0.0), (0.0, 1.0)))
 
 
 def _share_by_unknowns(film: SolvedFilm, pressure: csr_matrix) -> csr_matrix | None:
@@ -284,7 +284,7 @@ class NodalTangent:
         self.by_place, self.by_rate = balances.matrix(1.0, 0.0), balances.matrix(0.0, 1.0)
         self.rows, self.fixed, self.of_bore = wrench_rows(film), motion_tangent(film), bore_tangent(film, bore)
         self.change = TractionChange(film, forces)
-        self.columns = pose_columns(film) * film.parts.pose_scale
+        self.columns = film.grid.gap_shapes[0].reshape(-1, 4) * film.parts.pose_scale
         unknowns = -self.by_motion
         film.solver.direct(unknowns)
         self.wrench = self.rows @ unknowns + self.fixed
@@ -315,7 +315,7 @@ class NodalTangent:
         unknowns = -(self.by_motion @ motion + self.by_place @ moved + self.by_rate @ speed)
         self.film.solver.direct(unknowns)
         scaled = moved / p.bearing.radial_clearance
-        forces = self.change.vertex_forces(unknowns, scaled - self.columns @ motion[:4], scaled, motion[8:])
+        forces = self.change.vertex_forces(unknowns, scaled + self.columns @ motion[:4], scaled, motion[8:])
         if line is not None:
             shear = line.gap @ scaled + line.rate @ (speed / p.bearing.radial_clearance)
             shear += line.motion.T @ (p.motion_scale[:, None] * motion)

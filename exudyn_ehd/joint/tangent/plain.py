@@ -11,12 +11,11 @@ from numba import njit
 
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.cavitation.linear_film import column_gradients, couple_columns, rows_of_linear
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_weights
+from exudyn_ehd.film.cavitation.rupture_line import line_gradients, line_weights
 from exudyn_ehd.film.cavitation.swift_stieber import refine_line
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
-from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
-from exudyn_ehd.film.sensitivity import functional_gradients, motion_columns, wrench_gradient
+from exudyn_ehd.film.gradients import add_columns, functional_gradients, link_rows
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gradient
+from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.plain_film import has_plain_edges
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
@@ -53,9 +52,9 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         work.factor,
         (work.count, work.width),
         work.exact,
-        (s.ones, s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.link_fields),
+        (s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.metric),
         (g.fixed, work.active),
-        g.directions,
+        g.gap_shapes,
         g.mesh,
         (s.vx, s.vz, s.flow_x, s.closure.cavity_shear, s.squeeze, y.cavity_pressure),
         (w.pose, film.loads.integrals, p.pose_scale),
@@ -67,7 +66,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
-def _plain_tangent(film, line, between, factor, size, exact, fields, sets, at, mesh, speeds, pose, scales, out):
+def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shapes, mesh, speeds, pose, scales, out):
     """Write the tangent.
 
     ``film``: ``FilmSystem.fields``; ``line``, ``between``: `RuptureLine.block` and `ColumnLine`, or None;
@@ -76,22 +75,25 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, at, m
     order, _, number, band, inv_diag = factor
     count, width = size
     kx, kz, b, H, HF, P = film[0], film[1], film[10], film[11], film[12], film[14]
-    ones, by_rate, by_gap, weight, link_fields = fields
+    by_rate, by_gap, weight, metric = fields
     fixed, active = sets
-    cos_x, sin_x, _, _, z = at
     vx, vz, flow_x, cavity_shear, squeeze, pc = speeds
     if line is not None and not exact:
         refine_line((kx, kz, b), line, factor, count, width)
     lam = np.empty((4, count))
-    load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
+    load_adjoint_rhs(order, count, weight, shapes, active, lam)
     if between is not None:
         _, linked, _, P, u = between
         rows_of_linear(u, fixed, linked, pc, active, number, lam)
         couple_columns(between, active, factor, count, lam.T, True)
     solve_ldl(band, inv_diag, count, width, lam)
-    link_derivatives(P, H, HF, None, None, None, None, None, vx, vz, flow_x, mesh, link_fields)
-    columns = np.empty((10, count))
-    motion_columns(order, count, link_fields, ones, by_rate, by_gap, at, columns)
+    by_links, by_speed = np.empty((4, H.size)), np.empty((3, H.size))
+    columns, whole = np.zeros((10, count)), np.empty((10, count))
+    up = np.ones((2, H.size))
+    gap_derivatives(P, H, HF, None, up, None, metric, vx, vz, by_links)
+    speed_derivatives(P, H, HF, up, None, metric, by_speed)
+    link_rows(order, count, H.shape[1], by_links, by_speed, None, (by_rate, by_gap), whole)
+    add_columns(np.arange(count), order[:count], whole, shapes, columns)
     if line is not None:
         f, k, s, found = line[0], line[1], line[2], 0
         places, rows = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
@@ -99,17 +101,18 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, at, m
             if s[order[r]] < 1.0:
                 places[found], rows[found] = order[r], r
                 found += 1
-        places, rows, weights, by = places[:found], rows[:found], np.empty((2, found)), np.zeros((8, found))
+        places, rows, weights, by = places[:found], rows[:found], np.empty((2, found)), np.zeros((10, found))
         line_weights(places, f, k, s, weights)
         line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
-        add_line_columns((rows, places, by), at, columns)
+        add_columns(rows, places, by, shapes, columns)
     if between is not None:
-        add_line_columns(column_gradients(between, active, factor, count, pc, H, None), at, columns)
-    gradient, field = np.empty((4, 10)), np.empty((1, *H.shape))
+        rows, places, by = column_gradients(between, active, factor, count, pc, H, None)
+        add_columns(rows, places, by, shapes, columns)
+    gradient, field, dc = np.empty((4, 10)), np.empty(H.shape), np.zeros(10)
     functional_gradients(lam, columns, gradient)
-    by_pose, dc = np.zeros((1, 4)), np.zeros(10)
-    couette_gradient(H, weight, active, fixed, cavity_shear, field[0])
-    contract_pose(field, cos_x, sin_x, z, by_pose)
-    for q in range(4):
-        dc[q] = by_pose[0, q]
+    couette_gradient(H, weight, active, fixed, cavity_shear, field)
+    by_gap, by_pose = field.reshape(-1), shapes[0].reshape(-1, 4)
+    for c in range(by_gap.size):
+        for q in range(4):
+            dc[q] += by_gap[c] * by_pose[c, q]
     wrench_gradient(gradient, dc, np.zeros((2, 10)), np.zeros((2, 4)), *pose[:2], pose[2], *scales, out)

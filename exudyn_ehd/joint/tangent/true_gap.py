@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, add_line_columns, to_true_gap
 from exudyn_ehd.film.differences import on_links, to_ends
-from exudyn_ehd.film.reynolds.gap import contract_pose
+from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.solvers.film import at_beside_ends
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.surfaces import patir_cheng
-from exudyn_ehd.joint.solved_film import MOTION_SIZE, FilmParts, LimiterFields, SolvedFilm
+from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
 
 
 def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
@@ -51,10 +50,9 @@ def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
 def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     """Add the gradients of E_x and E_z at fixed pressure to the scaled pose to ``gradient`` (2, 10)."""
-    z, at = film.grid.z, film.parts.directions
     face, cell = drag_by_gap(film)
-    contract_pose(face, at.cos_f, at.sin_f, z, gradient[:1, :4])
-    contract_pose(cell, at.cos_x, at.sin_x, z, gradient[-len(cell) :, :4])
+    gradient[:1, :4] += film.grid.by_pose(face, 1)
+    gradient[-len(cell) :, :4] += film.grid.by_pose(cell)
 
 
 def drag_by_deflection(film: SolvedFilm, liner: LinerFilm) -> np.ndarray:
@@ -73,38 +71,20 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     return patir_cheng.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
 
 
-def true_line(film: SolvedFilm, places: np.ndarray | None = None) -> LineGradients | None:
-    """The rupture line's part of the balances' derivatives, to the true gap; None without. ``places``: as for
-    `FilmAnswers.line_gradients`."""
-    return _to_true_gap(film, film.solver.line_gradients(places))
+def true_gradients(film: SolvedFilm, places: np.ndarray | None = None) -> Gradients:
+    """`FilmAnswers.gradients` to the true gap."""
+    return _to_true_gap(film, film.solver.gradients(places))
 
 
-def true_fills(film: SolvedFilm) -> LineGradients | None:
+def true_fills(film: SolvedFilm) -> Gradients | None:
     """The fills of `FilmSolver.fill_gradients` to the true gap; None without."""
     fills = film.solver.fill_gradients()
     return None if fills is None else _to_true_gap(film, fills[1])
 
 
-def weigh_fills(fills: LineGradients, weights: np.ndarray, rows: np.ndarray | None = None) -> LineGradients:
-    """Gradients of the fills' sums with ``weights`` (n, m), at fixed pressure.
-
-    ``rows`` (n m,): row to which every vertex contributes; None: one sum over all.
-    """
-    places = fills.places
-    at = np.zeros_like(places) if rows is None else rows[places]
-    return fills._replace(rows=at, by=fills.by * weights.reshape(-1)[places])
-
-
-def line_by_motion(film: SolvedFilm, line: LineGradients, count: int) -> np.ndarray:
-    """Derivatives (10, count) of the rows of a line to the motion."""
-    out = np.zeros((MOTION_SIZE, count))
-    add_line_columns(tuple(line), film.grid.directions, out)
-    return out
-
-
-def _to_true_gap(film: SolvedFilm, line: LineGradients | None) -> LineGradients | None:
+def _to_true_gap(film: SolvedFilm, gradients: Gradients) -> Gradients:
     f = film.limited
-    return line if line is None or f is None else to_true_gap(line, f.slope, f.bend, f.face_slope)
+    return gradients if f is None else gradients.to_true_gap(f.slope, f.bend, f.face_slope)
 
 
 def shear_of_fills(film: SolvedFilm) -> np.ndarray:

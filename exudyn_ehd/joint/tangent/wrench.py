@@ -11,10 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
-from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
-from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.sensitivity import functional_gradients, integral_weights, motion_columns, wrench_gradient
+from exudyn_ehd.film.gradients import functional_gradients
+from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
@@ -23,13 +21,11 @@ from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 from exudyn_ehd.joint.tangent.true_gap import (
     add_drag_by_pose,
     drag_by_deflection,
-    line_by_motion,
     ratio_of,
     shear_of_ends,
     shear_of_fills,
     true_fills,
-    true_line,
-    weigh_fills,
+    true_gradients,
 )
 
 
@@ -73,7 +69,7 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
         if has_extra_rows(film):
             extra = gradient[-2:]
     if fills is not None:
-        shear += line_by_motion(film, weigh_fills(fills, shear_of_fills(film)), 1)[:, 0]
+        shear += fills.weighed(shear_of_fills(film)).columns(p.grid.gap_shapes, 1)[:, 0]
     _contract_couette(film, shear)
     if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
@@ -95,72 +91,38 @@ def _following_storage(film: SolvedFilm, lam: np.ndarray, columns: np.ndarray) -
     rows = -lam * s.surroundings()
     s.solve_transposed(rows)
     functional_gradients(rows, columns, gradient)
-    out = gradient[:, :4].copy()
-    if p.liner is not None:
-        by_rate = -s.fields_of(lam) * s.storage_weights()[0] * p.liner.gap_slopes.D_r
-        contract_pose(by_rate, p.directions.cos_x, p.directions.sin_x, film.grid.z, out)
-    return out
+    if p.liner is None:
+        return gradient[:, :4]
+    at = s.work.order[: s.work.count]
+    by_rate = -lam[:, : at.size] * (s.storage_weights()[0] * p.liner.gap_slopes.D_r).reshape(-1)[at]
+    followed: np.ndarray = gradient[:, :4] + by_rate @ film.grid.gap_shapes[0].reshape(-1, 4)[at]
+    return followed
 
 
 def balance_gradients(film: SolvedFilm) -> np.ndarray:
     """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz)."""
-    s, w = film.solver, film.solver.work
+    s, shapes = film.solver, film.grid.gap_shapes
     if isinstance(s, ClassicSolver):
         return _difference_columns(film, s)
-    out = _columns_at(film, w.order[: w.count])
-    if (line := true_line(film)) is not None:
-        add_line_columns(tuple(line), film.grid.directions, out)
+    out = true_gradients(film).columns(shapes, s.work.count)
     return out if s.reservoirs is None else np.hstack((out, _reservoir_gradients(film, s.reservoirs)))
-
-
-def _columns_at(film: SolvedFilm, places: np.ndarray) -> np.ndarray:
-    """Return `balance_gradients` of the balances at flat vertices (k,), but for the rupture line's part."""
-    out, liner = np.empty((MOTION_SIZE, places.size)), film.parts.liner
-    if liner is not None:
-        liner.motion_columns(places, *film.solver.storage_weights(), film.grid.directions, out)
-    else:
-        motion_columns(places, places.size, *gap_derivatives(film), film.grid.directions, out)
-    return out
 
 
 def _reservoir_gradients(film: SolvedFilm, reservoirs: Reservoirs) -> np.ndarray:
     """`balance_gradients` (10, k) of the areas with an unknown pressure, from the balances at their vertices."""
-    out = _columns_at(film, reservoirs.at)
-    if film.solver.oil_line is not None and (line := true_line(film, reservoirs.at)) is not None:
-        add_line_columns(tuple(line), film.grid.directions, out)
+    out = true_gradients(film, reservoirs.at).columns(film.grid.gap_shapes, reservoirs.at.size)
     flows: np.ndarray = reservoirs.weights() * (out @ reservoirs.within())
     return flows
 
 
 def _difference_columns(film: SolvedFilm, solver: ClassicSolver) -> np.ndarray:
     """Return `balance_gradients` of central differences."""
-    shapes, f = -pose_columns(film), film.limited
+    shapes, f = film.grid.gap_shapes[0].reshape(-1, 4), film.limited
     none = np.zeros_like(shapes)
     if f is None:
         return solver.difference_columns(np.hstack((shapes, none)), np.hstack((none, shapes)))
     slope, bend = f.slope.reshape(-1, 1) * shapes, f.bend.reshape(-1, 1) * shapes
     return solver.difference_columns(np.hstack((slope, none)), np.hstack((bend, slope)))
-
-
-def pose_columns(film: SolvedFilm) -> np.ndarray:
-    """Minus dH / d(scaled pose) (n m, 4)."""
-    p, z = film.parts, film.grid.z
-    cos, sin = np.repeat(p.directions.cos_x, z.size), np.repeat(p.directions.sin_x, z.size)
-    heights = np.tile(z, p.directions.cos_x.size)
-    return np.column_stack((cos, sin, cos * heights, sin * heights))
-
-
-def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives to the true gap: of the links (5, n, m), and slope, AR, AC (n, m) as `motion_columns` takes them."""
-    s = film.solver
-    d = s.link_derivatives()
-    by_rate, by_gap = s.storage_weights()
-    slope, f = s.ones, film.limited
-    if f is not None:
-        slope = f.slope
-        d[0] *= f.face_slope
-        by_rate, by_gap = by_rate * slope, by_gap * slope + by_rate * f.bend
-    return d, slope, by_rate, by_gap
 
 
 def shear_needs_adjoint(film: SolvedFilm) -> bool:
@@ -211,12 +173,12 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
 
 def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> np.ndarray:
     """Return `adjoint_rows` of flat vertices ``at``, by the solver's unknown; ``continued`` as for `FilmSystem`."""
-    p, g, s, y, oil, liner = film.parts, film.grid, film.solver, film.solver.system, film.oil, film.parts.liner
+    g, s, y, oil, liner = film.grid, film.solver, film.solver.system, film.oil, film.parts.liner
     active, shear, extra = s.work.active | g.fixed, shear_needs_adjoint(film), has_extra_rows(film)
     pressed = liner is not None and film.pressing is not None
-    own, directions = 4 + shear + 2 * extra, (p.directions.cos_x, p.directions.sin_x, g.z)
+    own = 4 + shear + 2 * extra
     rows = np.zeros((own + 5 * pressed, at.size))
-    load_adjoint_rhs(at, at.size, g.weight, *directions, active, rows)
+    load_adjoint_rhs(at, at.size, g.weight, g.gap_shapes, active, rows)
     if extra:
         slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
         if film.extra is not None:
@@ -236,7 +198,7 @@ def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> 
         rows[own - 2 : own] += drag_by_deflection(film, liner).reshape(2, -1)[:, at]
     if liner is not None and pressed:
         by_pressure = g.weight * liner.contact_by_pressure
-        load_adjoint_rhs(at, at.size, by_pressure, *directions, active, rows[own:])
+        load_adjoint_rhs(at, at.size, by_pressure, g.gap_shapes, active, rows[own:])
         rows[own + 4] = by_pressure.ravel()[at]
     return rows
 
@@ -288,7 +250,7 @@ def _contract_couette(film: SolvedFilm, dc: np.ndarray) -> None:
     dc[8] += by_speed
     if slope is not None:
         gradient *= slope
-    contract_pose(gradient[None], film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z, dc[None, :4])
+    dc[:4] += film.grid.by_pose(gradient[None])[0]
 
 
 def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
@@ -322,15 +284,12 @@ def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
 
     That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
     """
-    slope, edges, g, out = _film_gap_slope(film), film.scales.edges, film.grid, np.zeros((2, 1, 4))
+    slope, edges, g = _film_gap_slope(film), film.scales.edges, film.grid
     whole = slope is None and not g.edges.size
     if edges is None and (whole or not film.scales.ends.any()):
-        return out[:, 0]
-    fields = np.zeros((2, 1, *g.shape))
-    fields[0, 0, :, [0, -1]] = np.outer(film.scales.ends * (-1.0, 1.0), g.width_x)
+        return np.zeros((2, 4))
+    fields = np.zeros((2, *g.shape))
+    fields[0][:, [0, -1]] = np.outer(g.width_x, film.scales.ends * (-1.0, 1.0))
     if edges is not None:
-        fields[1, 0, g.edges.ravel()] = np.outer(edges, g.weight_z)
-    at = film.parts.directions
-    for field, gradient in zip(fields if slope is None else fields * slope, out, strict=True):
-        contract_pose(field, at.cos_x, at.sin_x, g.z, gradient)
-    return out[:, 0]
+        fields[1, g.edges.ravel()] = np.outer(edges, g.weight_z)
+    return g.by_pose(fields if slope is None else fields * slope)

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.reynolds.gap import (
-    contract_pose,
+    add_gap,
     largest_eccentricity,
     rigid_gap,
     rigid_gaps,
 )
-from exudyn_ehd.film.sensitivity import add_gap
 
 
 def _gap(pose, theta, z, base):
@@ -63,16 +62,3 @@ def test_add_gap_finds_the_smallest(where):
     )
     assert smallest == min(expected[0].min(), expected[1].min()) < 0.0
     np.testing.assert_allclose((H, HF, H_t), expected, rtol=1e-15)
-
-
-def test_contract_pose_is_the_chain_rule_and_adds():
-    rng = np.random.default_rng(3)
-    theta, z = rng.uniform(0, 6, 7), np.linspace(-1, 1, 4)
-    field, start = rng.normal(size=(3, 7, 4)), rng.normal(size=(3, 4))
-    out = start.copy()
-    contract_pose(field, np.cos(theta), np.sin(theta), z, out)
-    for k in range(3):
-        for p in range(4):
-            direction = np.eye(4)[p]  # the gap is linear in the pose
-            expected = (field[k] * _gap(direction, theta, z, 0.0)).sum()
-            assert out[k, p] - start[k, p] == pytest.approx(expected, rel=1e-12)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from exudyn_ehd.film.gradients import Gradients, link_rows
 from exudyn_ehd.film.reynolds import links as reynolds
-from exudyn_ehd.film.reynolds.link_derivatives import contract_links, link_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
 
 CASES = [(1, False, 1.0), (2, True, 1.0), (3, False, 0.0)]
 
@@ -73,9 +74,12 @@ def test_adjoint_sensitivities(make_film, seed, cut, flow_x):
     f = make_film(seed, n=7, m=5, cut=cut, flow_x=flow_x)
     rng = np.random.default_rng(seed)
     P, lam = rng.normal(size=f.H.shape), rng.normal(size=(2, *f.H.shape))
-    d = np.zeros((5, *f.H.shape))
-    link_derivatives(P, f.H, f.HF, None, None, None, None, None, f.vx, f.vz, flow_x, f.mesh, d)
-    cell, face, speed = contract_links(lam, d)
+    by, by_speed, rows, places = *(np.empty((k, P.size)) for k in (4, 3, 10)), np.arange(P.size)
+    up = np.ones((2, P.size))
+    gap_derivatives(P, f.H, f.HF, None, up, None, f.metric, f.vx, f.vz, by)
+    speed_derivatives(P, f.H, f.HF, up, None, f.metric, by_speed)
+    link_rows(places, P.size, P.shape[1], by, by_speed, None, np.zeros((2, *P.shape)), rows)
+    cell, face, _, speed = Gradients(places, places, rows).fields(lam.reshape(2, -1), f.H.shape)
     step = 1e-5  # the residual is cubic in the gap: central differences leave step^2 = 1e-10 and rounding 1e-10
     for k in range(2):
         for i, j in np.ndindex(f.H.shape):

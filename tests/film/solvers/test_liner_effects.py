@@ -19,8 +19,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import film_slopes
-from exudyn_ehd.film.solvers.liner.elements import Rates
-from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
+from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
@@ -266,13 +265,13 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     slopes = w.slopes
     thin = None if e.thin is None else e.thin.response()
     numbering = number_cells if thin is None else number_with_corners
-    count, width = numbering(~SMALL.fixed, e.metric[0], w.order, w.number)
+    count, width = numbering(~SMALL.fixed, e.film.metric[0], w.order, w.number)
     sides = (P, fill, full) if e.kind == OIL else (P, None, None)
     film_slopes(*sides[1:], None, None, e.film.system.terms, slopes)
     if thin is not None:
         add_tangents(thin[0], e.film.system.terms.kx, e.film.system.terms.kz, sides[2], slopes)
     add_gap_slopes(*sides, None, e.film.system.terms, e.gap_slopes, e.load, e.rates, e.beta, e.by, slopes)
-    assemble(e.metric[0], e.metric[1], slopes, w.number, w.order, count, lower, upper)
+    assemble(e.film.metric[0], e.film.metric[1], slopes, w.number, w.order, count, lower, upper)
     if thin is not None:
         add_corners(thin[1], thin[2:], e.film.system.terms.kx, e.film.system.terms.kz, sides[2], w.number, lower, upper)
     A, B = np.zeros((count, count)), np.zeros((count, count))

@@ -3,7 +3,6 @@
 Module map
 ----------
 elements      their kernels: pressure on them, deflection, gaps, derivatives
-gap_response  derivatives of the links' flows over gaps that follow the pressure
 winkler       the elements of one film: loads, contact, gaps, mass balances
 film          film on the elements: links, mass balances, derivatives, Newton's method, dry guess, continuation
 line          rupture line inside the cells

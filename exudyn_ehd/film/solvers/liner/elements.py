@@ -14,7 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.reynolds.balance import part
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+# numpy's integers, since numba compiles kernels anew for each plain one
+_0, _1 = np.int64(0), np.int64(1)
 
 
 class Gaps(NamedTuple):
@@ -34,16 +38,16 @@ class GapSlopes(NamedTuple):
     Attributes
     ----------
     H_P, D_P : of H and D to the unknown pressure
-    H_r, D_r, E_r : of H, D and E to the undeformed gap at fixed unknown
+    D_r, E_r, H_r : of D, E and H to the undeformed gap at fixed unknown
     link : of HF to the true gap on the link
     rate_P, rate_r, rate_t : of dH/dt to the unknown, the undeformed gap and the undeformed rate
     """
 
     H_P: np.ndarray
     D_P: np.ndarray
-    H_r: np.ndarray
     D_r: np.ndarray
     E_r: np.ndarray
+    H_r: np.ndarray
     link: np.ndarray
     rate_P: np.ndarray
     rate_r: np.ndarray
@@ -143,32 +147,18 @@ def press_elements(rigid, load_fields, beta, G_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _moved_rate(rate, D, old, inverse, out):
-    for c in range(out.size):
-        out[c] = rate[c] + (D[c] - old[c]) * inverse
-
-
-@njit(cache=True, fastmath=_FAST)
-def _mean_gap(link, D_a, D_b, out):
-    for c in range(out.size):
-        out[c] = link[c] + 0.5 * (D_a[c] + D_b[c])
-
-
-@njit(cache=True, fastmath=_FAST)
 def move_elements(rigid, G, delta_old, inverse, gap_fields):
     """Set deflections, gaps and rate of the deformed surfaces, before a limiter changes them; returns the smallest gap
     on a link."""
-    m = G.shape[1]
-    gaps = gaps_of(gap_fields)
-    g, gap, D, H, HF = G.reshape(-1), rigid[0].reshape(-1), gaps.D.reshape(-1), gaps.H.reshape(-1), gaps.HF.reshape(-1)
+    m, gaps, bare = G.shape[1], gaps_of(gap_fields), rigid.reshape(3, G.size)
+    gap, link, rate = bare[0], bare[1], bare[2]
+    g, old = G.reshape(-1), delta_old.reshape(-1)
+    D, H, HF, moved = gaps.D.reshape(-1), gaps.H.reshape(-1), gaps.HF.reshape(-1), gaps.rate.reshape(-1)
     for c in range(D.size):
-        D[c] = g[c] - gap[c]
-    for c in range(H.size):
-        H[c] = g[c]
-    _moved_rate(rigid[2].reshape(-1), D, delta_old.reshape(-1), inverse, gaps.rate.reshape(-1))
-    last, link = g.size - m, rigid[1].reshape(-1)
-    _mean_gap(link[:last], D[:last], D[m:], HF[:last])
-    _mean_gap(link[last:], D[last:], D[:m], HF[last:])
+        D[c], H[c] = g[c] - gap[c], g[c]
+        moved[c] = rate[c] + (D[c] - old[c]) * inverse
+    for c in range(D.size):
+        HF[c] = link[c] + 0.5 * (D[c] + D[c + m if c + m < D.size else c + m - D.size])
     return _smallest(HF)
 
 
@@ -205,7 +195,7 @@ def set_storage(gaps, load, P, fills, known, rates, beta, film):
         kept[c] = -old[c] * rates.mass - slow[c] * rates.pseudo
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
     """Set `GapSlopes`, but ``rate_t`` (slope of the film gap) and ``link``, which are inputs.
 
@@ -213,49 +203,16 @@ def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
     gap's rate.
     """
     load, out = load_of(load_fields), slopes_of(slope_fields)
-    size = P.size
-    follow = np.empty(size)
-    stiff, turned, s = contact_G.reshape(-1), bend.reshape(-1), out.rate_t.reshape(-1)
-    _follow(stiff, beta, follow)
-    D_P, H_P, D_r, H_r = out.D_P.reshape(-1), out.H_P.reshape(-1), out.D_r.reshape(-1), out.H_r.reshape(-1)
-    _yield(P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1), follow, beta, D_P)
-    for c in range(size):
-        D_r[c] = follow[c] - 1.0
-    for c in range(size):
-        H_P[c] = s[c] * D_P[c]
-    for c in range(size):
-        H_r[c] = s[c] * follow[c]
-    combine(H_r, 1.0, rigid_slope.reshape(-1), -1.0, out.E_r.reshape(-1))
-    _turn(turned, s, inverse, D_P, 0.0, out.rate_P.reshape(-1))
-    _turn(turned, s, inverse, D_r, 1.0, out.rate_r.reshape(-1))
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _follow(stiff, beta, out):
-    for c in range(out.size):
-        out[c] = 1.0 / (1.0 - beta * stiff[c])
-
-
-@njit(cache=True, fastmath=_FAST)
-def _yield(x, drive, steep, follow, beta, out):
-    for c in range(out.size):
-        d = beta * follow[c] * steep[c]
-        out[c] = d if x[c] == drive[c] else 0.0
-
-
-@njit(cache=True, fastmath=_FAST)
-def combine(a, by_a, b, by_b, out):
-    """Set ``out = by_a a + by_b b`` for fields (k,)."""
-    for c in range(out.size):
-        out[c] = by_a * a[c] + by_b * b[c]
-
-
-@njit(cache=True, fastmath=_FAST)
-def _turn(turned, s, inverse, yields, own, out):
-    """Set the derivative of dH/dt to a quantity with the derivative ``yields`` of D; ``own``: 1 for the undeformed gap,
-    else 0."""
-    for c in range(out.size):
-        out[c] = (turned[c] + s[c] * inverse) * yields[c] + own * turned[c]
+    stiff, turned, s, rigid = contact_G.reshape(-1), bend.reshape(-1), out.rate_t.reshape(-1), rigid_slope.reshape(-1)
+    x, drive, steep = P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)
+    D_P, H_P, rate_P = out.D_P.reshape(-1), out.H_P.reshape(-1), out.rate_P.reshape(-1)
+    D_r, H_r, E_r, rate_r = out.D_r.reshape(-1), out.H_r.reshape(-1), out.E_r.reshape(-1), out.rate_r.reshape(-1)
+    for c in range(x.size):
+        follow, moved = 1.0 / (1.0 - beta * stiff[c]), turned[c] + s[c] * inverse
+        D_P[c] = beta * follow * steep[c] if x[c] == drive[c] else 0.0
+        H_P[c], rate_P[c] = s[c] * D_P[c], moved * D_P[c]
+        D_r[c], H_r[c] = follow - 1.0, s[c] * follow
+        E_r[c], rate_r[c] = H_r[c] - rigid[c], moved * D_r[c] + turned[c]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -281,28 +238,6 @@ def _bend(h_a, h_b, E_a, E_b, k):
         k[c] *= 1.0 + lean * lean
 
 
-@njit(cache=True, fastmath=_FAST)
-def _plain(h_a, h_b, conducts, linked, v, k, f):
-    for c in range(k.size):
-        h = 0.5 * (h_a[c] + h_b[c])
-        k[c] = conducts[c] * h * h * h
-    for c in range(f.size):
-        f[c] = v * linked[c] * 0.5 * (h_a[c] + h_b[c])
-
-
-@njit(cache=True)
-def plain_links(gap_fields, metric, vx, vz, terms):
-    """Set conductances and Couette fluxes (rows 0 to 3 of ``terms``, see `balance.terms_of`) of a film without flux
-    effects, before `bend_links`.
-
-    ``metric`` (4, n, m): of the conductances in theta and in z, and widths of the Couette flows in theta and in z.
-    """
-    H, HF = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1)
-    by, out = metric.reshape(4, -1), terms.reshape(terms.shape[0], -1)
-    _plain(HF, HF, by[0], by[2], vx, out[0], out[2])
-    _plain(H[:-1], H[1:], by[1, :-1], by[3, :-1], vz, out[1, :-1], out[3, :-1])
-
-
 @njit(cache=True)
 def smallest_of(gap_fields):
     """Return the smallest gap that the film sees, at vertices and on links."""
@@ -323,3 +258,76 @@ def ends_open(rigid, p, beta, fixed):
                 if fixed[nxt, j] and not rigid[1, i, j] + 0.5 * beta * (p[i, j] + p[nxt, j]) > 0.0:
                     return False
     return True
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_end(by_h, by_d, side, steep, lean, full, out):
+    """Add the derivative of a link's flow to the unknown at its end b (``side`` 1) or a (-1), through the gap there."""
+    for c in range(out.size):
+        slope = 0.5 * (by_h[c] * steep[c] + side * by_d[c] * lean[c])
+        if full is not None:
+            slope = slope if full[c] else 0.0
+        out[c] += slope
+
+
+@njit(cache=True, fastmath=_FAST)
+def _product(a, b, out):
+    for c in range(out.size):
+        out[c] = a[c] * b[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
+    """Add the derivative of the storage to the unknowns, through the gap."""
+    for c in range(out.size):
+        by = rate_P[c]
+        if fill is not None:
+            by = fill[c] * (by * rates.own + H_P[c] * (rates.mass + rates.pseudo))
+        if rho is not None:
+            by *= rho[c]
+        if full is not None:
+            by = by if full[c] else 0.0
+        out[c] += area[c] * by
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_pseudo(area, P, drive, slope, factor, out):
+    """Add the derivative of pseudo time's storage, for a film that does not conserve mass."""
+    for c in range(out.size):
+        out[c] += area[c] * factor * (slope[c] if P[c] == drive[c] else 1.0)
+
+
+@njit(cache=True)
+def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, slopes):
+    """Add the derivatives of flows and storage through the gap to ``slopes`` of `balance.film_slopes`; ``by``: that of
+    `exudyn_ehd.film.reynolds.link_derivatives.gap_derivatives`."""
+    n, m = P.shape
+    size = n * m
+    last, e = size - m, size - 1
+    D, H, link, area = (
+        gap_slopes.D_P.reshape(-1),
+        gap_slopes.H_P.reshape(-1),
+        gap_slopes.link.reshape(-1),
+        film.area.reshape(-1),
+    )
+    face = np.empty(size)
+    _product(by[0], link, face)
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        h, d = face[start:stop], by[1, start:stop]
+        _add_end(h, d, -1.0, D[start:stop], H[start:stop], part(full, start, stop), slopes[0, start:stop])
+        _add_end(h, d, 1.0, D[there:end], H[there:end], part(full, there, end), slopes[1, start:stop])
+    h, d = by[2, :e], by[3, :e]
+    _add_end(h, d, -1.0, H[:e], H[:e], part(full, _0, e), slopes[2, :e])
+    _add_end(h, d, 1.0, H[1:], H[1:], part(full, _1, size), slopes[3, :e])
+    _add_storage(
+        area,
+        part(fill, _0, size),
+        part(full, _0, size),
+        part(rho, _0, size),
+        H,
+        gap_slopes.rate_P.reshape(-1),
+        rates,
+        slopes[4],
+    )
+    if fill is None and rates.pseudo != 0.0:
+        _add_pseudo(area, P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1), rates.pseudo * beta, slopes[4])

@@ -66,10 +66,7 @@ from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.cavitation.system import has_unfed_row
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.links import add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.film import FilmArrays
-from exudyn_ehd.film.solvers.liner.elements import plain_links
-from exudyn_ehd.film.solvers.liner.gap_response import gap_columns, speed_gradients
 from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, open_gaps, see_curves
 from exudyn_ehd.film.solvers.liner.steps import begin, factor_film, find_slopes, proceed, solve_plain
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, liner_residual
@@ -101,7 +98,7 @@ class LinerFilm(WinklerElements):
 
     def __init__(self, film: FilmArrays, liner: Liner) -> None:
         super().__init__(film, liner)
-        s, g, w, shape = film.system, film.grid, film.work, film.grid.shape
+        s, w, shape = film.system, film.work, film.grid.shape
         # the flux effect that follows the pressure
         self.thin = next((e for e in film.flux_effects if isinstance(e, ShearThinning)), None)
         if self.thin is not None:
@@ -109,11 +106,6 @@ class LinerFilm(WinklerElements):
         # whether the pressure changes the deflection of the liner alone
         self.plain = self.contact is None and self.limiter is None and self.oil is None and not film.flux_effects
         self.term_fields, self.film_fields = s.term_fields, s.film
-        # Couette flows pass through the widths where links conduct
-        across = np.append(g.link_z, 0.0)
-        x, z = (g.link_x, g.width_x, g.link_x != 0.0, g.width_x), (g.width_z, across, g.width_z, across != 0.0)
-        self.metric = np.stack([np.outer(a, b) for a, b in zip(x, z, strict=True)])
-        self.uncut = self.metric[:2].copy()
         self.by = np.zeros((4, w.order.size))
         self.fill = s.fill if s.kind == OIL else np.ones(shape)
         # the film at the pressure of the rupture line inside the cells
@@ -124,17 +116,11 @@ class LinerFilm(WinklerElements):
         self.matrix = w.order, w.number, w.lower, w.upper, w.inv_diag, w.slopes, steep
         self.places = self.P, self.residual, w.unknowns, u, np.zeros(shape, dtype=np.bool_), above
         self.take_kind(s.kind)
-        self.cut_links()
 
     def take_kind(self, kind: int) -> None:
         """Solve films of this kind from now on, see `exudyn_ehd.film.cavitation.states`."""
         self.kind, self.film.work.ready = kind, False
         self.oil_fields = (self.fill if kind == OIL else None), *self.densities
-
-    def cut_links(self) -> None:
-        """Apply the grid's cuts to the links."""
-        self.metric[:2] = self.uncut
-        self.film.grid.cut(*self.metric[:2])
 
     def forget_gradients(self) -> None:
         """Let the sliding alone thin the oil."""
@@ -144,9 +130,6 @@ class LinerFilm(WinklerElements):
     def _set_links(self, P: np.ndarray) -> None:
         """Set conductances and Couette fluxes for the present gaps, and for the gradients of P (n, m)."""
         f = self.film
-        if f.flux is None:
-            plain_links(self.gap_fields, self.metric, f.vx, f.vz, self.term_fields)
-            return
         if self.thin is not None:
             self.thin.see(P)
         f.set_links()
@@ -183,7 +166,8 @@ class LinerFilm(WinklerElements):
             s.kx *= self.thin.slide(flux, f.vx)
         density = 1.0 if f.law is None else float(f.rho[~g.fixed].min(initial=np.inf))
         gaps, shut = self.gap_fields[:2].copy(), (self.shut, g.fixed)
-        rest = s.b, f.squeeze, (g.width_x, g.width_z), density, (self.beta, f.vx)
+        f.set_right_hand_side()
+        rest = s.b, g.width_z, density, (self.beta, f.vx)
         if isinstance(f.line, FilmLine):
             f.line.see(self.gap_fields, self.term_fields, shut, *rest, gaps)
         elif f.oil_line is not None:
@@ -232,7 +216,7 @@ class LinerFilm(WinklerElements):
             self.slope_fields, self.gap_fields, self.load_fields, tuple(self.rates), self.beta, self.by,
             self.rigid_slope, self.contact_G, self.bend,
         )  # fmt: skip
-        return elements, (f.flux, self.metric, f.vx, f.vz)
+        return elements, (f.flux, f.metric, f.vx, f.vz)
 
     @property
     def _response(self) -> tuple[np.ndarray, ...] | None:
@@ -244,17 +228,10 @@ class LinerFilm(WinklerElements):
         fill, rho, _ = self.oil_fields
         find_slopes(self.P, fill, rho, self.film_fields, *self._seen)
 
-    def motion_columns(
-        self, places: np.ndarray, by_rate: np.ndarray, by_gap: np.ndarray, at: tuple[np.ndarray, ...], out: np.ndarray
-    ) -> None:
-        """Derivatives (10, .) of the balances at flat vertices to the motion of a rigid journal, but for the rupture
-        line's, as for `exudyn_ehd.film.sensitivity.motion_columns`; ``by_rate``, ``by_gap``:
-        `FilmSolver.storage_weights`."""
-        f, by_speed = self.film, np.empty((3, *self.P.shape))
-        oil = (f.carried if self.kind == OIL else None), self.oil_fields[1]
-        rest = self.term_fields, f.grid.fixed, self.gap_fields, f.flux, self.metric
-        speed_gradients(self.P, *oil, *rest, by_speed)
-        gap_columns(places, places.size, self.by, by_speed, self.slope_fields, by_rate, by_gap, at, out)
+    def follows(self) -> np.ndarray:
+        """Derivatives (4, n m) of deflection, E, gap and gap on links, see `exudyn_ehd.film.gradients.link_rows`."""
+        follows: np.ndarray = self.slope_fields[2:6].reshape(4, -1)
+        return follows
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
@@ -279,9 +256,7 @@ class LinerFilm(WinklerElements):
         if self.contact is not None:
             pressed = self.touching * self.contact_G * self.scale
             np.multiply(pressed, 1.0 + self.gap_slopes.D_r, out=self.contact_slope)
-        right_hand_side(s.fx, s.fz, s.b)
-        if f.squeeze:
-            add_squeeze(f.H_t, g.width_x, g.width_z, s.b)
+        f.set_right_hand_side()
 
 
 # Limits of a dry guess: gap over the clearance that it may always open, and share of an oil's largest pressure that it

@@ -31,9 +31,10 @@ from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.oil_line import CurveFields, OilLine
-from exudyn_ehd.film.cavitation.rupture_line import LineFields, LineGradients, RuptureLine, line_terms, to_true_gap
+from exudyn_ehd.film.cavitation.rupture_line import LineFields, RuptureLine, line_terms
+from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.reynolds.balance import FilmTerms
-from exudyn_ehd.film.reynolds.links import LinkFlux, add_squeeze, right_hand_side
+from exudyn_ehd.film.reynolds.links import LinkFlux
 
 # Gap over the clearance below which surfaces at the cavity's pressure touch: no line is looked for there.
 TOUCHING = 1e-6
@@ -50,7 +51,7 @@ def open_gaps(gap_fields, touching_out):
 
 @njit(cache=True)
 def see_line(
-    gap_fields, terms, touching, b, squeeze, widths, fixed, density, liner, line_out, gaps_out, lean_out
+    gap_fields, terms, touching, b, width_z, fixed, density, liner, line_out, gaps_out, lean_out
 ):  # fmt: skip
     """Set f, k and s = 1 of a film at the cavity pressure everywhere, t (``lean_out``) of its liner, and its gaps.
 
@@ -60,16 +61,13 @@ def see_line(
     f, k, s, whole = line_out[0], line_out[1], line_out[2], line_out[3]
     H, HF, kx, shut = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1), terms[0].reshape(-1), touching.reshape(-1)
     at_vertices, at_links, lean = gaps_out[0].reshape(-1), gaps_out[1].reshape(-1), lean_out.reshape(-1)
-    right_hand_side(terms[2], terms[3], b)
-    if squeeze:
-        add_squeeze(gap_fields[4], widths[0], widths[1], b)
     for c in range(s.size):
         kx[c] = 0.0 if shut[c] else kx[c]
         flat[c] *= density
         at_vertices[c], at_links[c], s[c] = H[c], HF[c], 1.0
     line_terms(terms[0], b, fixed, True, line_out)
     for c in range(s.size):
-        k[c] += 0.5 * beta * abs(vx) * widths[1][c % m]
+        k[c] += 0.5 * beta * abs(vx) * width_z[c % m]
         lean[c] = 0.0
         if f[c] > 0.0:
             t = beta * f[c] / (k[c] * (HF[c - m] + HF[c]))
@@ -99,7 +97,7 @@ def weigh_yielding(places, f, k, lean, weights):
 
 @njit(cache=True)
 def add_yielding(places, line, lean, HF, liner, by):
-    """Add to `LineGradients.by` the derivatives through t to the gap, and through the liner's conductance to vx."""
+    """Add to `Gradients.by` the derivatives through t to the gap, and through the liner's conductance to vx."""
     (beta, vx, width), gap, t, m = liner, HF.reshape(-1), lean.reshape(-1), HF.shape[1]
     f, k, s = line[0], line[1], line[2]
     for q in range(places.size):
@@ -148,19 +146,15 @@ def see_curves(
     film: FilmTerms,
     shut: tuple[np.ndarray, np.ndarray],
     b: np.ndarray,
-    squeeze: bool,
-    widths: tuple[np.ndarray, np.ndarray],
+    width_z: np.ndarray,
     density: float,
     liner: tuple[float, float],
 ) -> None:
     """Set the curves of a mass-conserving film from its fields at the cavity pressure; parameters as for
     `FilmLine.see`."""
     (beta, vx), (touching, _) = liner, shut
-    line.lift_by_speed = 0.5 * beta * np.sign(vx) * widths[1]
+    line.lift_by_speed = 0.5 * beta * np.sign(vx) * width_z
     film.kx[touching] = 0.0
-    right_hand_side(film.fx, film.fz, b)
-    if squeeze:
-        add_squeeze(gap_fields[4], *widths, b)
     line.take(film, b, density, vx)
 
 
@@ -202,20 +196,19 @@ class FilmLine(RuptureLine):
         term_fields: np.ndarray,
         shut: tuple[np.ndarray, np.ndarray],
         b: np.ndarray,
-        squeeze: bool,
-        widths: tuple[np.ndarray, np.ndarray],
+        width_z: np.ndarray,
         density: float,
         liner: tuple[float, float],
         gaps_out: np.ndarray,
     ) -> None:
         """Set f, k, t and the gaps (2, n, m) from the fields of `LinerFilm` at the cavity pressure.
 
-        ``shut``: links on which surfaces touch there, and prescribed vertices (n, m); ``widths`` of the vertices in
-        theta and z; ``liner``: its scaled compliance, and vx.
+        ``shut``: links on which surfaces touch there, and prescribed vertices (n, m); ``width_z`` (m,) of the vertices;
+        ``liner``: its scaled compliance, and vx.
         """
-        self.density, self.liner, (touching, fixed) = density, (*liner, widths[1]), shut
+        self.density, self.liner, (touching, fixed) = density, (*liner, width_z), shut
         see_line(
-            gap_fields, term_fields, touching, b, squeeze, widths, fixed, density, liner, self.block, gaps_out,
+            gap_fields, term_fields, touching, b, width_z, fixed, density, liner, self.block, gaps_out,
             self.lean,
         )  # fmt: skip
         self._bend()
@@ -242,24 +235,24 @@ class FilmLine(RuptureLine):
         flow_x: float,
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
-    ) -> LineGradients:
+    ) -> Gradients:
         """Return `RuptureLine.gradients`, with what the liner adds, for gaps and flux at the cavity's pressure."""
         line = super().gradients(work, places, weights, gaps, flux, speeds, flow_x, squeeze, mesh)
         add_yielding(places, self.block, self.lean, gaps[1], self.liner, line.by)
         return line
 
 
-def undeformed(line: LineGradients, chain: GapChain | None) -> LineGradients:
+def undeformed(line: Gradients, chain: GapChain | None) -> Gradients:
     """Convert gradients to the film's gap to gradients to the undeformed gap, with a contact or a limiter."""
     if chain is None:
         return line
     n, m = chain.slope.shape
-    out = to_true_gap(line, chain.slope, chain.bend, chain.face_slope)
+    out = line.to_true_gap(chain.slope, chain.bend, chain.face_slope)
     i, j = np.divmod(line.places, m)
     nxt, prv, here = (i + 1) % n, (i - 1) % n, chain.follow[i, j]
     # a link's deflection is the mean of its ends'
-    around = 0.5 * np.stack((out.by[0] * chain.follow[nxt, j], out.by[1] * chain.follow[prv, j]))
+    out.by[8], out.by[9] = 0.5 * out.by[0] * chain.follow[nxt, j], 0.5 * out.by[1] * chain.follow[prv, j]
     out.by[2] += out.by[2] * here + 0.5 * (out.by[0] + out.by[1]) * here
     out.by[3] *= 1.0 + chain.follow[i, (j + 1) % m]
     out.by[4] *= 1.0 + chain.follow[i, (j - 1) % m]
-    return out._replace(by=np.concatenate((out.by, around)))
+    return out

@@ -16,6 +16,7 @@ from exudyn_ehd.film.cavitation.states import OIL, take_sink
 from exudyn_ehd.film.lubricant.density import law_at
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
+from exudyn_ehd.film.reynolds.links import set_links
 from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.elements import (
     Gaps,
@@ -29,7 +30,6 @@ from exudyn_ehd.film.solvers.liner.elements import (
     gaps_of,
     load_of,
     move_elements,
-    plain_links,
     press_elements,
     scale_load,
     set_storage,
@@ -80,7 +80,7 @@ def plain_residual(
     smallest = min(at_vertices, at_links)
     if not smallest > 0.0:
         return np.inf, smallest
-    plain_links(gap_fields, metric, vx, vz, terms)
+    set_links(gap_fields[0], gap_fields[1], None, metric, vx, vz, terms)
     norm = liner_residual(
         P, None, None, load_fields, gap_fields, terms, fixed, known, rates, beta, pc, chooses, curve, out
     )

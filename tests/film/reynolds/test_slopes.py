@@ -1,12 +1,8 @@
-"""Stencils of elastic gaps against numpy."""
+"""Slopes of gap terms against numpy."""
 
 import numpy as np
 
-from exudyn_ehd.film.sensitivity import (
-    gap_slopes,
-    gap_stencil,
-    transposed_slopes,
-)
+from exudyn_ehd.film.reynolds.gap import gap_slopes, transposed_slopes
 
 
 def test_slopes_are_central_differences_and_have_a_transpose():
@@ -37,25 +33,3 @@ def test_slopes_end_with_an_arc():
         own = field[part]
         np.testing.assert_allclose(along_x[part], np.gradient(own, 0.3, axis=0), rtol=1e-13)
         np.testing.assert_allclose(link[part], np.vstack((0.5 * (own[1:] + own[:-1]), own[-1:])), rtol=1e-14)
-
-
-def test_stencil_is_the_derivative_of_the_balances():
-    rng = np.random.default_rng(1)
-    n, m = 9, 5
-    DX, DZ, slope, AR, AC = rng.normal(size=(5, n, m))
-    DZ[:, -1] = 0.0
-    d = np.stack((DX, DZ, DX, DX, DX))
-    H, H_t = rng.normal(size=(2, n, m))
-    balance = AC * H + AR * H_t * 0.7
-    link = DX * 0.5 * (H + np.roll(H, -1, axis=0))
-    balance += link - np.roll(link, 1, axis=0)
-    across = DZ[:, :-1] * 0.5 * (slope[:, :-1] * H[:, :-1] + slope[:, 1:] * H[:, 1:])
-    balance[:, :-1] += across
-    balance[:, 1:] -= across
-    order = rng.permutation(n * m)[:20]
-    weight, place = np.empty((20, 5)), np.empty((20, 5), dtype=np.int64)
-    gap_stencil(order, 20, d, slope, AR, AC, 1.0, 0.0, weight, place)
-    got = np.sum(weight * H.ravel()[place], axis=1)
-    gap_stencil(order, 20, d, slope, AR, AC, 0.0, 0.7, weight, place)
-    got += np.sum(weight * H_t.ravel()[place], axis=1)
-    np.testing.assert_allclose(got, balance.ravel()[order], rtol=1e-12, atol=1e-13)

@@ -1,0 +1,248 @@
+"""Derivatives of a film's balances, and of other sums over it, to the gaps around a vertex, at fixed unknowns.
+
+With the derivatives DX and DZ of a link's flow to its gap (`exudyn_ehd.film.reynolds.link_derivatives`), and AC and AR
+of the storage, the balance of vertex (i, j) between rigid surfaces changes with the gap by
+
+    dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF gap on links in theta,
+    HZ mean over the two ends of a link in z,
+
+and with the surfaces' speeds likewise. On a liner links follow the gaps at their ends besides. A line inside the cells
+adds entries of the same form. The gap is a sum of shapes, ``H = 1 + sum q_k S_k``, whose coefficients q are the
+journal's pose or a bore's coordinates: derivatives to q are those to the gap times S, at vertices and on links. An
+adjoint functional's gradient is ``-lam . dr``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from scipy.sparse import csr_matrix
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+# Weights of a vertex and its neighbours (columns: itself, next and last in theta, next and last in z) by
+# `Gradients.by` (rows) for a gap or a rate of vertices, which on links in theta is the mean of both ends.
+_BY_GAP, _BY_RATE = np.zeros((2, 10, 5))
+_BY_GAP[0, :2] = _BY_GAP[1, :3:2] = 0.5
+_BY_GAP[[2, 3, 4, 8, 9], [0, 3, 4, 1, 2]] = _BY_RATE[5, 0] = 1.0
+
+
+class Gradients(NamedTuple):
+    """Derivatives of sums over a film, in c entries.
+
+    Attributes
+    ----------
+    rows, places : (c,) int arrays
+        Number of the sum to which an entry adds, such as an unknown's balance, and the flat vertex that it lies at.
+    by : (10, c) array
+        To the gaps on the links in theta from the vertex and to it, to the gaps at the vertex itself and at the next
+        and the last one in z, to the vertex' own rate, to vx and vz, to the gaps at the next and the last vertex in
+        theta.
+    """
+
+    rows: np.ndarray
+    places: np.ndarray
+    by: np.ndarray
+
+    def weighed(self, weights: np.ndarray, rows: np.ndarray | None = None) -> Gradients:
+        """Sums with ``weights`` (n, m), each to the row of its vertex in ``rows`` (n m,); None: one sum over all."""
+        at = np.zeros_like(self.places) if rows is None else rows[self.places]
+        return Gradients(at, self.places, self.by * weights.reshape(-1)[self.places])
+
+    def to_true_gap(self, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> Gradients:
+        """Gradients to the true gap, of those to the film's gap that a limiter makes of it, with its slopes (n, m)."""
+        by = self.by.copy()
+        _chain(self.places, slope, bend, face_slope, by)
+        return self._replace(by=by)
+
+    def columns(self, shapes: np.ndarray, count: int) -> np.ndarray:
+        """Derivatives (10, count) of the sums to (scaled pose, scaled rates, vx, vz), for `FilmGrid.gap_shapes`."""
+        out = np.zeros((10, count))
+        add_columns(self.rows, self.places, self.by, shapes, out)
+        return out
+
+    def stencil(self, shape: tuple[int, int], by_gap: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
+        """Weights and flat vertices (c, 5) of ``by_gap d/dH + by_rate d/dH_t``, for `_BY_GAP` on n columns, m rows."""
+        (n, m), at = shape, self.places
+        column = at // m
+        next_x, last_x = at + np.where(column + 1 < n, m, m - n * m), at - np.where(column > 0, m, m - n * m)
+        # there is nothing behind the ends
+        around = np.stack((at, next_x, last_x, np.minimum(at + 1, n * m - 1), np.maximum(at - 1, 0)), axis=1)
+        return self.by.T @ (by_gap * _BY_GAP + by_rate * _BY_RATE), around
+
+    def matrix(self, shape: tuple[int, int], count: int, by_gap: float, by_rate: float) -> csr_matrix:
+        """``by_gap d/dH + by_rate d/dH_t`` (count, n m) of the sums, as for `stencil`."""
+        weights, around = self.stencil(shape, by_gap, by_rate)
+        at = np.repeat(self.rows, 5), around.ravel()
+        return csr_matrix((weights.ravel(), at), shape=(count, shape[0] * shape[1]))
+
+    def fields(self, rows: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, ...]:
+        """Gradients ``-rows . dr`` of k functionals with the weights ``rows`` (k, count).
+
+        Returns
+        -------
+        cell, face, rate : (k, n, m) arrays
+            To the gaps at vertices and on links in theta, and to the gap's rate at vertices.
+        speed : (k, 2) array
+            To vx and vz.
+        """
+        out = *np.zeros((3, len(rows), *shape)), np.zeros((len(rows), 2))
+        _add_fields(rows, self.rows, self.places, self.by, *out)
+        return out
+
+
+def join(*parts: Gradients) -> Gradients:
+    """Entries of all ``parts``."""
+    return Gradients(*(np.concatenate(fields, axis=-1) for fields in zip(*parts, strict=True)))
+
+
+@njit(cache=True, fastmath=_FAST)
+def _ends(by_h, by_d, a, b, follows, gap):
+    """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b, by its gap, of which row
+    ``gap`` of ``follows`` tells how it follows, and by E."""
+    if follows is None:
+        return 0.5 * by_h, 0.5 * by_h
+    here, there = by_h * follows[gap, a] - by_d * follows[1, a], by_h * follows[gap, b] + by_d * follows[1, b]
+    return 0.5 * here, 0.5 * there
+
+
+@njit(cache=True, fastmath=_FAST)
+def link_rows(order, count, m, by, by_speed, follows, storage, out):
+    """Derivatives ``out`` (10, count) of the balances at vertices ``order``, see `Gradients.by`.
+
+    Parameters
+    ----------
+    by, by_speed : (4, n m) and (3, n m) arrays
+        Of the links' flows, `exudyn_ehd.film.reynolds.link_derivatives`.
+    follows : (4, n m) array or None
+        How a liner's surfaces follow the undeformed gap: its deflection, E, the film's gap, and the film's gap on a
+        link its true gap; None: rigid surfaces.
+    storage : two (n, m) arrays
+        Derivatives of the storage to the gap's rate and to the gap.
+    """
+    rate, stored, size, start = storage[0].reshape(-1), storage[1].reshape(-1), by.shape[1], 0
+    for r in range(count):
+        c = order[r]
+        j = c - start
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            j = c % m
+            start = c - j
+        back = c - m if c >= m else c - m + size
+        face, before, own = by[0, c], by[0, back], stored[c]
+        vx, vz = by_speed[0, c] - by_speed[0, back], 0.0
+        out[3, r] = out[4, r] = out[8, r] = out[9, r] = 0.0
+        if follows is not None:
+            face, before = face * follows[3, c], before * follows[3, back]
+            here, there = _ends(face, by[1, c], c, c + m if c + m < size else c + m - size, follows, 0)
+            behind, at = _ends(before, by[1, back], back, c, follows, 0)
+            own += here - at
+            out[8, r], out[9, r] = there, -behind
+        if j + 1 < m:
+            here, there = _ends(by[2, c], by[3, c], c, c + 1, follows, 2)
+            own += here
+            out[3, r] = there
+            vx += by_speed[2, c]
+            vz += by_speed[1, c]
+        if j > 0:
+            behind, at = _ends(by[2, c - 1], by[3, c - 1], c - 1, c, follows, 2)
+            own -= at
+            out[4, r] = -behind
+            vx -= by_speed[2, c - 1]
+            vz -= by_speed[1, c - 1]
+        out[0, r], out[1, r], out[2, r], out[5, r], out[6, r], out[7, r] = face, -before, own, rate[c], vx, vz
+
+
+@njit(cache=True, fastmath=_FAST)
+def add_columns(rows, places, by, shapes, out):
+    """Add the sums' derivatives (10, count) to a motion, see `Gradients.columns`."""
+    at, link = shapes[0].reshape(-1), shapes[1].reshape(-1)
+    # flat unsigned indices need no check of their sign
+    size, column, row = np.uint64(at.size), np.uint64(4 * shapes.shape[2]), np.uint64(4)
+    for e in range(rows.size):
+        r, c = rows[e], row * np.uint64(places[e])
+        on, back = (
+            c + column if c + column < size else c + column - size,
+            c - column if c >= column else c + size - column,
+        )
+        # there is nothing behind the ends
+        above, below = c + row if c + row < size else c, c - row if c >= row else c
+        f0, f1, own, a0, a1, rate, x0, x1 = (
+            by[0, e],
+            by[1, e],
+            by[2, e],
+            by[3, e],
+            by[4, e],
+            by[5, e],
+            by[8, e],
+            by[9, e],
+        )
+        for q in range(4):
+            k = np.uint64(q)
+            gaps = f0 * link[c + k] + f1 * link[back + k] + own * at[c + k] + a0 * at[above + k] + a1 * at[below + k]
+            out[q, r] += gaps + x0 * at[on + k] + x1 * at[back + k]
+            out[4 + q, r] += rate * at[c + k]
+        out[8, r] += by[6, e]
+        out[9, r] += by[7, e]
+
+
+@njit(cache=True)
+def _chain(places, slope, bend, face_slope, by):
+    """Apply the chain rule of `Gradients.to_true_gap`."""
+    n, m = slope.shape
+    for e in range(places.size):
+        i, j = places[e] // m, places[e] % m
+        on, back = (i + 1) % n, (i - 1) % n
+        by[0, e] *= face_slope[i, j]
+        by[1, e] *= face_slope[back, j]
+        by[2, e] = by[2, e] * slope[i, j] + by[5, e] * bend[i, j]
+        by[3, e] *= slope[i, min(j + 1, m - 1)]
+        by[4, e] *= slope[i, max(j - 1, 0)]
+        by[5, e] *= slope[i, j]
+        by[8, e] *= slope[on, j]
+        by[9, e] *= slope[back, j]
+
+
+@njit(cache=True)
+def _add_fields(lam, rows, places, by, cell, face, rate, speed):
+    """Add the gradients of `Gradients.fields`."""
+    _, n, m = cell.shape
+    for e in range(rows.size):
+        i, j = places[e] // m, places[e] % m
+        # there is nothing behind the ends
+        on, back, above, below = (i + 1) % n, (i - 1) % n, min(j + 1, m - 1), max(j - 1, 0)
+        for k in range(len(lam)):
+            w = -lam[k, rows[e]]
+            face[k, i, j] += w * by[0, e]
+            face[k, back, j] += w * by[1, e]
+            cell[k, i, j] += w * by[2, e]
+            cell[k, i, above] += w * by[3, e]
+            cell[k, i, below] += w * by[4, e]
+            cell[k, on, j] += w * by[8, e]
+            cell[k, back, j] += w * by[9, e]
+            rate[k, i, j] += w * by[5, e]
+            speed[k, 0] += w * by[6, e]
+            speed[k, 1] += w * by[7, e]
+
+
+@njit(cache=True, fastmath=_FAST)
+def functional_gradients(lam, columns, out):
+    """Gradients ``-lam . dr`` (k, 10) of adjoint functionals lam (k, count), for dr (10, count)."""
+    for k in range(lam.shape[0]):
+        own = lam[k]
+        for q in range(columns.shape[0]):
+            column, total = columns[q], 0.0
+            for r in range(own.size):
+                total -= own[r] * column[r]
+            out[k, q] = total
+
+
+@njit(cache=True, fastmath=_FAST)
+def add_rows(rows, weight, place, fields, out):
+    """Add to the ``rows`` of sums (count, r) those of fields (., r) at ``place`` times ``weight``, both (c, s)."""
+    for e in range(rows.size):
+        target = out[rows[e]]
+        for c in range(place.shape[1]):
+            own, w = fields[place[e, c]], weight[e, c]
+            for q in range(target.size):
+                target[q] += w * own[q]
