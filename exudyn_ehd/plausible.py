@@ -87,6 +87,7 @@ KINDS: dict[str, Kind] = {
     "expansion": Kind("1/K", 0.0, 0.0, 1e-3, 0.1),
     "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
     "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, (("microseconds", 1e-6),)),
+    "volume": Kind("m3", 0.0, 1e-12, 1.0, 100.0, (("cm3", 1e-6), ("mm3", 1e-9), ("l", 1e-3))),
     "flow": Kind("m3/s", 0.0, 0.0, 0.1, 100.0, (("l/min", 1e-3 / 60.0), ("mm3/s", 1e-9))),
     "seal": Kind("m3/(s Pa m)", 0.0, 0.0, 1.0, 1e9),
     "time": Kind("s", 0.0, 0.0, 1e7, 1e12),
@@ -111,6 +112,7 @@ KINDS: dict[str, Kind] = {
 }
 
 _AREAS = ("AxialGroove", "CircumferentialGroove", "Hole", "Pocket")
+_RESTRICTORS = ("Orifice", "Capillary", "GivenFlow")
 _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
         *(f"{bearing}.journal_radius" for bearing in ("JournalBearing", "TiltingPads")),
@@ -206,7 +208,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "specific heat of a solid": ("Conduction.specific_heat",),
     "temperature": (
         "Lubricant.temperature",
-        "Sump.ambient",
+        *("Sump.ambient", "Sump.initial_temperature"),
         *(f"LumpedThermal.{of}_temperature" for of in ("supply", "housing", "initial")),
         *(f"FilmEnergy.{of}_temperature" for of in ("supply", "bush", "journal", "initial")),
         *(f"Conduction.{of}_temperature" for of in ("ambient", "initial", "clearance")),
@@ -225,7 +227,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         *(f"Arc.{edge}_pressure" for edge in ("leading", "trailing")),
         *(f"{bore}.pressure" for bore in ("two_lobe", "three_lobe", "offset_halves", "pressure_dam")),
         *(f"{area}.pressure" for area in _AREAS),
-        *(f"{restrictor}.supply_pressure" for restrictor in ("Orifice", "Capillary")),
+        *(f"{restrictor}.supply_pressure" for restrictor in _RESTRICTORS[:2]),
         *(f"TiltingPads.{where}_pressures" for where in ("edge", "end")),
         "solve_film.boundary",
     ),
@@ -238,6 +240,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "ElasticLiner.youngs_modulus",
         "GreenwoodTripp.composite_modulus",
         "composite_modulus.youngs_moduli",
+        *(f"{restrictor}.bulk_modulus" for restrictor in _RESTRICTORS),
     ),
     "pressure coefficient": ("BarusPressure.coefficient", "RoelandsPressure.coefficient"),
     "compressibility": ("DowsonHigginson.coefficient", "DowsonHigginson.saturation"),
@@ -246,14 +249,12 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "expansion": ("Conduction.expansion",),
     "pole": ("VogelTemperature.pole",),
     "relaxation time": ("CarreauShear.relaxation_time",),
+    "volume": tuple(f"{restrictor}.compressible_volume" for restrictor in _RESTRICTORS),
     "flow": ("GivenFlow.flow",),
     "seal": ("EndSeal.conductance",),
     "time": (
         *(f"{record}.revolutions.period" for record in ("JointHistory", "LubricatedJoint")),
-        "LubricatedJoint.record_films.period",
-        "UntilPeriodic.period",
-        "recommend_steps.period",
-        "Period.seconds",
+        *("LubricatedJoint.record_films.period", "UntilPeriodic.period", "recommend_steps.period", "Period.seconds"),
         "solve_film.step",
     ),
     "rate": ("Rayleigh.mass_rate",),
@@ -292,7 +293,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "line force": ("LineLoad.force_per_length",),
     "heat conductance": ("LumpedThermal.housing_conductance", "Conduction.conductance", "Sump.conductance"),
-    "heat capacity": ("LumpedThermal.capacity",),
+    "heat capacity": ("LumpedThermal.capacity", "Sump.heat_capacity"),
     "heat transfer": ("FilmEnergy.bush_coefficient", "FilmEnergy.journal_coefficient"),
     "conductivity": ("FilmEnergy.conductivity", "Conduction.conductivity"),
 }

@@ -56,6 +56,7 @@ UNITS = {
     "wear_depth": "m",
     "worn_volume": "m3",
     "film_temperature": "K",
+    "sump_temperature": "K",
     "peak_temperature": "K",
     "bush_temperature": "K",
     "journal_temperature": "K",

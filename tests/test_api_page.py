@@ -22,7 +22,9 @@ ALL_BUT_FACES = ehd.JournalBearing(
     **GRID,
     lubricant=ehd.oil("ISO VG 46"),
     supply=(ehd.AxialGroove(angle=1.6, width_angle=0.3, length=0.015, pressure=2e5),),
-    thermal=ehd.FilmEnergy(supply_temperature=313.0, conductivity=0.13, bush=WALL, journal=WALL),
+    thermal=ehd.FilmEnergy(
+        supply_temperature=ehd.Sump(conductance=9.0, ambient=313.0), conductivity=0.13, bush=WALL, journal=WALL
+    ),
     asperity=ehd.GreenwoodTripp(composite_roughness=4e-6, composite_modulus=1e11),
     wear=ehd.ArchardWear(wear_rate=1e-15),
 )

@@ -97,19 +97,19 @@ def _check_arcs(bearing: BearingOptions) -> None:
 
 
 def _check_restrictors(bearing: BearingOptions) -> None:
-    """Refuse films whose conductances, gaps or density follow a pressure that is itself unknown."""
+    """Refuse what a film with areas of unknown pressure leaves out."""
     fed = [k for k, area in enumerate(bearing["supply"]) if area.supply is not None]
     if not fed:
         return
-    others = [f"Lubricant.{law}" for law in ("density_law", "shear_law") if getattr(bearing["lubricant"], law)]
-    others += [f"JournalBearing.{side}" for side in ("bush", "journal") if bearing[side] is not None]
+    others = [] if isinstance(bearing["bush"], ElasticLiner | None) else ["JournalBearing.bush"]
+    others += [] if bearing["journal"] is None else ["JournalBearing.journal"]
     others += ["Sump"] if isinstance(getattr(bearing["thermal"], "supply_temperature", None), Sump) else []
     if others:
         raise InputError(
             f"JournalBearing.supply[{fed[0]}] with a restrictor does not go with {others[0]}: the pressure of the area "
-            "is unknown, which needs rigid surfaces, a known supply temperature, and an oil whose density and "
-            "viscosity do not follow pressure or shear, but for a pressure_law; give the area a pressure, or leave the "
-            "other out."
+            "is unknown, and would have to be found together with the shape of the surfaces or the temperature of the "
+            "sump; take an ElasticLiner and a known supply temperature, give the area a pressure, or leave the "
+            "restrictor out."
         )
     if isinstance(bearing["film"], LongBearing) and any(isinstance(a.supply, GivenFlow) for a in bearing["supply"]):
         raise InputError(

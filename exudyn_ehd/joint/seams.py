@@ -52,8 +52,10 @@ class ThermalEffect(Protocol):
     """Temperature of the film: part of the history of accepted steps, and of the viscosity of the next one.
 
     The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it
-    will become.
+    will become. ``initial_sump``: temperature of the sump at the start of a motion, K; None without one.
     """
+
+    initial_sump: float | None
 
     def initial_temperature(self, shape: tuple[int, int]) -> float | np.ndarray:
         """K, at the start of a motion, on a grid of this shape."""

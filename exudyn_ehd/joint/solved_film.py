@@ -59,6 +59,10 @@ class History:
         Scaled deflection of an elastic liner.
     density : (n, m) array or None
         Density ratio of a compressible film (mass-conserving closures with a heat balance).
+    pockets : (k,) array or None
+        Pressure of every supply area with a restrictor, Pa (restrictors with a compressible volume).
+    sump : float or None
+        Temperature of the sump that feeds the film, K.
     """
 
     void: np.ndarray | None = None
@@ -68,6 +72,8 @@ class History:
     temperature: float | np.ndarray | None = None
     deflection: np.ndarray | None = None
     density: np.ndarray | None = None
+    pockets: np.ndarray | None = None
+    sump: float | None = None
 
 
 class ContactFields:

@@ -185,6 +185,7 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "highest_pocket_pressure": ("highest pocket\npressure", "pressure"),
     "film_temperature": ("film temperature", "temperature"),
     "peak_temperature": ("peak temperature", "temperature"),
+    "sump_temperature": ("sump temperature", "temperature"),
     "bush_temperature": ("bush temperature", "temperature"),
     "journal_temperature": ("journal temperature", "temperature"),
     "clearance": ("radial clearance", "length"),

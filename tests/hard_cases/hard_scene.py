@@ -112,6 +112,7 @@ _MAY_BE_ABSENT = (
     "highest_pocket_pressure",
     "film_temperature",
     "peak_temperature",
+    "sump_temperature",
     "peak_pressure",
     "leakage",
     "contact_torque",

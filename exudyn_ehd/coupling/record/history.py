@@ -67,6 +67,7 @@ class Quantity(enum.Enum):
     HIGHEST_POCKET_PRESSURE = "highest_pocket_pressure"
     FILM_TEMPERATURE = "film_temperature"
     PEAK_TEMPERATURE = "peak_temperature"
+    SUMP_TEMPERATURE = "sump_temperature"
     MINIMUM_GAP_ANGLE = "minimum_gap_angle"
     MINIMUM_GAP_Z = "minimum_gap_z"
     PEAK_ANGLE = "peak_angle"
@@ -171,6 +172,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         Mean temperature of the film over its area. Absolute; nan without ``thermal``.
     peak_temperature : (n,) [K]
         Highest temperature in the film. Absolute; nan without ``thermal``.
+    sump_temperature : (n,) [K]
+        Temperature of the oil that enters from a `Sump`. Absolute; nan without one.
     minimum_gap_angle : (n,) [rad]
         Angle at which the film is thinnest. From x about z, 0 to 2 pi.
     minimum_gap_z : (n,) [m]
@@ -246,6 +249,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     lowest_pocket_pressure: np.ndarray
     highest_pocket_pressure: np.ndarray
     peak_temperature: np.ndarray
+    sump_temperature: np.ndarray
     minimum_gap_angle: np.ndarray
     minimum_gap_z: np.ndarray
     peak_angle: np.ndarray

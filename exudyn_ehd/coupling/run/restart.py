@@ -276,5 +276,12 @@ def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) ->
     assert last is not None
     temperature = first.temperature if settled is None else settled.temperature
     return dataclasses.replace(
-        first, void=last.void, mass=last.mass, deflection=last.deflection, temperature=temperature, density=last.density
+        first,
+        void=last.void,
+        mass=last.mass,
+        deflection=last.deflection,
+        temperature=temperature,
+        density=last.density,
+        pockets=last.pockets,
+        sump=last.sump,
     )

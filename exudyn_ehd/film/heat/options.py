@@ -44,13 +44,14 @@ from exudyn_ehd.status import (
 class Sump(Checked):
     """Oil tank whose temperature follows from the heat that the oil brings: ``supply_temperature`` of a film.
 
-    ``conductance (T_sump - ambient) = H``, with the heat H that the oil carries out of the bearing, which is
-    `SteadyResult.heat_by_oil`. Several bearings on one tank: give each the part of the conductance that is its part of
-    the heat.
+    ``heat_capacity dT_sump/dt + conductance (T_sump - ambient) = H``, with the heat H that the oil carries out of the
+    bearing, in a steady film `SteadyResult.heat_by_oil`. Several bearings on one tank: give each the part of the
+    conductance and of the capacity that is its part of the heat.
 
-    For steady films: `steady`, `equilibrium`, `stribeck`. In a joint it raises `InputError`, because a tank takes
-    minutes to hours to warm up, which no run lasts: take the number `SteadyResult.supply_temperature` there. Other
-    temperatures that are None are that of the ambient. `FilmEnergy` takes up to four times as long.
+    In joints: backward Euler over the accepted steps, together with the film's temperature; histories have
+    ``sump_temperature``. Steady films (`steady`, `equilibrium`, `stribeck`) have a steady sump. A tank takes minutes to
+    hours to warm up: for shorter runs give ``initial_temperature``. Other temperatures that are None are that of the
+    ambient. `FilmEnergy` takes up to four times as long.
 
     Parameters
     ----------
@@ -59,6 +60,11 @@ class Sump(Checked):
         20 W/(m2 K) in air, or that of a cooler.
     ambient : float
         Temperature of the ambient or of the cooling water, K.
+    heat_capacity : float, default 0.0
+        Heat capacity of the tank with its oil, J/K: some 1.7e6 per m3 of oil. 0: in a joint the sump is in balance with
+        the oil that comes back, at every instant.
+    initial_temperature : float or None, default None
+        Temperature of the sump at the start of a motion, K; None: the ambient.
 
     Examples
     --------
@@ -71,8 +77,14 @@ class Sump(Checked):
 
     conductance: float
     ambient: float
+    heat_capacity: float = 0.0
+    initial_temperature: float | None = None
 
-    checks: ClassVar = {"conductance": POSITIVE, "ambient": KELVIN}
+    checks: ClassVar = {
+        "conductance": POSITIVE,
+        "heat_capacity": NOT_NEGATIVE,
+        **dict.fromkeys(("ambient", "initial_temperature"), KELVIN),
+    }
 
 
 def _supply(where: str, value: float | Sump) -> None:

@@ -10,13 +10,14 @@ from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_
 from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.gradients import Gradients, join, link_rows
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, upstream
 from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
 from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
-from exudyn_ehd.film.supply.restrictors import Reservoirs
+from exudyn_ehd.film.supply.restrictors import Reservoirs, add_border
 
 
 class FilmAnswers(FilmArrays):
@@ -30,6 +31,8 @@ class FilmAnswers(FilmArrays):
     reservoirs: Reservoirs | None = None
     # of `fill_gradients`, once they are asked for
     _fills: tuple[Gradients, Gradients] | None = None
+    # of `reduced`: areas with a balance, B^T, C A^-1 and S
+    _reduced: tuple[np.ndarray, ...] | None = None
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
@@ -44,25 +47,47 @@ class FilmAnswers(FilmArrays):
         self.work.exact = True
 
     def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p in Pa, Q scaled."""
-        s, r = self.system, self.reservoirs
+        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p as the film's unknown,
+        Q scaled."""
+        s, r, w = self.system, self.reservoirs, self.work
         assert r is not None
         self.factor_solution()
-        E, at = r.fields(self.grid.shape), self.work.order[: self.work.count]
-        slopes = (s.kx, -s.kx, s.kz, -s.kz) if self.symmetric else self.work.slopes[:4].reshape(4, *self.grid.shape)
-        flows = [slopes[2 * q] * E + slopes[2 * q + 1] * np.roll(E, -1, q + 1) for q in range(2)]
-        balances = sum(flow - np.roll(flow, 1, q + 1) for q, flow in enumerate(flows))
-        taken = [E - np.roll(E, -1, q + 1) for q in range(2)]
-        drawn = sum(slopes[2 * q] * t + np.roll(slopes[2 * q + 1] * t, 1, q + 1) for q, t in enumerate(taken))
-        B, C, E = (np.reshape(x, (len(E), self.area.size)) for x in (balances, drawn, E))
-        B *= r.transformed()[1][r.live, None] / self.pressure_scale
-        return B[:, at], np.ascontiguousarray(C[:, at]), E @ B.T
+        slopes = np.array((s.kx, -s.kx, s.kz, -s.kz, self.nothing)) if self.symmetric else w.slopes
+        live = np.where(r.live, np.cumsum(r.live) - 1, -1)
+        (B, C), D = np.zeros((2, r.live.sum(), w.count)), np.zeros((r.live.sum(), r.live.sum()))
+        add_border(np.append(live, -1)[r.areas], w.number, slopes.reshape(5, *self.grid.shape), B, C, D)
+        thin = None if self.elements is None else self.elements.thin
+        if thin is not None:
+            E = np.zeros((len(D), *self.grid.shape))
+            E.reshape(len(D), -1)[:, r.at] = r.within().T
+            self._add_corners(thin, E, B, C, D)
+        return B, C, D
+
+    def _add_corners(self, thin: ShearThinning, E: np.ndarray, B: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
+        """Add to `border` of areas E (k, n, m) what flows over links follow the gradients across them."""
+        s, (_, across, *_), at, flat = self.system, thin.response(), self.work.order[: self.work.count], (len(E), -1)
+        unknown = s.fixed | self.work.active if self.closure.conserves_mass else self.ones
+        for q, k in enumerate((s.kx, s.kz)):
+            gradient, by = thin.operators[1 - q], -0.5 * k * across[q]
+            mean = (gradient @ E.reshape(flat).T).T.reshape(E.shape)
+            flow, taken = by * (mean + np.roll(mean, -1, q + 1)), by * (E - np.roll(E, -1, q + 1))
+            balance = (flow - np.roll(flow, 1, q + 1)).reshape(flat)
+            drawn = (taken + np.roll(taken, 1, q + 1)).reshape(flat) @ gradient * unknown.ravel()
+            B += balance[:, at]
+            C += drawn[:, at]
+            D += E.reshape(flat) @ balance.T
 
     def reduced(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """B^T, ``C A^-1`` of the film alone, and S, with shapes and units as of `border`."""
-        B, C, D = self.border()
-        self._solve_film_transposed(C)
-        return B, C, D - C @ B.T
+        """B^T, ``C A^-1`` of the film alone, and S, with shapes as of `border`; p in Pa."""
+        r = self.reservoirs
+        assert r is not None
+        if self._reduced is None or not np.array_equal(self._reduced[0], r.live):
+            B, C, D = self.border()
+            self._solve_film_transposed(C)
+            self._reduced = r.live, B, C, D - C @ B.T
+        _, B, C, S = self._reduced
+        by_pressure = r.transformed()[1][r.live] / self.pressure_scale
+        return B * by_pressure[:, None], C, S * by_pressure
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every row of rhs (k, count), in place."""
@@ -99,17 +124,25 @@ class FilmAnswers(FilmArrays):
         self._couple(rhs, False)
 
     def matrix(self) -> csc_matrix:
-        """A (count, count) of a film that is not symmetric."""
+        """A (count, count)."""
         self.factor_solution()
-        (lower, upper), count = self._bands(), self.work.count
-        bands = range(1, upper.shape[1])
+        w, count = self.work, self.work.count
+        lower, upper = (w.band * w.inv_diag[: len(w.band), None], w.band) if self.symmetric else self._bands()
+        bands = range(1, w.width + 1)
         L = diags_array([lower[: count - k, k] for k in bands], offsets=[-k for k in bands], shape=(count, count))
         U = diags_array([upper[: count - k, k] for k in (0, *bands)], offsets=[0, *bands], shape=(count, count))
         A = csc_matrix(U + L @ U)
+        if self.system.column_line is not None:
+            coupling = np.eye(count)
+            self._couple(coupling, False)
+            A = A @ csc_matrix(2.0 * np.eye(count) - coupling)  # the inverse of the coupling
         if self.reservoirs is None:
             return A
         r, (B, C, D) = self.reservoirs, self.border()
-        return csc_matrix(block_array([[A, B.T], [r.weights()[:, None] * C, r.derivatives(D)]]))
+        by_pressure = r.transformed()[1][r.live] / self.pressure_scale
+        return csc_matrix(
+            block_array([[A, B.T * by_pressure], [r.weights()[:, None] * C, r.derivatives(D * by_pressure)]])
+        )
 
     def _couple(self, x: np.ndarray, transposed: bool) -> None:
         """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
@@ -158,6 +191,24 @@ class FilmAnswers(FilmArrays):
         if e is None:
             return content, self.nothing
         return content * e.gap_slopes.rate_t, content * e.gap_slopes.rate_r
+
+    def surroundings(self) -> np.ndarray:
+        """Derivatives (count + k,) of the balances to the rates of the unknowns, through what the film's surroundings
+        store: a liner's deflection, and oil in supply areas with a restrictor."""
+        stored, r = self.nothing, self.reservoirs
+        if self.elements is not None:
+            stored = self.storage_weights()[0] * self.elements.deflection_by_pressure
+        own = stored.reshape(-1)[self.work.order[: self.work.count]]
+        if r is None:
+            return own
+        deflects = (r.sums(stored) * r.transformed()[1])[r.live] / self.pressure_scale
+        return np.append(own, r.storage() + r.weights() * deflects)
+
+    @property
+    def pockets(self) -> np.ndarray | None:
+        """Pressures (k,) that supply areas with a restrictor remember, Pa; None without a compressible volume."""
+        r = self.reservoirs
+        return r.pressures.copy() if r is not None and r.compliance.any() else None
 
     def _at_line(self) -> AtLine:
         """The film at its rupture line."""

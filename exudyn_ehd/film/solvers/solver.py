@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure, solve_sets
+from exudyn_ehd.film.cavitation.rupture_line import LineFields
 from exudyn_ehd.film.cavitation.system import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
@@ -26,9 +27,8 @@ from exudyn_ehd.status import Status
 
 # Trials of Newton's method for the pressures of reservoirs.
 MOST_BALANCES = 40
-# Largest contraction rate with which S of a film before serves on: a new one costs as much as two film solutions.
-REUSABLE = 0.05
 # Largest balance of a reservoir over its terms: round-off, and what counts as round-off where it does not fall further.
+# The first also of a step of Newton's method, over the peak pressure.
 EVEN, ROUNDED = 1e-13, 1e-9
 
 
@@ -88,6 +88,8 @@ class FilmSolver(FilmAnswers):
     def refresh_fixed(self) -> None:
         """Hand a change of ``grid.fixed`` and of its cuts on to the film's parts."""
         self.cut_links()
+        if self.reservoirs is not None:
+            self.reservoirs.place()
         self.work.ready = False
 
     def solve(
@@ -113,37 +115,62 @@ class FilmSolver(FilmAnswers):
         """
         if self.reservoirs is None:
             return self._solve_film(vx, vz, cavity_pressure, mass_old, step)
+        self.vx, self.vz = vx, vz
+        self.reservoirs.inverse_step = 1.0 / step if step > 0.0 else self.inverse_instant()
         solve = partial(self._solve_film, vx, vz, cavity_pressure, mass_old, step)
         return self._balance(self.reservoirs, solve, cavity_pressure * self.pressure_scale)
 
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
-        """Solve the film with its reservoirs by Newton's method in their pressures, none of which is below ``floor``,
-        Pa. S of the first film serves as long as it leaves little of the balances; steps are halved where the largest
-        balance grows."""
+        """Solve the film with its reservoirs by Newton's method in their pressures, none below ``floor``, Pa.
+
+        Steps are halved where the largest balance grows. An unbroken film of constant properties is linear in the
+        pressures: it is solved once, and superposed.
+        """
         base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
-        weights, S, live = base, np.zeros((0, 0)), r.live
+        weights, known, stride = base, base, np.inf
+        gaps = None if self.is_rigid else np.array((self.H, self.HF, self.H_t))
         for _ in range(MOST_BALANCES):
             r.pressures, error = np.maximum(base + change, floor), np.inf
-            for at, p in zip(r.masks, r.transformed()[0], strict=True):
-                self.pressure[at] = p / self.pressure_scale
-            status, count = solve()
-            steps += count
+            known, before = r.transformed()[0] / self.pressure_scale, known
+            if least == np.inf or not self._superpose(r, known - before):
+                self.pressure.reshape(-1)[r.at] = known[r.of_vertices]
+                if gaps is not None:  # a film on a liner leaves deformed ones
+                    self.H[:], self.HF[:], self.H_t[:] = gaps
+                status, count = solve()
+                steps += count
             if status is Status.CONVERGED:
                 g = r.balance(self.inflow(linear=True), floor)
                 weights = 1.0 / r.size if least == np.inf else weights
                 error, left = (float(np.max(np.abs(g) * w[r.live], initial=0.0)) for w in (weights, 1.0 / r.size))
-                if left <= EVEN or (left <= ROUNDED and error > 0.5 * least):
+                rounded = stride <= EVEN * self.pressure_scale * float(np.abs(self.pressure).max())
+                if left <= EVEN or ((left <= ROUNDED or rounded) and error > 0.5 * least):
                     return status, steps
             if error < least:
-                if least == np.inf or error > REUSABLE * least or not np.array_equal(live, r.live):
-                    S, live = self.reduced()[2], r.live
-                base, change, least = r.pressures, np.zeros(len(r.masks)), error
-                change[r.live] = -np.linalg.solve(r.derivatives(S), g)
+                base, change, least = r.pressures, r.change(self.reduced()[2], floor), error
+                stride = float(np.abs(change).max())
             elif least < np.inf:
                 change = 0.5 * change
             else:
                 return status, steps
         return Status.NOT_CONVERGED, steps
+
+    def _superpose(self, r: Reservoirs, change: np.ndarray) -> bool:
+        """Change an unbroken film of constant properties with the areas' scaled pressures (k,), if it stays unbroken;
+        False for other films."""
+        s, w, fixed, reduced = self.system, self.work, self.grid.fixed, self._reduced
+        follows = self.elements is not None or self.density is not None or s.column_line is not None
+        if reduced is None or follows or not np.all(w.active | fixed) or np.any(change[~reduced[0]]):
+            return False
+        P, at = s.linear_pressure.reshape(-1), w.order[: w.count]
+        new = P[at] - change[reduced[0]] @ reduced[2]
+        # below this pressure above the cavity's a vertex has a rupture line beside it
+        whole = self.nothing.reshape(-1) if self.oil_line is None else self.oil_line.fields.whole
+        whole = whole if self.line is None else LineFields(*self.line.block).whole
+        if self.ruptures and (np.minimum(P[at], new) - whole[at]).min() < s.cavity_pressure:
+            return False
+        P[at], P[r.at] = new, P[r.at] + change[r.of_vertices]
+        s.pressure[:] = s.linear_pressure
+        return True
 
     def _solve_film(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None, step: float
@@ -151,6 +178,7 @@ class FilmSolver(FilmAnswers):
         """`solve` at given pressures of all areas."""
         s = self.system
         self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz if self.axial else 0.0, cavity_pressure, None
+        self._reduced = None
         follows = self.elements is not None or self.density is not None
         if (follows or (self.closure.conserves_mass and mass_old is None)) and not (
             self.H_t.any()

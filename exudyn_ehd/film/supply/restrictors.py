@@ -21,7 +21,13 @@ S, the derivative of the film's flows to the pressures of the areas, is an M-mat
 solution, which Newton's method finds. No pressure is below the cavity's: an area from which the film takes more than
 comes through its restrictor has the cavity pressure and no balance. Derivatives are those of u and p together.
 
-The oil in an area and its restrictor is incompressible: the pressure follows without a delay.
+The oil between restrictor and film is incompressible, unless a restrictor has a ``compressible_volume`` V. With the
+bulk modulus K the restrictor then passes
+
+    Q_r = Q + V / K dp/dt
+
+in place of Q in its balance, by backward Euler over the accepted steps. A steady film has Q_r = Q. An area at the
+cavity pressure fills again without a delay.
 
 Seals at the ends of the film are restrictors all around: their flow per length is ``C (p_end - p_outside)``, and the
 pressure at the end one more unknown of the film (`sealed_grid`).
@@ -36,14 +42,30 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
+from numba import njit
 
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
+
+
+class _Feed(Checked):
+    """Base of restrictors: checks of their arguments."""
+
+    checks: ClassVar = {
+        "diameter": POSITIVE,
+        "length": POSITIVE,
+        "supply_pressure": require_number,
+        "discharge_coefficient": partial(POSITIVE, at_most=1.0, hint="a sharp edge has some 0.6."),
+        "flow": NOT_NEGATIVE,
+        "compressible_volume": NOT_NEGATIVE,
+        "bulk_modulus": POSITIVE,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
-class Orifice(Checked):
+class Orifice(_Feed):
     """Sharp-edged orifice between a supply of constant pressure and a supply area.
 
     Parameters
@@ -54,6 +76,13 @@ class Orifice(Checked):
         Gauge pressure in front of it, Pa.
     discharge_coefficient : float, default 0.6
         C_d, above 0 and up to 1.
+    compressible_volume : float, default 0.0
+        V of the oil between restrictor and film, that is in pocket and line, m3: in joints and in small motions about
+        an equilibrium it takes ``V / K dp/dt``, and large ones make the bearing unstable. 0: the pressure follows
+        without a delay.
+    bulk_modulus : float, default 1.7e9
+        K of that oil, Pa: 1.4e9 to 1.8e9 without air. Bubbles of the volume share x at an absolute pressure p lower it
+        to ``1 / (1 / K + x / p)``, 1 % of them at 1 MPa to 1e8.
 
     Examples
     --------
@@ -68,12 +97,8 @@ class Orifice(Checked):
     diameter: float
     supply_pressure: float
     discharge_coefficient: float = 0.6
-
-    checks: ClassVar = {
-        "diameter": POSITIVE,
-        "supply_pressure": require_number,
-        "discharge_coefficient": partial(POSITIVE, at_most=1.0, hint="a sharp edge has some 0.6."),
-    }
+    compressible_volume: float = 0.0
+    bulk_modulus: float = 1.7e9
 
     def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
         """Coefficients a, b, k, c of the balance for an oil, Pa s and kg/m3."""
@@ -82,7 +107,7 @@ class Orifice(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Capillary(Checked):
+class Capillary(_Feed):
     """Laminar capillary between a supply of constant pressure and a supply area.
 
     Its oil has the viscosity of the supply temperature at ambient pressure. It should be at least 100 diameters long,
@@ -94,6 +119,8 @@ class Capillary(Checked):
         m.
     supply_pressure : float
         Gauge pressure in front of it, Pa.
+    compressible_volume, bulk_modulus : float, default 0.0, 1.7e9
+        As for `Orifice`.
 
     Examples
     --------
@@ -108,8 +135,8 @@ class Capillary(Checked):
     diameter: float
     length: float
     supply_pressure: float
-
-    checks: ClassVar = {"diameter": POSITIVE, "length": POSITIVE, "supply_pressure": require_number}
+    compressible_volume: float = 0.0
+    bulk_modulus: float = 1.7e9
 
     def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
         """Coefficients a, b, k, c of the balance for an oil, Pa s and kg/m3."""
@@ -117,13 +144,15 @@ class Capillary(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class GivenFlow(Checked):
+class GivenFlow(_Feed):
     """Constant flow into a supply area, whatever its pressure: a pump or a flow regulator of its own.
 
     Parameters
     ----------
     flow : float
         m3/s; 0: a closed recess.
+    compressible_volume, bulk_modulus : float, default 0.0, 1.7e9
+        As for `Orifice`.
 
     Examples
     --------
@@ -135,8 +164,8 @@ class GivenFlow(Checked):
     """
 
     flow: float
-
-    checks: ClassVar = {"flow": partial(require_number, at_least=0.0)}
+    compressible_volume: float = 0.0
+    bulk_modulus: float = 1.7e9
 
     def coefficients(self, viscosity: float, density: float) -> tuple[float, float, float, float]:
         """Coefficients a, b, k, c of the balance for any oil."""
@@ -256,6 +285,11 @@ class Reservoirs:
         Of the last solution, Pa; the next one starts from them.
     live : (k,) bool array
         Areas that have a balance.
+    compliance : (k,) array
+        V / K of the areas' oil, m3/Pa.
+    before, inverse_step : (k,) array or None, float
+        Pressures at the start of the step, Pa, None for a steady film, and the inverse of the step, 1/s; set by the
+        caller before a film is solved.
     by_pressure, by_flow, size : (k,) arrays
         Derivatives of g to the area's pressure, Pa, and to the film's flow, m3/s; size of its terms.
     """
@@ -269,28 +303,50 @@ class Reservoirs:
         law: PressureTransform | None = None,
     ) -> None:
         self.masks, self.flow_scale, self.law = masks, flow_scale, law
+        self.place()
         self.coefficients = np.array([restrictor.coefficients(*oil) for restrictor in restrictors]).T
         a, _, _, c = self.coefficients
         self.pressures = 0.5 * a * c
         self.live = np.ones(len(masks), dtype=bool)
+        self.compliance = np.array([r.compressible_volume / r.bulk_modulus for r in restrictors])
+        self.before: np.ndarray | None = None
+        self.inverse_step = 0.0
         self.by_pressure, self.by_flow, self.size = np.zeros((3, len(masks)))
+
+    def place(self) -> None:
+        """Take over the vertices of the areas from their masks."""
+        areas = np.full(self.masks[0].shape, -1)
+        for q, mask in enumerate(self.masks):
+            areas[mask] = q
+        self.at = np.flatnonzero(areas >= 0)
+        self.areas, self.of_vertices = areas, areas.reshape(-1)[self.at]
+        self.sizes = np.bincount(self.of_vertices, minlength=len(self.masks))
+
+    def sums(self, field: np.ndarray) -> np.ndarray:
+        """Sums (k,) of a field (n, m) over the vertices of every area."""
+        return np.bincount(self.of_vertices, field.reshape(-1)[self.at], len(self.masks))
 
     def transformed(self) -> tuple[np.ndarray, np.ndarray]:
         """Pressures (k,) as the film's unknown, Pa, and their derivatives to the pressures."""
         if self.law is None:
             return self.pressures, np.ones(self.pressures.size)
-        q, (ratio, rest) = self.law.transform(self.pressures)[None], np.empty((2, 1, self.pressures.size))
-        self.law.inverse(q, np.empty(q.shape), ratio, rest)
-        return q[0], 1.0 / ratio[0]
+        to_pressure = self.law.pressure if isinstance(self.law, CompressibleLaw) else self.law.inverse
+        q, (slope, rest) = self.law.transform(self.pressures)[None], np.empty((2, 1, self.pressures.size))
+        to_pressure(q, np.empty(q.shape), slope, rest)
+        return q[0], 1.0 / slope[0]
 
-    def fields(self, shape: tuple[int, int]) -> np.ndarray:
-        """Fields (., n, m) of the areas with a balance, one at their vertices."""
-        return np.array([self.masks[q] for q in np.flatnonzero(self.live)], dtype=float).reshape(-1, *shape)
+    def within(self) -> np.ndarray:
+        """Return 1 for vertices ``at`` within areas with a balance (., .), else 0."""
+        return (self.of_vertices[:, None] == np.flatnonzero(self.live)).astype(float)
 
     def weights(self) -> np.ndarray:
         """Derivatives of g to the scaled flows, of the areas with a balance."""
         weights: np.ndarray = self.by_flow[self.live] * self.flow_scale
         return weights
+
+    def storage(self) -> np.ndarray:
+        """Derivatives of g to the rates of the pressures, of the areas with a balance."""
+        return (self.by_flow * self.compliance)[self.live]
 
     def derivatives(self, by_pressure: np.ndarray) -> np.ndarray:
         """Derivatives (., .) of g to the pressures, Pa, of the areas with a balance, from those of the scaled flows."""
@@ -303,15 +359,24 @@ class Reservoirs:
         ``inflow`` (n, m): scaled, from the vertices into the film; ``cavity_pressure`` in Pa.
         """
         (a, b, k, c), p = self.coefficients, self.pressures
-        flows, sizes = np.zeros((2, p.size))
-        for q, at in enumerate(self.masks):
-            flows[q], sizes[q] = self.flow_scale * inflow[at].sum(), self.flow_scale * np.abs(inflow[at]).sum()
-        self.by_pressure, self.by_flow = a, b + 2.0 * k * np.abs(flows)
+        flows, sizes = self.flow_scale * self.sums(inflow), self.flow_scale * self.sums(np.abs(inflow))
+        store, old = (p * 0.0, p) if self.before is None else (self.compliance * self.inverse_step, self.before)
+        self.taken, flows = (a, b, k, c, store, old, p, flows), flows + store * (p - old)
+        self.by_flow = b + 2.0 * k * np.abs(flows)
+        self.by_pressure = a + self.by_flow * store
         g = a * p + (b + k * np.abs(flows)) * flows - c
+        sizes += store * np.abs(p)
         self.size = np.abs(a * p) + (b + k * np.abs(flows)) * sizes + np.abs(c) + 1e-300
-        self.live = ((p > cavity_pressure) | (g < 0.0)) & [bool(at.any()) for at in self.masks]
+        self.live = ((p > cavity_pressure) | (g < 0.0)) & (self.sizes > 0)
         balance: np.ndarray = g[self.live]
         return balance
+
+    def change(self, S: np.ndarray, cavity_pressure: float) -> np.ndarray:
+        """Return the change (k,) of the pressures of the last `balance` that evens it with flows of the slope S."""
+        change, at = np.zeros(self.pressures.size), self.live
+        even = even_balances(*(part[at] for part in self.taken), S * self.flow_scale, cavity_pressure)
+        change[at] = even - self.pressures[at]
+        return change
 
     def flows(self) -> np.ndarray:
         """Flow through every restrictor (k,), m3/s, at the present pressures."""
@@ -319,3 +384,63 @@ class Reservoirs:
         left = c - a * self.pressures
         through = np.sign(left) * np.sqrt(np.abs(left) / np.maximum(k, 1e-300))
         return np.where(b > 0.0, left / np.maximum(b, 1e-300), through)
+
+
+@njit(cache=True)
+def even_balances(a, b, k, c, store, old, start, taken, S, lowest):
+    """Pressures (k,) at which areas have even balances, or the ``lowest``, with flows ``taken + S (p - start)``.
+
+    ``a``, ``b``, ``k``, ``c``: coefficients of the balances; ``store``, ``old``: V / K over the step, and pressures at
+    its start.
+    """
+    p = start.copy()
+    for _ in range(30):  # far more than Newton's method takes; what is left is for the caller to see
+        through = taken + S @ (p - start) + store * (p - old)
+        by_flow, g = b + 2.0 * k * np.abs(through), a * p + (b + k * np.abs(through)) * through - c
+        J = by_flow.reshape(-1, 1) * S + np.diag(a + by_flow * store)
+        for i in range(p.size):
+            if p[i] <= lowest and g[i] >= 0.0:
+                J[i], J[i, i], g[i] = 0.0, 1.0, 0.0
+        before, p = p, np.maximum(p - np.linalg.solve(J, g), lowest)
+        if np.all(np.abs(p - before) <= 1e-15 * np.abs(p)):
+            break
+    return p
+
+
+@njit(cache=True)
+def add_border(areas, number, slopes, B, C, D):
+    """Add the symbols of `Reservoirs` from the derivatives of the links' flows and of the storage.
+
+    Parameters
+    ----------
+    areas : (n, m) int array
+        Area with a balance of every vertex, -1 without.
+    number : (n, m) int array
+        Unknown of every vertex, -1 without.
+    slopes : (5, n, m) array
+        As `exudyn_ehd.film.banded.assemble.assemble` takes them.
+    B, C, D : (k, count), (k, count), (k, k) arrays
+        B^T, C and D, changed in place.
+    """
+    n, m = areas.shape
+    for i in range(n):
+        for j in range(m):
+            p = areas[i, j]
+            if p >= 0:
+                D[p, p] += slopes[4, i, j]
+            for axis in range(2):
+                if axis == 1 and j + 1 == m:
+                    continue
+                u, v = ((i + 1) % n, j) if axis == 0 else (i, j + 1)
+                q = areas[u, v]
+                if p < 0 and q < 0:
+                    continue
+                by_a, by_b, a, b = slopes[2 * axis, i, j], slopes[2 * axis + 1, i, j], number[i, j], number[u, v]
+                for area, by, own, other, at, sign in ((p, by_a, q, by_b, b, 1.0), (q, by_b, p, by_a, a, -1.0)):
+                    if area >= 0:
+                        D[area, area] += sign * by
+                        if own >= 0:
+                            D[own, area] -= sign * by
+                        elif at >= 0:
+                            B[area, at] -= sign * by
+                            C[area, at] += sign * other

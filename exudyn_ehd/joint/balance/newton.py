@@ -410,7 +410,7 @@ def history_at(model: BearingModel, motion: np.ndarray, where: str, near: Histor
     at_rest[4:8] = 0.0
     content = evaluate_at(model, at_rest, where)[0].history()
     assert content is not None
-    return replace(content, temperature=None if history is None else history.temperature)
+    return replace(content, temperature=None if history is None else history.temperature, pockets=None)
 
 
 def evaluate_at(

@@ -71,14 +71,26 @@ class OilTemperature:
         if self.law is not None:
             self.reference = float(self.law.viscosity(float(lubricant.temperature), self.density))
         self.supply, supply = known_supply(spec), spec.supply_temperature
-        # without a sump the supply is as a tank of any conductance
-        self.conductance = supply.conductance if isinstance(supply, Sump) else math.inf
+        self.sump = supply if isinstance(supply, Sump) else None
+        self.initial_sump = None if self.sump is None else self.sump.initial_temperature or self.supply
         self.initial = self._or_supply(spec.initial_temperature)
         self.flow_capacity = lubricant.density * lubricant.specific_heat
         self.carry_over = spec.carry_over
 
     def _or_supply(self, temperature: float | None) -> float:
         return self.supply if temperature is None else temperature
+
+    def outside(self, film: SolvedFilm) -> tuple[float, float]:
+        """Return the temperature, K, to which the oil takes its heat in the film's step, and the conductance, W/K.
+
+        Without a sump that are the supply, which is as a tank of any conductance. A sump's heat capacity is, over a
+        step, one more conductance to the temperature at the step's start.
+        """
+        sump, known = self.sump, None if film.history is None else film.history.sump
+        if sump is None or known is None or film.step <= 0.0:
+            return self.supply, math.inf if sump is None else sump.conductance
+        total = sump.conductance + sump.heat_capacity / film.step
+        return known + sump.conductance / total * (self.supply - known), total
 
     def split(self, temperature: Field) -> tuple[Field, Walls | None]:
         """The film's own temperature and that of walls, of which there are none."""
@@ -142,10 +154,10 @@ class LumpedTemperature(OilTemperature):
         return self._last[1]
 
     def _rates(self, film: SolvedFilm) -> tuple[float, float]:
-        """Heat, W, and conductance of the oil from the film to its supply, or on to a sump's ambient, W/K."""
+        """Heat, W, and conductance of the oil from the film to what is `outside`, W/K."""
         heat, exchanged = heat_and_exchange(film, self.carry_over)
         flow = self.flow_capacity * film.parts.flow_scale * exchanged / self.spec.effective_rise
-        return heat, flow / (1.0 + flow / self.conductance)
+        return heat, flow / (1.0 + flow / self.outside(film)[1])
 
     def advance(self, film: SolvedFilm) -> float:
         """Temperature at the end of a solved film's step."""
@@ -161,20 +173,20 @@ class LumpedTemperature(OilTemperature):
         if store + flow + G <= 0.0:
             return math.inf if heat > 0.0 else T
         follows = float(self.follows(T, heat, store))
-        rise = heat + flow * self.supply + G * self.housing + (store + follows) * T
+        rise = heat + flow * self.outside(film)[0] + G * self.housing + (store + follows) * T
         return rise / (store + flow + G + follows)
 
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
-        heat, flow = self._rates(film)
+        (heat, flow), (supply, conductance) = self._rates(film), self.outside(film)
         T, store = float(temperature_of(film)), self.capacity / film.step if film.step > 0.0 else 0.0
         stored = store * (temperature - T)
         return {
             "heat_in": heat - float(self.follows(T, heat, store)) * (temperature - T),
-            "convected": flow * (temperature - self.supply),
+            "convected": flow * (temperature - supply),
             "conducted": self.spec.housing_conductance * (temperature - self.housing),
             "stored": stored,
-            "supply_temperature": self.supply + flow * (temperature - self.supply) / self.conductance,
+            "supply_temperature": supply + flow * (temperature - supply) / conductance,
         }
 
 

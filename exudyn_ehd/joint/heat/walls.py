@@ -149,7 +149,7 @@ class FilmTemperature(OilTemperature):
     def advance(self, film: SolvedFilm) -> np.ndarray:
         """State at the end of a solved film's step."""
         old = self.state_of(film.history)
-        return old if film.step <= 0.0 else self._settled(film, film.step, old, self.supply)
+        return old if film.step <= 0.0 else self._with_supply(film, film.step)
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """State in balance with the heat of a solved film; not finite without a way out for the heat."""
@@ -157,23 +157,23 @@ class FilmTemperature(OilTemperature):
         stagnant = flows.exchanged <= NO_FLOW * float(np.abs(flows.x).max())
         if self.transfer == 0.0 and stagnant and heat_of(film).max() > 0.0:
             return np.full((self.shape[0], self.size), np.inf)
-        old = self.state_of(film.history)
-        state = self._settled(film, 0.0, old, self.supply)
-        if math.isinf(self.conductance):
+        return self._with_supply(film, 0.0)
+
+    def _with_supply(self, film: SolvedFilm, step: float) -> np.ndarray:
+        """State at the end of a step, s, with its supply; 0: steady state."""
+        old, (supply, conductance) = self.state_of(film.history), self.outside(film)
+        state = self._settled(film, step, old, supply)
+        if math.isinf(conductance):
             return state
         # all is linear in the temperature of the supply
-        warmer = self._settled(film, 0.0, old, self.supply + 1.0)
-        carried = self._carried(film, state, self.supply), self._carried(film, warmer, self.supply + 1.0)
-        return state + self._sump_rise(*carried) * (warmer - state)
+        warmer = self._settled(film, step, old, supply + 1.0)
+        cold, warm = self._carried(film, step, state, supply), self._carried(film, step, warmer, supply + 1.0)
+        return state + cold / (conductance + cold - warm) * (warmer - state)
 
-    def _carried(self, film: SolvedFilm, state: np.ndarray, supply: float) -> float:
-        """Heat that the oil carries out of the film in a steady state, W, with a temperature of the supply, K."""
+    def _carried(self, film: SolvedFilm, step: float, state: np.ndarray, supply: float) -> float:
+        """Heat that the oil carries out of the film in a step, s, W, with a temperature of the supply, K."""
         at = [self._surface(side, state) for side in (0, 1)]
-        return self.equations(film, 0.0, supply).totals(self._of_film(state), at)["convected"]
-
-    def _sump_rise(self, cold: float, warm: float) -> float:
-        """Rise of the sump over its ambient, K, from the heat of the oil, W, without a rise and with 1 K."""
-        return cold / (self.conductance + cold - warm)
+        return self.equations(film, step, supply).totals(self._of_film(state), at)["convected"]
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, convected, conducted to ambient or given walls, and stored, W, of a step that ends at a state.
@@ -181,9 +181,10 @@ class FilmTemperature(OilTemperature):
         Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them, and the
         temperature of the supply, K.
         """
-        T, old, supply = self._of_film(temperature), self.state_of(film.history), self.supply
-        if math.isfinite(self.conductance):
-            supply += self._sump_rise(*(self._carried(film, temperature, supply + rise) for rise in (0.0, 1.0)))
+        T, old, (supply, conductance) = self._of_film(temperature), self.state_of(film.history), self.outside(film)
+        if math.isfinite(conductance):
+            cold, warm = (self._carried(film, film.step, temperature, supply + rise) for rise in (0.0, 1.0))
+            supply += cold / (conductance + cold - warm)
         film_only = self.equations(film, film.step, supply)
         at = [self._surface(side, temperature) for side in (0, 1)]
         out, q = film_only.totals(T, at), film_only.passed(T, at)

@@ -7,7 +7,6 @@ from dataclasses import fields
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.heat.options import Sump
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.model.effects import collect_effects
@@ -98,11 +97,6 @@ def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
         raise InputError(
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is "
             "undefined for a concentric journal and jumps with a moving one; use inlet=Periodic()."
-        )
-    if isinstance(getattr(bearing.thermal, "supply_temperature", None), Sump):
-        raise InputError(
-            "JournalBearing.thermal.supply_temperature=Sump(...) is for steady films: a tank warms up for longer than "
-            "a run lasts; give the number of ehd.equilibrium(...).film.supply_temperature at the mean load."
         )
     if isinstance(bearing.film, ImpedanceMap):
         return ImpedanceModel(bearing)

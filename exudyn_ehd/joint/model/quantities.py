@@ -109,6 +109,8 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         out["film_temperature"] = float(np.average(np.broadcast_to(film.temperature, area.shape), weights=area))
         T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
         out["peak_temperature"] = float(np.max(T))
+    if film.history is not None and film.history.sump is not None:
+        out["sump_temperature"] = film.history.sump
     if film.walls is not None:
         out |= film.walls.numbers(area)
     if p.liner is not None:

@@ -132,15 +132,14 @@ class BearingModel:
     flexible = False
 
     def __init__(self, bearing: JournalBearing, *, start_angle: float = 0.0, effects: Effects | None = None) -> None:
-        self.bearing = bearing
-        self.effects = Effects() if effects is None else effects
+        self.bearing, self.effects = bearing, Effects() if effects is None else effects
         self.parts = p = film_parts(bearing, self.effects, start_angle)
         self.grid, self.solver = p.grid, p.solver
         self.needs_spin = p.supply is not None and p.supply.rotating
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
         self.remembers_density = self.remembers_mass and p.compressible is not None and self.effects.thermal is not None
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
-        self.remembers = self.remembers_mass or self.remembers_deflection
+        self.remembers = self.remembers_mass or self.remembers_deflection or p.solver.pockets is not None
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
         self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure, *bearing.edge_pressures])
         self._scale = p.motion_scale[:8]
@@ -177,33 +176,39 @@ class BearingModel:
         thermal = self.effects.thermal
         self.parts.evaluations.count += 1
         self._set_gap(self._journal(motion, 0.0), None)
-        found = self.remembers_deflection and self.evaluate(motion).film is not None
         s, remembers, liner, wear = self.solver, self.remembers_mass, self.parts.liner, self.effects.wear
+        found = (self.remembers_deflection or s.pockets is not None) and self.evaluate(motion).film is not None
         return History(
             void=s.nothing if remembers else None,
             mass=s.H.copy() if remembers else None,
             outflow=np.array([s.ones, s.nothing, s.nothing]) if remembers else None,
             wear=None if wear is None else wear.field(None).copy(),
-            deflection=liner.deflection if found and liner is not None else None,
+            deflection=liner.deflection if found and self.remembers_deflection and liner is not None else None,
             temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
             density=s.ones if self.remembers_density else None,
+            pockets=s.pockets if found else None,
+            sump=None if thermal is None else thermal.initial_sump,
         )
 
     def next_history(self, film: SolvedFilm) -> History | None:
         """History at the end of a solved film's step."""
         if not self.remembers:
             return None
-        p, s, effects = self.parts, self.solver, self.effects
+        p, s, effects, heat = self.parts, self.solver, self.effects, self.effects.thermal
         old = History() if film.history is None else film.history
         void, mass = s.stored(old.mass, film.step) if self.remembers_mass else (None, None)
+        temperature = None if heat is None else heat.advance(film)
+        sump = None if heat is None or heat.initial_sump is None else heat.balance(film, temperature)
         new = History(
             void=void,
             mass=mass,
             outflow=s.outflow() if self.remembers_mass else None,
             wear=None if effects.wear is None else effects.wear.grown(film),
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
-            temperature=None if effects.thermal is None else effects.thermal.advance(film),
+            temperature=temperature,
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
+            pockets=s.pockets,
+            sump=None if sump is None else sump["supply_temperature"],
         )
         if void is not None and film.history is not None:
             for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
@@ -261,25 +266,9 @@ class BearingModel:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
         recess = recess_of(p, self.scales, journal, self.effects.thermal, temperature)
         loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited, recess)
-        film = SolvedFilm(
-            p,
-            self.grid,
-            self.solver,
-            self.scales,
-            journal,
-            history,
-            step,
-            temperature,
-            extra,
-            pressing,
-            limited,
-            oil,
-            loads,
-            c * smallest,
-            self._bore_state(journal, oil, pressing, loads.wrench),
-            p.evaluations.count,
-            walls,
-        )
+        state = p, self.grid, self.solver, self.scales, journal, history, step, temperature
+        bore, fields = self._bore_state(journal, oil, pressing, loads.wrench), (extra, pressing, limited)
+        film = SolvedFilm(*state, *fields, oil, loads, c * smallest, bore, p.evaluations.count, walls)
         return self._result(status, journal, loads.wrench, iterations, c * smallest, film)
 
     def _result(
@@ -356,7 +345,7 @@ class BearingModel:
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
         """Solve for the gaps in the solver's buffers, with the known pressures."""
         p, law = self.parts, self.effects.pressure_law
-        P = self.solver.pressure
+        P, past = self.solver.pressure, History() if history is None else history
         P[:, 0], P[:, -1], cavity, *edges = self._prescribed.tolist()
         if edges:
             P[p.grid.edges.ravel()] = np.array(edges)[:, None]
@@ -364,10 +353,12 @@ class BearingModel:
             fed = p.supply.pressures()
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
         if p.liner is not None:
-            p.liner.delta_old = None if history is None else history.deflection
-        kept = None if history is None or history.void is None else self.solver.keep(history.void, step)
+            p.liner.delta_old = past.deflection
+        if self.solver.reservoirs is not None:
+            self.solver.reservoirs.before = past.pockets
+        kept = None if past.void is None else self.solver.keep(past.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
-        self.solver.lag(None if history is None else history.outflow, step)
+        self.solver.lag(past.outflow, step)
         status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
         if status is Status.NOT_CONVERGED and self.solver.lagging:
             # flows that grow manifold within a step may take more than there was

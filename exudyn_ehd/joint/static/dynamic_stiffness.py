@@ -7,9 +7,9 @@ x, and the volume ``C(u, x)`` that the vertices store, a small motion ``x exp(i 
     (A + i nu S) u + (B + i nu T) x = 0,    A = dr/du, S = area dC/du, B = dr/dx, T = area dC/dx,
 
 at fixed sets of full and cavitated vertices. Vertices store the oil of a mass-conserving film and the deflection of a
-liner. The force's amplitude is ``-Z x`` with the dynamic stiffness ``Z = K + i nu C``, from one adjoint solve of ``(A +
-i nu S)^T`` per component of the force. For nu = 0 it is the stiffness of the steady film; for nu without bounds C tends
-to that of a sudden velocity.
+liner, supply areas with a restrictor their compressible oil. The force's amplitude is ``-Z x`` with the dynamic
+stiffness ``Z = K + i nu C``, from one adjoint solve of ``(A + i nu S)^T`` per component of the force. For nu = 0 it is
+the stiffness of the steady film; for nu without bounds C tends to that of a sudden velocity.
 
 A bore or journal with the stiffness K_q deflects by q, which follows with a delay, since the film between has to be
 squeezed. With Z of the journal's and the bore's coordinates together,
@@ -65,7 +65,7 @@ def slow_motions(tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 class FilmResponse:
-    """Dynamic stiffness of a film that conserves mass, or on a liner.
+    """Dynamic stiffness of a film that conserves mass, on a liner, or fed by a compressible volume.
 
     Parameters
     ----------
@@ -73,7 +73,14 @@ class FilmResponse:
         Of the steady state; what is needed of it is copied.
     tangent : (6, 10) array
         Of the wrench there, for slow motions.
+
+    Attributes
+    ----------
+    rates : (k,) array
+        Rates at which the pressures of supply areas with a compressible volume settle at rest, 1/s.
     """
+
+    rates = np.zeros(0)
 
     def __init__(self, film: SolvedFilm, tangent: np.ndarray) -> None:
         s, w, liner = film.solver, film.solver.work, film.parts.liner
@@ -82,8 +89,6 @@ class FilmResponse:
         rows = -SIGNS[:, None] * wrench_rows(film)[LOADS] / film.scales.force
         stored = np.zeros(film.grid.shape)
         self.matrix = s.matrix()
-        if liner is not None:
-            stored += s.storage_weights()[0] * liner.deflection_by_pressure
         if s.closure.conserves_mass:
             whole = s.area * s.H
             if s.law is not None:
@@ -93,7 +98,11 @@ class FilmResponse:
                 stored += whole * s.oil_line.rise
             stored = np.where(w.active, stored, whole)
         areas = self.matrix.shape[0] - w.count  # whose pressure is unknown
-        self.store = diags_array(np.append(stored.reshape(-1)[order], np.zeros(areas)))
+        self.store = diags_array(np.append(stored.reshape(-1)[order], np.zeros(areas)) + s.surroundings())
+        if s.reservoirs is not None:
+            filled = s.reservoirs.storage()
+            at = filled > 0.0
+            self.rates = np.diag(s.reservoirs.derivatives(s.reduced()[2]))[at] / filled[at]
         self.rows = rows.T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count + areas))
@@ -109,8 +118,8 @@ class FilmResponse:
             line, follows = s.line_gradients(), liner.gap_slopes.D_r.reshape(-1)[order]
             resting: np.ndarray | float = 0.0
             if line is not None:
-                resting = (line.columns(film.grid.gap_shapes, w.count) * scale)[PLACES : 2 * PLACES]
-            self.by_rate = self.by_rate + (self.by_rate - resting) * follows
+                resting = (line.columns(film.grid.gap_shapes, w.count + areas) * scale)[PLACES : 2 * PLACES]
+            self.by_rate = self.by_rate + (self.by_rate - resting) * np.append(follows, np.zeros(areas))
 
     def _rest_of(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         """Keep what stiffness and damping of slow motions hold besides the film's pressure."""
@@ -229,6 +238,7 @@ def response_of(evaluation: Evaluation) -> tuple[tuple[np.ndarray, np.ndarray], 
     """
     model = evaluation.model
     has_memory = model.remembers_mass or model.flexible or model.parts.liner is not None
+    has_memory = has_memory or model.solver.pockets is not None
     if has_memory and not model.remembers_mass and is_central(evaluation):
         evaluation = cast("Evaluation", evaluate_beside(evaluation))
     slow = slow_motions(evaluation.steady_tangent(exact=True))
@@ -282,29 +292,28 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     return math.sqrt(square) / omega, k / square
 
 
-def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:
+def threshold(stiffness: Callable[[float], np.ndarray], omega: float, rates: np.ndarray) -> tuple[float, float]:
     """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu), x and y its first.
 
-    As `whirl_threshold`; thresholds are looked for between 0.05 and twice the
-    spin omega > 0, and the one of the smallest mass counts.
+    As `whirl_threshold`; thresholds are looked for between 0.05 and twice the spin omega > 0, with `FilmResponse.rates`
+    also around those, and the one of the smallest mass counts.
     """
 
-    def values(ratio: float) -> np.ndarray:
-        return np.linalg.eigvals(stiffness(ratio * omega)[:2, :2])
+    def values(frequency: float) -> np.ndarray:
+        found = np.linalg.eigvals(stiffness(frequency)[:2, :2])
+        return found[np.argsort(found.imag)]
 
-    def both(ratio: float) -> float:
-        """Product of the imaginary parts of Z's eigenvalues: it changes sign where one of them is real."""
-        return float(np.prod(values(ratio).imag))
-
-    ratios = np.geomspace(SLOWEST, FASTEST, STEPS)
-    signs = [both(ratio) for ratio in ratios]
-    found = []
-    for k in np.flatnonzero(np.diff(np.sign(signs))):
-        ratio = brentq(both, ratios[k], ratios[k + 1], rtol=1e-9)
-        real = float(min(values(ratio), key=lambda value: abs(value.imag)).real)
+    nu = omega * np.geomspace(SLOWEST, FASTEST, STEPS)
+    if rates.size:
+        low, high = min(nu[0], rates.min() * SLOWEST**2), max(nu[-1], rates.max() / SLOWEST**2)
+        nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(FASTEST / SLOWEST)))
+    imag, found = np.array([values(frequency).imag for frequency in nu]), []
+    for k, q in np.argwhere(np.diff(np.sign(imag), axis=0)):
+        frequency = brentq(lambda nu, q=q: values(nu)[q].imag, nu[k], nu[k + 1], rtol=1e-9)
+        real = float(values(frequency)[q].real)
         if real > 0.0:
-            found.append((real / (ratio * omega) ** 2, ratio))
+            found.append((real / frequency**2, frequency / omega))
     if found:
         mass, ratio = min(found)
         return ratio, mass
-    return math.nan, math.inf if values(SLOWEST).imag.min() > 0.0 else 0.0
+    return math.nan, math.inf if imag[0].min() > 0.0 else 0.0

@@ -79,8 +79,8 @@ class EquilibriumResult:
         exchanged; ``settled_stiffness`` is the other limit. Flexible bore, journal and liner follow without inertia.
     frequency : float
         Frequency of the small motions for which K and C hold, rad/s. 0: they do not depend on it, or hold for slow
-        motions (surfaces that deflect). With `ElrodAdams` that of the whirl threshold, or half the spin if there is
-        none.
+        motions (surfaces that deflect, a ``compressible_volume``). With `ElrodAdams` that of the whirl threshold, or
+        half the spin if there is none.
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan where there is no threshold: stable at any mass, or
         unstable at any.
@@ -160,7 +160,8 @@ class EquilibriumResult:
         """Z = K + i nu C: the force's amplitude is -Z x for a motion x exp(i nu t).
 
         x is the small motion (x, y) about the equilibrium, the force that on the journal, joint frame. K and C depend
-        on the frequency with `ElrodAdams`, as the cavity's oil follows with a delay, and where surfaces deflect. See
+        on the frequency with `ElrodAdams`, as the cavity's oil follows with a delay, where surfaces deflect, and where
+        restrictors have a ``compressible_volume``. See
         `exudyn_ehd.joint.static.dynamic_stiffness`.
 
         Parameters
@@ -336,7 +337,7 @@ def _result(
 ) -> EquilibriumResult:
     """The result at a place that was found, with its `_small_motions`."""
     (K, C, response), bearing, omega = small, model.bearing, abs(float(found.motion[8]))
-    ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega)
+    ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega, response.rates)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)[:2, :2]
     there = Z.real, Z.imag / frequency

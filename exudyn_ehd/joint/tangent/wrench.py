@@ -13,7 +13,6 @@ import numpy as np
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.gradients import functional_gradients
 from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
-from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
@@ -52,8 +51,8 @@ def film_gradient(film: SolvedFilm, rows: np.ndarray, slow_motion: bool) -> np.n
     s.solve_transposed(rows)
     columns = balance_gradients(film)
     functional_gradients(rows, columns, gradient)
-    if slow_motion and p.liner is not None:
-        gradient[:, 4:8] += _following_deflection(film, p.liner, rows, columns)
+    if slow_motion and (p.liner is not None or s.reservoirs is not None):
+        gradient[:, 4:8] += _following_storage(film, rows, columns)
     return gradient
 
 
@@ -75,39 +74,28 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
     if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
     out = np.empty((6, MOTION_SIZE))
-    wrench_gradient(
-        gradient[:4],
-        shear,
-        extra,
-        _boundary_gradients(film),
-        w.pose,
-        film.loads.integrals,
-        p.pose_scale,
-        p.grid.reference_length,
-        scales.force,
-        scales.shear,
-        w.omega,
-        w.axial_speed,
-        film.loads.couette,
-        out,
-    )
+    known = w.pose, film.loads.integrals, p.pose_scale, p.grid.reference_length, scales.force, scales.shear
+    sliding = w.omega, w.axial_speed, film.loads.couette
+    wrench_gradient(gradient[:4], shear, extra, _boundary_gradients(film), *known, *sliding, out)
     if film.pressing is not None:
         _add_contacts(film, film.pressing, out)
     return out
 
 
-def _following_deflection(film: SolvedFilm, liner: LinerFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Gradient (k, 4) of adjoint functionals lam (k, count) to the scaled rates through the deflection's rate.
+def _following_storage(film: SolvedFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Gradient (k, 4) of adjoint functionals lam (k, .) to the scaled rates through `FilmAnswers.surroundings`.
 
     A second adjoint solve. ``columns``: `balance_gradients`. The rupture line adds nothing, since its liner rests.
     """
-    s, at, gradient = film.solver, film.solver.work.order[: film.solver.work.count], np.empty((len(lam), MOTION_SIZE))
-    by_rate = -lam * s.storage_weights()[0].reshape(-1)[at]
-    rows = by_rate * liner.deflection_by_pressure.reshape(-1)[at]
+    p, s, gradient = film.parts, film.solver, np.empty((len(lam), MOTION_SIZE))
+    rows = -lam * s.surroundings()
     s.solve_transposed(rows)
     functional_gradients(rows, columns, gradient)
-    shapes = film.grid.gap_shapes[0].reshape(-1, 4)[at]
-    followed: np.ndarray = gradient[:, :4] + (by_rate * liner.gap_slopes.D_r.reshape(-1)[at]) @ shapes
+    if p.liner is None:
+        return gradient[:, :4]
+    at = s.work.order[: s.work.count]
+    by_rate = -lam[:, : at.size] * (s.storage_weights()[0] * p.liner.gap_slopes.D_r).reshape(-1)[at]
+    followed: np.ndarray = gradient[:, :4] + by_rate @ film.grid.gap_shapes[0].reshape(-1, 4)[at]
     return followed
 
 
@@ -122,10 +110,8 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
 
 def _reservoir_gradients(film: SolvedFilm, reservoirs: Reservoirs) -> np.ndarray:
     """`balance_gradients` (10, k) of the areas with an unknown pressure, from the balances at their vertices."""
-    fields = reservoirs.fields(film.grid.shape).reshape(-1, film.grid.area.size)
-    places = np.flatnonzero(fields.any(axis=0))
-    out = true_gradients(film, places).columns(film.grid.gap_shapes, places.size)
-    flows: np.ndarray = reservoirs.weights() * (out @ fields[:, places].T)
+    out = true_gradients(film, reservoirs.at).columns(film.grid.gap_shapes, reservoirs.at.size)
+    flows: np.ndarray = reservoirs.weights() * (out @ reservoirs.within())
     return flows
 
 
@@ -176,69 +162,73 @@ def wrench_rows(film: SolvedFilm) -> np.ndarray:
 
 
 def adjoint_rows(film: SolvedFilm) -> np.ndarray:
-    """Weights of the unknowns in the integrals that they enter, (k, count)."""
-    p, g, w, P_q = film.parts, film.grid, film.solver.work, film.oil.P_q
-    shear, extra = shear_needs_adjoint(film), has_extra_rows(film)
-    pressed = p.liner is not None and film.pressing is not None
-    own, at = 4 + shear + 2 * extra, w.order[: w.count]
-    rows = np.empty((own + 5 * pressed, w.count))
-    load_adjoint_rhs(w.order, w.count, g.weight, g.gap_shapes, w.active, rows)
-    slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
+    """Weights of the unknowns in the integrals that they enter, (k, count); those of supply areas come last."""
+    s, w = film.solver, film.solver.work
+    rows = _rows_at(film, w.order[: w.count], s.system.continued)
+    if (r := s.reservoirs) is None:
+        return rows
+    by_unknown = _rows_at(film, r.at, None) @ r.within() / s.pressure_scale
+    return np.hstack((rows, by_unknown * r.transformed()[1][r.live]))
+
+
+def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> np.ndarray:
+    """Return `adjoint_rows` of flat vertices ``at``, by the solver's unknown; ``continued`` as for `FilmSystem`."""
+    g, s, y, oil, liner = film.grid, film.solver, film.solver.system, film.oil, film.parts.liner
+    active, shear, extra = s.work.active | g.fixed, shear_needs_adjoint(film), has_extra_rows(film)
+    pressed = liner is not None and film.pressing is not None
+    own = 4 + shear + 2 * extra
+    rows = np.zeros((own + 5 * pressed, at.size))
+    load_adjoint_rhs(at, at.size, g.weight, g.gap_shapes, active, rows)
     if extra:
+        slopes = np.zeros((2, *g.shape)) if film.loads.drag is None else film.loads.drag
         if film.extra is not None:
             slopes = slopes + g.weight * np.stack((film.extra.slope_x, film.extra.slope_z))
-        rows[own - 2 : own] = (slopes * w.active).reshape(2, -1)[:, at]
-    if P_q is not None:
-        rows[:4] *= P_q.ravel()[at]
-        rows[own - 2 * extra : own] *= P_q.ravel()[at]
+        rows[own - 2 : own] = (slopes * active).reshape(2, -1)[:, at]
+    if oil.P_q is not None:
+        rows[:4] *= oil.P_q.ravel()[at]
+        rows[own - 2 * extra : own] *= oil.P_q.ravel()[at]
     if shear:
-        _shear_row(film, rows[4])
-    y = film.solver.system
-    if y.continued is not None:
-        rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        rows[4] = _shear_weights(film, active).ravel()[at]
+    if continued is not None:
+        rows_of_linear(continued, y.fixed, y.linked, y.cavity_pressure, s.work.active, s.work.number, rows)
     # what follows the pressure of a vertex itself
     if shear:
-        _add_shear_of_vertices(film, rows[4])
-    if p.liner is not None and film.loads.drag is not None:
-        rows[own - 2 : own] += drag_by_deflection(film, p.liner).reshape(2, -1)[:, at]
-    if p.liner is not None and film.pressing is not None:
-        by_pressure = g.weight * p.liner.contact_by_pressure
-        load_adjoint_rhs(w.order, w.count, by_pressure, g.gap_shapes, w.active, rows[own:])
+        rows[4] += _shear_of_vertices(film, active).ravel()[at]
+    if liner is not None and film.loads.drag is not None:
+        rows[own - 2 : own] += drag_by_deflection(film, liner).reshape(2, -1)[:, at]
+    if liner is not None and pressed:
+        by_pressure = g.weight * liner.contact_by_pressure
+        load_adjoint_rhs(at, at.size, by_pressure, g.gap_shapes, active, rows[own:])
         rows[own + 4] = by_pressure.ravel()[at]
-    if film.solver.reservoirs is None:
-        return rows
-    whole, fields = np.zeros((own, g.area.size)), film.solver.reservoirs.fields(g.shape)
-    whole[:4] = -(g.gap_shapes[0] * g.weight[..., None]).reshape(-1, 4).T
-    whole[own - 2 * extra :] = slopes.reshape(2, -1)[: 2 * extra]
-    if film.oil.ratio_q is not None and film.oil.P_q is not None:  # the shear of its land's share
-        whole[4] = (g.shear_weight / p.solver.H * film.oil.ratio_q / film.oil.P_q).ravel()
-    return np.hstack((rows, whole @ fields.reshape(-1, g.area.size).T / film.scales.pressure))
+    return rows
 
 
-def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
-    """Weights of the Couette integral at the unknowns.
+def _shear_weights(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
+    """Weights of the Couette integral at the vertices (n, m).
 
     Through the oil's pressure where they are pressures, through fill elsewhere.
     """
-    s, g, w, oil = film.solver, film.grid, film.solver.work, film.oil
+    s, g, oil = film.solver, film.grid, film.oil
     ratio, by_pressure = ratio_of(film), s.nothing if oil.ratio_q is None else oil.ratio_q
     by_fill = ratio if s.closure.conserves_mass else s.nothing
     if s.oil_line is not None:
         # at the line the fill follows the pressure
         by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
-    row[:] = (g.shear_weight / s.H * np.where(w.active, by_pressure, by_fill)).ravel()[w.order[: w.count]]
+    return g.shear_weight / s.H * np.where(active, by_pressure, by_fill)
 
 
-def _add_shear_of_vertices(film: SolvedFilm, row: np.ndarray) -> None:
-    """Add to `_shear_row` what follows the liner's deflection, the pressure's gradients, and fills beside the ends."""
-    p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
+def _shear_of_vertices(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
+    """Return what in `_shear_weights` follows the liner's deflection, the pressure's gradients, and fills beside the
+    ends."""
+    p, s, g, oil, out = film.parts, film.solver, film.grid, film.oil, np.zeros(film.grid.shape)
     if p.liner is not None:
-        row += (couette_slopes(film)[0] * p.liner.gap_slopes.H_P * w.active).ravel()[w.order[: w.count]]
+        out += couette_slopes(film)[0] * p.liner.gap_slopes.H_P * active
     if oil.ratio_g is not None:
-        row += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H).reshape(-1)[w.order[: w.count]]
+        out += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H)
     if s.closure.conserves_mass:
         rise = 0.0 if s.oil_line is None else s.oil_line.rise
-        row += (shear_of_ends(film) * np.where(w.active, rise, 1.0)).reshape(-1)[w.order[: w.count]]
+        out += shear_of_ends(film) * np.where(active, rise, 1.0)
+    return out
 
 
 def couette_slopes(film: SolvedFilm) -> tuple[np.ndarray, float]:

@@ -53,6 +53,17 @@ MEMORIES = {
         "cavitation": ehd.ElrodAdams(cavity_pressure=-1e5),
         "bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=3e8),
     },
+    "pockets": {
+        "supply": tuple(
+            ehd.Pocket(
+                angle=angle,
+                width_angle=1.1,
+                length=0.012,
+                supply=ehd.Orifice(diameter=4e-4, supply_pressure=3e6, compressible_volume=1e-5, bulk_modulus=1e9),
+            )
+            for angle in (0.1, 1.7, 3.2, 4.8)
+        ),
+    },
     "heat": {"lubricant": ehd.oil("ISO VG 46"), "thermal": ehd.LumpedThermal(supply_temperature=313.0)},
     "wear": {
         "asperity": ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=2e9),

@@ -27,12 +27,28 @@ BEARINGS = {
     "plain": PLAIN,
     "oil content": dataclasses.replace(PLAIN, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)),
     "temperature": dataclasses.replace(PLAIN, thermal=ehd.LumpedThermal(supply_temperature=313.15, capacity=5.0)),
+    "sump": dataclasses.replace(
+        PLAIN,
+        thermal=ehd.LumpedThermal(supply_temperature=ehd.Sump(conductance=5.0, ambient=293.15, heat_capacity=0.1)),
+    ),
     "temperature field": dataclasses.replace(PLAIN, thermal=ehd.FilmEnergy(supply_temperature=313.15)),
     "compressed oil": dataclasses.replace(
         PLAIN,
         cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
         thermal=ehd.LumpedThermal(supply_temperature=313.15),
         lubricant=dataclasses.replace(PLAIN.lubricant, density_law=ehd.DowsonHigginson()),
+    ),
+    "pockets": dataclasses.replace(
+        PLAIN,
+        supply=tuple(
+            ehd.Pocket(
+                angle=a,
+                width_angle=0.8,
+                length=0.01,
+                supply=ehd.Orifice(diameter=2e-4, supply_pressure=3e6, compressible_volume=1e-5, bulk_modulus=1e9),
+            )
+            for a in (0.0, 2.0, 4.0)
+        ),
     ),
     "wear": dataclasses.replace(PLAIN, asperity=ROUGH, wear=ehd.ArchardWear(wear_rate=1e-14, acceleration=1e3)),
     "liner": dataclasses.replace(PLAIN, bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)),

@@ -1,4 +1,4 @@
-"""`Sump`, ``LumpedThermal.effective_rise`` and temperatures that the viscosity does not follow, in steady films."""
+"""`Sump` in steady films and in time, ``LumpedThermal.effective_rise``, temperatures that change no viscosity."""
 
 from __future__ import annotations
 
@@ -61,8 +61,64 @@ def test_equilibrium_and_stribeck_take_a_sump(make_bearing, kind):
     assert film.heat_by_oil == pytest.approx(6.0 * (film.supply_temperature - AMBIENT), rel=1e-8)
     curve = ehd.stribeck(bearing, load=1500.0, speeds=[250.0])
     assert curve.film_temperature[0] == pytest.approx(np.mean(film.temperature), abs=0.3)
-    with pytest.raises(ehd.InputError, match="supply_temperature at the mean load"):
-        build_model(bearing)
+
+
+@pytest.mark.parametrize("options", ({}, GROOVE), ids=("flooded", "groove"))
+@pytest.mark.parametrize("kind", HEAT)
+def test_sump_in_time(make_bearing, kind, options):
+    """Backward Euler: the tank stores what the oil brings and the ambient does not take; the film is that of a supply
+    with the temperature at the end of the step. In the end the tank is the steady one."""
+    rng = np.random.default_rng(7)
+    sump = ehd.Sump(conductance=6.0, ambient=AMBIENT, heat_capacity=0.5, initial_temperature=AMBIENT + 3.0)
+    bearing = make_bearing(0.5, film=FILM, lubricant=OIL, thermal=HEAT[kind], **options)
+    model = build_model(replace(bearing, thermal=replace(HEAT[kind], supply_temperature=sump)))
+    motion = np.zeros(10)
+    motion[:2], motion[8] = 0.6 * bearing.radial_clearance * np.array([np.cos(-2.2), np.sin(-2.2)]), 250.0
+    history = model.initial_history(motion)
+    assert history.sump == AMBIENT + 3.0
+    for _ in range(2):
+        step = 10.0 ** rng.uniform(-3.0, -1.0)
+        evaluation = model.evaluate(motion, history, step)
+        after = evaluation.history()
+        assert evaluation.quantities()["sump_temperature"] == history.sump
+        heat = model.effects.thermal.balance(evaluation.film, after.temperature)
+        stored = sump.heat_capacity * (after.sump - history.sump) / step
+        taken = sump.conductance * (after.sump - AMBIENT)
+        assert heat["convected"] == pytest.approx(stored + taken, rel=1e-9)
+        assert abs(stored) > 1e-3 * abs(taken)
+        given = build_model(replace(bearing, thermal=replace(HEAT[kind], supply_temperature=after.sump)))
+        same = given.evaluate(motion, replace(history, sump=None), step).history()
+        np.testing.assert_allclose(after.temperature, same.temperature, rtol=1e-9)
+        history = after
+    if kind in ("lumped", "field"):
+        for _ in range(30):
+            history = model.evaluate(motion, history, 20.0).history()
+        film = ehd.steady(model.bearing, speed=250.0, eccentricity_ratio=0.6, direction=-2.2)
+        # the heats of temperature fields after long steps and of steady ones are 2e-3 apart, from a given supply too
+        near = (3e-3 if kind == "field" else 1e-6) * (film.supply_temperature - AMBIENT)
+        assert history.sump == pytest.approx(film.supply_temperature, abs=near)
+    slow = replace(model.bearing.thermal, supply_temperature=replace(sump, heat_capacity=0.0))
+    model = build_model(replace(bearing, thermal=slow))
+    evaluation = model.evaluate(motion, model.initial_history(motion), 1e-3)
+    heat = model.effects.thermal.balance(evaluation.film, evaluation.history().temperature)
+    assert heat["convected"] == pytest.approx(6.0 * (evaluation.history().sump - AMBIENT), rel=1e-9)
+
+
+def test_a_tank_warms_up_exponentially(make_bearing):
+    """Constant power P: T = T_a + P / G (1 - exp(-G t / C)), to the first order of the steps."""
+    sump = ehd.Sump(conductance=10.0, ambient=AMBIENT, heat_capacity=300.0)
+    bearing = make_bearing(0.5, film=FILM, thermal=ehd.LumpedThermal(supply_temperature=sump))
+    model, errors = build_model(bearing), []
+    motion = np.array([1.5e-5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 250.0, 0.0])
+    for count in (40, 80):
+        history = model.initial_history(motion)
+        for _ in range(count):
+            evaluation = model.evaluate(motion, history, 60.0 / count)
+            history = evaluation.history()
+        exact = evaluation.quantities()["power_loss"] / 10.0 * (1.0 - np.exp(-2.0))
+        errors.append((history.sump - AMBIENT) / exact - 1.0)
+    assert abs(2.0 * errors[1] - errors[0]) < 1e-3
+    assert 1e-3 < abs(errors[1]) < 0.6 * abs(errors[0]) < 0.02
 
 
 @pytest.mark.parametrize("supply", (AMBIENT, ehd.Sump(conductance=5.0, ambient=AMBIENT)))
