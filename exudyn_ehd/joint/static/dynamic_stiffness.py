@@ -29,8 +29,8 @@ from collections.abc import Callable
 from typing import cast
 
 import numpy as np
+import scipy
 from scipy.linalg import block_diag
-from scipy.optimize import brentq
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
@@ -275,7 +275,7 @@ def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[f
     signs = [both(ratio) for ratio in ratios]
     found = []
     for k in np.flatnonzero(np.diff(np.sign(signs))):
-        ratio = brentq(both, ratios[k], ratios[k + 1], rtol=1e-9)
+        ratio = scipy.optimize.brentq(both, ratios[k], ratios[k + 1], rtol=1e-9)
         real = float(min(values(ratio), key=lambda value: abs(value.imag)).real)
         if real > 0.0:
             found.append((real / (ratio * omega) ** 2, ratio))
