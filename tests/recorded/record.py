@@ -207,6 +207,14 @@ def film_rows():
     return [(k, row) for k, (_, row) in enumerate(rows()[:RECORDED]) if row["surfaces"] not in ("modal bush", "both")]
 
 
+def steady_rows():
+    """Places and rows of the bearings whose equilibria are recorded."""
+    steady = [
+        (k, row) for k, (_, row) in enumerate(rows()) if row["squeeze"] == "on" and row["supply"] != "turning hole"
+    ]
+    return steady[:200]
+
+
 def records(kind):
     """Calls that make the records of a kind, in their order.
 
@@ -219,10 +227,7 @@ def records(kind):
         return [lambda row=row, k=k: film_record(row, k) for k, row in film_rows()]
     if kind == "runs":
         return [lambda run=run: run_record(*run) for run in RUNS]
-    steady = [
-        (k, row) for k, (_, row) in enumerate(rows()) if row["squeeze"] == "on" and row["supply"] != "turning hole"
-    ]
-    return [lambda row=row, k=k: equilibrium_record(row, k) for k, row in steady[:200]]
+    return [lambda row=row, k=k: equilibrium_record(row, k) for k, row in steady_rows()]
 
 
 COLUMNS_OF = {"films": COLUMNS, "equilibria": EQUILIBRIUM, "runs": RUN}

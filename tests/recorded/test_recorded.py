@@ -5,6 +5,7 @@ import pytest
 
 from tests.contracts.test_evaluation import QUICK
 from tests.recorded import record
+from tests.sampling import covering_places
 
 # Films come from direct solutions and from iterations that end at round-off; equilibria end at 1e-8 of the load; in a
 # run each step ends at 1e-6 of the forces, and thirty of them let the round-off of another machine grow.
@@ -48,9 +49,10 @@ def test_all_films(places):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("places", parts(len(record.records("equilibria"))), ids=str)
-def test_equilibria(places):
-    check("equilibria", places, TOLERANCES["equilibria"])
+@pytest.mark.parametrize("place", covering_places([tuple(row.values()) for _, row in record.steady_rows()]))
+def test_equilibria(place):
+    """Every pair of levels that the recorded bearings have."""
+    check("equilibria", [place], TOLERANCES["equilibria"])
 
 
 @pytest.mark.slow
