@@ -312,7 +312,7 @@ def run(mbs, end, steps):
     ehd.SolveDynamic(mbs, settings)
 
 
-@pytest.mark.parametrize("arcs", sample([ehd.two_lobe(preload=0.5), DAM], 0), ids=["lobes", "dam"])
+@pytest.mark.parametrize("arcs", sample(map(pytest.param, (ehd.two_lobe(preload=0.5), DAM)), 0), ids=["lobes", "dam"])
 def test_a_rotor_in_exudyn_comes_to_rest(arcs):
     """Its position is that of `equilibrium`, within 0.5 % of the clearance; the renderer leaves the grooves out."""
     bearing = bearing_of(arcs)
