@@ -242,7 +242,6 @@ def test_growth_of_whirl_does_not_depend_on_the_step(planar_rotor, cavitation, s
     bearing, eq = whirling(cavitation, supply=supply)
     found = {steps: growth(planar_rotor, bearing, eq, ratio, steps) for steps in (60, 120, 240)}
     for steps, share in ((60, 0.75), (120, 0.25)):
-        print(steps, found[steps] / found[240] - 1.0, share * tolerance)
         assert found[steps] == pytest.approx(found[240], rel=share * tolerance)
 
 

@@ -209,8 +209,12 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
 def greenwood_tripp_integral(order: float, u: np.ndarray | float) -> np.ndarray:
     """F_order(u) from the parabolic cylinder function; good to about 1e-12 for u within -8 and 8."""
     u = np.asarray(u, dtype=float)
-    factor = scipy.special.gamma(order + 1.0) / math.sqrt(2.0 * math.pi) * np.exp(-0.25 * u * u)
-    return factor * scipy.special.pbdv(-order - 1.0, u)[0]
+    return (
+        scipy.special.gamma(order + 1.0)
+        / math.sqrt(2.0 * math.pi)
+        * np.exp(-0.25 * u * u)
+        * scipy.special.pbdv(-order - 1.0, u)[0]
+    )
 
 
 @functools.cache
