@@ -41,13 +41,13 @@ def test_only_coupling_and_studies_import_exudyn():
 
 
 def test_film_studies_do_not_load_exudyn():
-    """`steady` and its like run without Exudyn being imported."""
+    """`steady` and its like run without Exudyn being imported, and without parts of scipy that few bearings need."""
     code = (
         "import sys, exudyn_ehd as ehd;"
         "b = ehd.JournalBearing(journal_radius=.01, length=.02, radial_clearance=2e-5, "
         "lubricant=ehd.Lubricant(viscosity=.04));"
         "ehd.steady(b, speed=100., eccentricity_ratio=.5);"
-        "assert 'exudyn' not in sys.modules"
+        "assert not {'exudyn', 'scipy.interpolate', 'scipy.optimize', 'scipy.special'} & {*sys.modules}"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
 
@@ -96,7 +96,7 @@ def test_options_are_frozen_and_keyword_only():
 LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 300, 60, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
-MOST_SKIPS, MOST_ANY, MOST_CODE, MOST_MODULES = 13, 60, 25653, 236
+MOST_SKIPS, MOST_ANY, MOST_CODE, MOST_MODULES = 13, 60, 25813, 236
 # Beginnings of a clause without its noun: no docstring of package, tests and examples begins with one.
 BARE_CLAUSE = re.compile(
     r'^ *r?"""\s*((?:What|Whether|As|Of|The same|Where|Which|How|From|With|That|Those|Who|Whose|Why|For|At|When)\b.*)',

@@ -14,6 +14,7 @@ import pytest
 from exudyn.utilities import InertiaCuboid
 
 import exudyn_ehd as ehd
+from tests.sampling import but_slow
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 GUIDES = sorted(path for folder in ("exudyn_ehd", "examples", "tests") for path in (ROOT / folder).rglob("*.md")) + [
@@ -161,10 +162,16 @@ WALKED = {
         "contact": ehd.RegularisedWall(onset=1e-6),
     },
     "liner": {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9), "profile": ehd.Crown(drop=1e-6)},
+    # all but its own kernels are compiled for thinning too, those of the one above for it alone
+    "liner and thinning": {
+        "lubricant": ehd.Lubricant(viscosity=0.03, shear_law=ehd.CarreauShear(relaxation_time=1e-7, exponent=0.8)),
+        "bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9),
+        "profile": ehd.Crown(drop=1e-6),
+    },
 }
 
 
-@pytest.mark.parametrize("name", WALKED)
+@pytest.mark.parametrize("name", but_slow(WALKED, "liner"))
 def test_walks_have_the_order_of_the_calls_and_come_back_to_no_package(name):
     """Kernels and dataclasses have no calls to follow; a first evaluation compiles and imports."""
     evaluate_joint(WALKED[name])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
@@ -81,7 +81,7 @@ class StressRecovery:
         """
         positions = np.atleast_2d(np.asarray(positions, dtype=float))
         corners, kind = self.mesh.nodes[self.mesh.elements], self.mesh.element
-        _, near = cKDTree(corners.mean(axis=1)).query(positions, k=min(27, len(corners)))
+        _, near = scipy.spatial.cKDTree(corners.mean(axis=1)).query(positions, k=min(27, len(corners)))
         count = near.size // len(positions)
         nodes, target = corners[near.ravel()], np.repeat(positions, count, axis=0)
         natural = np.tile(kind.nodes.mean(axis=0), (len(nodes), 1))

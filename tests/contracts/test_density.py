@@ -2,6 +2,7 @@
 oil mass, a solution, no cost when off."""
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant import density
 from exudyn_ehd.joint.balance.limits import advice
 from exudyn_ehd.joint.model.build import build_model
-from tests.sampling import sample
+from tests.sampling import covering_places
+from tests.tangents import tangent_error
 
 C, STEP = 25e-6, 1e-4
 CLOSURES = [
@@ -21,11 +23,10 @@ CLOSURES = [
 ]
 PRESSURE = [None, ehd.BarusPressure(coefficient=1e-8), ehd.RoelandsPressure(coefficient=2e-8)]
 CARREAU = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)
-# with thinning the kernels take longer to compile than these tests to run
-OILS = sample([(shear, closure) for shear in (None, CARREAU) for closure in CLOSURES], *range(4))
 DENSITY = ehd.DowsonHigginson()
 # Ten times softer than oil, so that an error in the density's share of the tangent would show.
 SOFT = ehd.DowsonHigginson(coefficient=3e-9, saturation=1.7e-9)
+OILS = list(itertools.product((None, CARREAU), CLOSURES, PRESSURE, (DENSITY, SOFT)))
 # Tilted, squeezing, sliding axially.
 MOTION = np.array([11e-6, 5e-6, 1e-4, -1.5e-4, 3e-3, -2e-3, 0.05, 0.02, 250.0, 0.3])
 UNIT = np.array([C, C, 1e-3, 1e-3, 5e-3, 5e-3, 0.2, 0.2, 300.0, 3.0])
@@ -50,33 +51,19 @@ def start(model):
     return history
 
 
-def tangent_error(model, history, step=STEP, columns=range(10)):
-    """Largest difference to fourth-order central differences, over the rows;
-    the best of several steps (rupture moves)."""
-    columns = list(columns)
-    exact = (model.evaluate(MOTION, history, step).tangent() * UNIT)[:, columns]
-    size, errors = np.abs(exact).max(axis=1, keepdims=True), []
-    for h in (1e-4, 1e-5, 1e-6, 1e-7):
-        found = []
-        for k in columns:
-            d = h * np.eye(10)[k] * UNIT
-            w = [model.evaluate(MOTION + a * d, history, step).wrench for a in (-2, -1, 1, 2)]
-            found.append((8.0 * (w[2] - w[1]) - (w[3] - w[0])) / (12.0 * h))
-        errors.append(float((np.abs(np.array(found).T - exact) / size).max()))
-    return min(errors)
-
-
-@pytest.mark.parametrize(("shear", "cavitation"), OILS, ids=lambda x: "newton" if x is None else type(x).__name__)
-@pytest.mark.parametrize("pressure", PRESSURE, ids=lambda p: type(p).__name__)
-@pytest.mark.parametrize("law", [DENSITY, SOFT], ids=["oil", "soft"])
+@pytest.mark.parametrize(
+    ("shear", "cavitation", "pressure", "law"),
+    [OILS[k] for k in covering_places(OILS)],
+    ids=lambda x: "newton" if x is None else type(x).__name__,
+)
 def test_tangent_is_exact(law, pressure, shear, cavitation):
-    """1e-6: differences of a film solved to 1e-14, over steps of 1e-4 to 1e-7."""
+    """1e-6: differences of a film solved to 1e-14, over steps of 1e-4 to 1e-7. Every pair of options."""
     if law is SOFT and isinstance(pressure, ehd.RoelandsPressure):
         pressure = ehd.RoelandsPressure(coefficient=1e-8)  # with 2e-8 no pressure of the law's range carries this film
     model = make(law, pressure, shear, cavitation)
-    assert tangent_error(model, start(model)) < 1e-6
+    assert tangent_error(model, MOTION, UNIT, start(model), STEP) < 1e-6
     if cavitation.conserves_mass:
-        assert tangent_error(model, None) < 1e-6
+        assert tangent_error(model, MOTION, UNIT, None, STEP) < 1e-6
 
 
 @pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
@@ -95,7 +82,7 @@ def test_tangent_is_exact_with_other_options(options, cavitation):
         model = make(SOFT, PRESSURE[1], cavitation=cavitation, **options)
     except ehd.InputError:
         pytest.skip("refused without a density law, too")
-    assert tangent_error(model, start(model)) < 1e-6
+    assert tangent_error(model, MOTION, UNIT, start(model), STEP) < 1e-6
 
 
 @pytest.mark.parametrize("pressure", PRESSURE[:2], ids=["constant", "barus"])
@@ -104,7 +91,7 @@ def test_rates_at_an_instant_are_exact(pressure):
     model = make(SOFT, pressure, cavitation=CLOSURES[3])
     history = start(model)
     # An instant is 1e-7 of the time in which the film changes: rounding 1e-16 / 1e-7 of the rates.
-    assert tangent_error(model, history, 0.0, range(4, 8)) < 1e-5
+    assert tangent_error(model, MOTION, UNIT, history, 0.0, columns=range(4, 8), limit=1e-5) < 1e-5
 
 
 @pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)

@@ -15,6 +15,7 @@ from exudyn_ehd.film.solvers import film as solver
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.seams import Effects
 from tests.sampling import covering
+from tests.tangents import tangent_error
 
 C = 25e-6
 WALTHER = ehd.WaltherTemperature(first=(313.15, 23e-6), second=(373.15, 5e-6))
@@ -26,6 +27,7 @@ THERMAL = [None, ehd.LumpedThermal(supply_temperature=330.0), ehd.FilmEnergy(sup
 MOTION = np.array(
     [11e-6, 5e-6, 1e-4, -1.5e-4, 3e-3, -2e-3, 0.05, 0.02, 250.0, 0.3]
 )  # tilted, squeezing, sliding axially
+UNIT = np.array([C, C, 1e-3, 1e-3, 5e-3, 5e-3, 0.2, 0.2, 300.0, 3.0])
 STEP = 1e-4
 
 
@@ -57,23 +59,6 @@ def start(model):
     return history
 
 
-def tangent_error(model, history, scales):
-    """Largest difference between tangent and fourth-order central differences,
-    relative to the rows, over several steps."""
-    unit = np.array([C, C, 1e-3, 1e-3, 5e-3, 5e-3, 0.2, 0.2, 300.0, 3.0])
-    exact = model.evaluate(MOTION, history, STEP).tangent() * unit
-    size = np.abs(exact).max(axis=1, keepdims=True)
-    errors = []
-    for h in scales:
-        columns = []
-        for k in range(10):
-            d = h * np.eye(10)[k] * unit
-            w = [model.evaluate(MOTION + a * d, history, STEP).wrench for a in (-2, -1, 1, 2)]
-            columns.append((8.0 * (w[2] - w[1]) - (w[3] - w[0])) / (12.0 * h))
-        errors.append(float((np.abs(np.array(columns).T - exact) / size).max()))
-    return min(errors)
-
-
 @pytest.mark.parametrize(
     ("pressure", "shear", "thermal", "cavitation"),
     covering(itertools.product(PRESSURE, SHEAR, THERMAL, CLOSURES)),
@@ -83,13 +68,13 @@ def test_tangent_is_exact(pressure, shear, thermal, cavitation):
     """Against central differences; several steps, because a rupture line that
     moves within one spoils the difference."""
     model = make(pressure, shear, thermal, cavitation)
-    assert tangent_error(model, start(model), (1e-4, 1e-5, 1e-6, 1e-7)) < 1e-6
+    assert tangent_error(model, MOTION, UNIT, start(model), STEP) < 1e-6
 
 
 @pytest.mark.parametrize("laws", [PRESSURE[1:2] + SHEAR[1:], PRESSURE[2:] + SHEAR[1:]], ids=["barus", "roelands"])
 def test_tangent_is_exact_where_a_wall_limits_the_gap(laws):
     model = make(*laws, contact=ehd.RegularisedWall(onset=20e-6))
-    assert tangent_error(model, None, (1e-4, 1e-5, 1e-6)) < 1e-6
+    assert tangent_error(model, MOTION, UNIT, None, STEP, sizes=(1e-5, 1e-6, 1e-4)) < 1e-6
 
 
 def constant_limit(law, amplitudes):

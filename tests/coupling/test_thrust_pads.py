@@ -12,6 +12,7 @@ from exudyn.utilities import RigidBodyInertia
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.static.thrust_pads import axial
+from tests.sampling import sample
 
 PADS = ehd.TiltingThrustPads(
     inner_radius=0.05,
@@ -128,10 +129,13 @@ def _carrier(mbs, ground):
 
 @pytest.mark.parametrize(
     ("axis", "options"),
-    (
-        ((0, 0, 1), {}),
-        ((0.4, -1.0, 0.3), {"pivot_stiffness": 3e8, "pivot_damping": 1e5}),
-        ((1, 0, 0), {"pivot_angle": 0.325, "crown": 20e-6}),
+    sample(
+        (
+            ((0, 0, 1), {}),
+            ((0.4, -1.0, 0.3), {"pivot_stiffness": 3e8, "pivot_damping": 1e5}),
+            ((1, 0, 0), {"pivot_angle": 0.325, "crown": 20e-6}),
+        ),
+        1,
     ),
 )
 def test_pads_come_to_rest_where_equilibrium_says(axis, options):

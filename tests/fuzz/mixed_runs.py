@@ -308,14 +308,14 @@ class Model:
         mbs.CreateTorque(itemNumber=crank, loadVector=[1.0, 0, 0], loadVectorUserFunction=drive)
         return joint
 
-    def run(self, cycles: float, steps: int) -> None:
-        """Integrate with the settings that the guide recommends."""
+    def run(self, cycles: float, steps: int, **options: float) -> None:
+        """Integrate with the settings that the guide recommends, or others for `ConfigureSolver`."""
         settings = exu.SimulationSettings()
         settings.timeIntegration.endTime = cycles * 2.0 * math.pi / self.rate
         settings.timeIntegration.numberOfSteps = round(cycles * steps)
         settings.timeIntegration.verboseMode = 0
         settings.solution.file.write = False
-        ehd.ConfigureSolver(settings)
+        ehd.ConfigureSolver(settings, **options)
         ehd.SolveDynamic(self.mbs, settings)
 
 
@@ -331,13 +331,13 @@ class Outcome:
     seconds: float
 
 
-def run(scene: Scene, cycles: float, *, finer: int = 1) -> Outcome:
-    """Run a scene; only the package's own errors end it."""
+def run(scene: Scene, cycles: float, *, finer: int = 1, **options: float) -> Outcome:
+    """Run a scene with options for `ConfigureSolver`; only the package's own errors end it."""
     model, error, start = Model(scene), None, time.process_time()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            model.run(cycles, finer * STEPS)
+            model.run(cycles, finer * STEPS, **options)
         except ehd.EHDError as stopped:
             error = stopped
         history = model.joint.history

@@ -202,6 +202,17 @@ def test_arguments_of_the_joint(argument, value):
         assert argument in str(error) or "outside the bore" in str(error), str(error)
 
 
+@pytest.mark.parametrize("number", [2**31 - 1, 2**31, -(10**400)])
+def test_numbers_beyond_those_of_exudyn(number):
+    import exudyn as exu
+
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    mbs.CreateGround()
+    with pytest.raises(ehd.InputError, match=r"CreateLubricatedJoint\.itemNumbers\[1\]"):
+        ehd.CreateLubricatedJoint(mbs, itemNumbers=[0, number], position=[0, 0, 0], axis=[0, 0, 1], bearing=PLAIN)
+
+
 @pytest.mark.parametrize("study", ["steady", "equilibrium", "stribeck"])
 @pytest.mark.parametrize(
     "bearing", [None, "x", ehd.SphericalBearing(ball_radius=0.015, radial_clearance=3e-5, lubricant=OIL)]

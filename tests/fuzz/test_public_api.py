@@ -80,13 +80,9 @@ GOOD = [
 ]
 _OTHERS = [c for c in specs() if c.__name__ not in OF_A_MESH | {type(good).__name__ for good in GOOD}]
 GOOD += [good for good in map(by_itself, _OTHERS) if good is not None]
-NUMBERS = st.one_of(
-    st.floats(),
-    st.sampled_from(
-        [0, -1, 1, 1e-300, 1e300, math.inf, -math.inf, math.nan, 5e-324, np.float64(0.5), np.int64(3), 10**400]
-    ),
-    st.integers(-5, 2000),
-)
+SPECIAL = [0, -1, 1, 1e-300, 1e300, math.inf, -math.inf, math.nan, 5e-324, np.float64(0.5), np.int64(3), 10**400]
+OBJECTS = [OIL, ehd.SwiftStieber, ehd.SwiftStieber(), object(), {}, np.zeros(2), np.zeros((2, 2)), 1j, b"x"]
+NUMBERS = st.one_of(st.floats(), st.sampled_from(SPECIAL), st.integers(-5, 2000))
 ANYTHING = st.one_of(
     NUMBERS,
     st.none(),
@@ -94,7 +90,7 @@ ANYTHING = st.one_of(
     st.text(max_size=5),
     st.tuples(NUMBERS, NUMBERS),
     st.lists(NUMBERS, max_size=3),
-    st.sampled_from([OIL, ehd.SwiftStieber, ehd.SwiftStieber(), object(), {}, np.zeros(2), np.zeros((2, 2)), 1j, b"x"]),
+    st.sampled_from(OBJECTS),
 )
 SETTINGS = {"deadline": None, "suppress_health_check": list(HealthCheck), "derandomize": True, "database": None}
 
@@ -144,10 +140,20 @@ def test_any_value_in_any_field(good, name, value):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("good", "name"), FIELDS)
-@settings(max_examples=300, **SETTINGS)
+@settings(max_examples=60, **SETTINGS)
 @given(value=ANYTHING)
 def test_many_values_in_any_field(good, name, value):
     check_replaced(good, name, value)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("good", GOOD, ids=lambda good: type(good).__name__)
+def test_special_values_in_any_field(good):
+    """Every special number, alone and in pairs, and every object in every field: some that draws would miss."""
+    values = [*SPECIAL, *((x, 1.0) for x in SPECIAL), *((1.0, x) for x in SPECIAL), *OBJECTS, None, True, False, "", []]
+    for field in dataclasses.fields(good):
+        for value in values:
+            check_replaced(good, field.name, value)
 
 
 def test_every_public_description_takes_part():

@@ -134,9 +134,9 @@ def test_mixed_effects(seed, tmp_path):
     made = draw(seed)
     scene = rotor(made, seed)
     balances = Balances(scene.joint)
-    history = scene.run(2.5 * CYCLE, CYCLE / 100, spectral_radius=0.6).history
+    history = scene.run(2.0 * CYCLE, CYCLE / 100, spectral_radius=0.6).history
     balances.check()
-    assert history.time[-1] == pytest.approx(2.5 * CYCLE)
+    assert history.time[-1] == pytest.approx(2.0 * CYCLE)
     assert scene.momentum_error(history) < 1e-2
     # the recorded state can be judged, drawn and stored
     assert str(scene.joint.audit())
@@ -148,11 +148,11 @@ def test_mixed_effects(seed, tmp_path):
     half.run(1.0 * CYCLE, CYCLE / 100, spectral_radius=0.6)
     ehd.SaveState(half.mbs, tmp_path / "half.npz")
     again = rotor(made, seed).run(
-        2.0 * CYCLE, CYCLE / 100, spectral_radius=0.6, restart=tmp_path / "half.npz", start=CYCLE
+        1.2 * CYCLE, CYCLE / 100, spectral_radius=0.6, restart=tmp_path / "half.npz", start=CYCLE
     )
     assert np.all(np.isfinite(again.history.force))
     first = history.between(0.0, 1.2 * CYCLE).eccentricity
-    assert np.abs(again.history.between(0.0, 1.2 * CYCLE).eccentricity[-1] - first[-1]).max() < 1e-4 * C
+    assert np.abs(again.history.eccentricity[-1] - first[-1]).max() < 1e-4 * C
 
 
 @pytest.mark.slow

@@ -60,9 +60,13 @@ def test_same_as_the_way_of_any_film(make_bearing, name):
         found, expected = model.evaluate(motion), other.evaluate(motion)
         seen.add(found.status)
         assert found.status is expected.status
-        np.testing.assert_array_equal(found.wrench, expected.wrench)
-        np.testing.assert_array_equal(found.tangent(), expected.tangent())
-        assert found.quantities() == pytest.approx(expected.quantities(), nan_ok=True, rel=1e-15, abs=0.0)
+        # the same kernels, which may round otherwise inside another
+        scale = np.abs(expected.wrench).max()
+        np.testing.assert_allclose(found.wrench, expected.wrench, rtol=1e-12, atol=1e-14 * scale)
+        tangent = expected.tangent()
+        largest = np.abs(tangent).max(axis=0, keepdims=True)
+        assert np.all(np.abs(found.tangent() - tangent) <= 1e-12 * largest)
+        assert found.quantities() == pytest.approx(expected.quantities(), nan_ok=True, rel=1e-12, abs=0.0)
     assert seen >= {Status.CONVERGED, Status.NO_FILM, Status.NOT_FINITE}
 
 

@@ -1,9 +1,6 @@
 """Compilations: one line for the user, the garbage collector at rest, kernels ahead by ``python -m exudyn_ehd``."""
 
 import gc
-import os
-import subprocess
-import sys
 import types
 
 import pytest
@@ -73,12 +70,3 @@ def test_groups_by_name(monkeypatch, capsys):
         assert asked == ["film", "elrod", "bush"]
     with pytest.raises(SystemExit, match=r"no group 'tracks'; give film, elrod, bush or all\."):
         ahead_of_time.main(["film", "tracks"])
-
-
-@pytest.mark.slow
-def test_kernels_are_compiled_once(tmp_path):
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
-    call = [sys.executable, "-m", "exudyn_ehd", "film"]
-    first, second = (subprocess.run(call, env=environment, capture_output=True, text=True, check=True) for _ in "12")
-    assert "film: all kernels are in the cache" in second.stdout and MESSAGE not in second.stderr
-    assert "kernels compiled in" in first.stdout and first.stderr.count(MESSAGE) == 1

@@ -56,13 +56,18 @@ def test_a_variable_switches_the_helper_off(monkeypatch):
 
 
 @pytest.mark.slow
-def test_first_films_with_a_helper_are_those_of_this_process(tmp_path):
+def test_kernels_are_compiled_once(tmp_path):
+    """First films with a helper are those of this process; a run ahead adds its own kernels to theirs."""
     # a second process with the first's cache has nothing to compile
     for wanted, line in ((HELPERS, f"{MESSAGE}\n"), (0, "")):
         found, force, errors = first_film(ROOT, NUMBA_CACHE_DIR=str(tmp_path), EXUDYN_EHD_HELPER="1")
         assert found == wanted and errors == line
         # arrays lie elsewhere in every process, which a vectorised sum rounds otherwise
         np.testing.assert_allclose(force, expected(), rtol=1e-12, atol=1e-9)
+    environment, call = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}, [sys.executable, "-m", "exudyn_ehd", "film"]
+    first, second = (subprocess.run(call, env=environment, capture_output=True, text=True, check=True) for _ in "12")
+    assert "kernels compiled in" in first.stdout and first.stderr.count(MESSAGE) == 1
+    assert "film: all kernels are in the cache" in second.stdout and MESSAGE not in second.stderr
 
 
 @pytest.mark.slow

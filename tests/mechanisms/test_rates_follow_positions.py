@@ -168,10 +168,10 @@ def test_other_solvers_take_the_velocities(planar_rotor):
 )
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_every_film_at_coarse_steps(closure, effects):
-    """100 against 800 steps a turn, 3.6 degrees each; the velocities alone are off by half. 6 %: what the rates leave
+    """100 against 400 steps a turn, 3.6 degrees each; the velocities alone are off by half. 6 %: what the rates leave
     at 100 steps without an effect (3 to 4 %), and liners that are of first order in their deflection."""
     bearing = pin(CLOSURES[closure], **effects)
-    assert smallest_gap(bearing, 100) == pytest.approx(smallest_gap(bearing, 800), rel=0.06)
+    assert smallest_gap(bearing, 100) == pytest.approx(smallest_gap(bearing, 400), rel=0.06)
 
 
 def alternation(planar_rotor, bearing, rho, steps=400):
@@ -235,11 +235,14 @@ def growth(planar_rotor, bearing, eq, ratio, steps):
 )
 @pytest.mark.parametrize("ratio", [0.5, 0.9, 1.1])
 def test_growth_of_whirl_does_not_depend_on_the_step(planar_rotor, cavitation, supply, tolerance, ratio):
-    """In shares of the growth with 480 steps a turn; backward Euler in the void is 5.5 % off with 60."""
+    """In shares of the growth with 240 steps a turn; backward Euler in the void is 5.5 % off with 60.
+
+    The shares are what errors of first order leave of 1 and 1/2 with an exact reference: 3/4 and 1/4.
+    """
     bearing, eq = whirling(cavitation, supply=supply)
-    found = {steps: growth(planar_rotor, bearing, eq, ratio, steps) for steps in (60, 120, 480)}
-    for steps, share in ((60, 1.0), (120, 0.5)):
-        assert found[steps] == pytest.approx(found[480], rel=share * tolerance)
+    found = {steps: growth(planar_rotor, bearing, eq, ratio, steps) for steps in (60, 120, 240)}
+    for steps, share in ((60, 0.75), (120, 0.25)):
+        assert found[steps] == pytest.approx(found[240], rel=share * tolerance)
 
 
 @pytest.mark.slow

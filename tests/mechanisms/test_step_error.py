@@ -1,6 +1,7 @@
 """Estimated errors of the time steps against runs with many more, and the number of steps that runs say would do."""
 
 import dataclasses
+import functools
 import math
 import re
 import warnings
@@ -42,18 +43,26 @@ SCENES = {
 }
 
 
-def run(name, steps, share=1.0, **options_of_run):
-    """A run of a scene, or of its first ``share``."""
+def run(name, steps, counts=None, **options_of_run):
+    """A run of a scene; ``counts`` takes the film's evaluations so far at each accepted state."""
     make, options = SCENES[name]
     if "cavitation" in options:
         speed = 50.0 * math.pi
         (mbs, joint), end = four_bar(pin(options["cavitation"], film=FILM), speed), 4.0 * math.pi / speed
     else:
         mbs, joint, end = make(**options)
+    if counts is not None:
+        joint.element.steps.observers.append(lambda trial: counts.append(joint.element.evaluations))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        ehd.SolveDynamic(mbs, settings(share * end, round(share * steps), 0.6), **options_of_run)
+        ehd.SolveDynamic(mbs, settings(end, steps, 0.6), **options_of_run)
     return joint
+
+
+@functools.cache
+def reference(name):
+    """History of a scene with many steps, of several tests."""
+    return run(name, 2016 if "big end" in name else 1600).history
 
 
 def true_error(history, reference, start=0.0):
@@ -133,14 +142,13 @@ def test_estimates_are_within_three_of_the_error_and_their_advice_does(name, ste
     Errors count from the first state with an estimate on: of the orbit the first step has a larger one, which is gone
     in the second.
     """
-    reference = run(name, max(4 * steps[-1], 2016 if "liner" in name else 1600)).history
     for number in steps:
         joint = run(name, number)
-        error = true_error(joint.history, reference, start=joint.history.time[FIRST])
+        error = true_error(joint.history, reference(name), start=joint.history.time[FIRST])
         assert 1 / 3 < np.nanmax(joint.history.step_error) / error < 3.0, number
         told = told_steps(joint)
         if told is not None:
-            assert true_error(run(name, told).history, reference) < 0.05, told
+            assert true_error(run(name, told).history, reference(name)) < 0.05, told
 
 
 @pytest.mark.slow
@@ -158,10 +166,9 @@ def test_steps_by_their_error(name, usual, fixed, most):
 
     Those hold 5 and 2 % with every larger number of steps, too.
     """
-    reference = run(name, 16 * usual).history
     for error, steps in zip((0.05, 0.02), fixed, strict=True):
         joint, best = run(name, usual, stepControl=ehd.StepControl(error=error)), run(name, steps)
-        assert true_error(joint.history, reference) < 1.33 * error
+        assert true_error(joint.history, reference(name)) < 1.33 * error
         assert joint.element.evaluations < most * best.element.evaluations
 
 
@@ -197,13 +204,13 @@ def test_steps_by_their_error_in_a_settled_cycle(name, usual, fixed):
     """Cycles without a start-up, in which equal steps are better: their errors cancel, those of other steps less so."""
 
     def late(steps, **options):
-        joint, first = run(name, steps, **options), run(name, steps, share=0.5, **options)
-        return joint.history, joint.element.evaluations - first.element.evaluations
+        counts = []
+        history = run(name, steps, counts, **options).history
+        return history, counts[-1] - counts[np.searchsorted(history.time, 0.5 * history.time[-1])]
 
-    reference = run(name, 16 * usual).history
     for error, steps in zip((0.05, 0.02), fixed, strict=True):
         _, best = late(steps)
         for guess in (usual // 2, usual, 2 * usual):
             history, found = late(2 * (guess // 2), stepControl=ehd.StepControl(error=error))
-            assert true_error(history, reference, 0.5 * history.time[-1]) < 1.33 * error
+            assert true_error(history, reference(name), 0.5 * history.time[-1]) < 1.33 * error
             assert found < 1.6 * best

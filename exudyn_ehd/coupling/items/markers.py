@@ -311,7 +311,10 @@ def resolve(mbs: exu.MainSystem, where: str, number: object) -> Item:
             return marker_item(mbs, where, number)
         if isinstance(number, NodeIndex):
             return node_item(mbs, where, number)
-        if isinstance(number, ObjectIndex) or (isinstance(number, int) and not isinstance(number, bool)):
+        # Exudyn's numbers have 32 bits
+        if isinstance(number, ObjectIndex) or (
+            isinstance(number, int) and not isinstance(number, bool) and number.bit_length() < 32
+        ):
             return body_item(mbs, where, ObjectIndex(int(number)))
     except exu.ExudynError as error:
         raise InputError(f"{where} is not an item of this system: {number!r} ({error}).") from None

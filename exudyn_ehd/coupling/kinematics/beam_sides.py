@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import exudyn as exu
 import numpy as np
+import scipy
 from numba import njit
-from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever, column, combined, cross, dot
@@ -143,8 +143,8 @@ class BeamSide(Side):
     def section(self) -> np.ndarray:
         """Rotation (3, 3) of the cross section in the state of the last update."""
         first, second = (end.frame[:, :3] for end in self.ends)
-        turn = Rotation.from_matrix(first.T @ second).as_rotvec()
-        return first @ Rotation.from_rotvec(self.weights[1] * turn).as_matrix()
+        turn = scipy.spatial.transform.Rotation.from_matrix(first.T @ second).as_rotvec()
+        return first @ scipy.spatial.transform.Rotation.from_rotvec(self.weights[1] * turn).as_matrix()
 
     def update(
         self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None

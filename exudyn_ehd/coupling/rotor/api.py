@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import exudyn as exu
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, ObjectIndex, require_system
 from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
@@ -211,7 +211,7 @@ def _threshold(search: EquilibriumSearch, low: float, high: float) -> RotorResul
         return _result(search, [search.at(low)])
     for before, speed in pairwise(np.geomspace(low, high, SCAN).tolist()):
         if growth(speed) >= 0.0:
-            return _result(search, [search.at(float(brentq(growth, before, speed, rtol=1e-9)))])
+            return _result(search, [search.at(float(scipy.optimize.brentq(growth, before, speed, rtol=1e-9)))])
     return None
 
 

@@ -18,7 +18,7 @@ from typing import ClassVar
 
 import exudyn as exu
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+import scipy
 
 from exudyn_ehd.coupling.kinematics.relative import JOURNAL
 from exudyn_ehd.coupling.record.history import JointHistory
@@ -218,7 +218,7 @@ def _change(history: JointHistory, begin: float, end: float, period: float) -> f
     if last.time.size < 2:
         return math.inf
     before = np.maximum(last.time - period, history.time[0])
-    orbit = CubicHermiteSpline(history.time, history.motion[:, :4], history.motion[:, 4:8])
+    orbit = scipy.interpolate.CubicHermiteSpline(history.time, history.motion[:, :4], history.motion[:, 4:8])
     moved = last.motion[:, :4] - orbit(before)
     half = 0.5 * history.length
     ends = [np.hypot(*(moved[:, :2] + side * moved[:, 2:]).T) for side in (-half, half)]

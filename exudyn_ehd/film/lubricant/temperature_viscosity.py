@@ -14,7 +14,7 @@ from functools import cached_property, partial
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+import scipy
 
 from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_vector
 
@@ -225,16 +225,16 @@ class TableViscosity(Checked):
         return self.temperatures[0], self.temperatures[-1]
 
     @cached_property
-    def curve(self) -> CubicHermiteSpline:
+    def curve(self) -> scipy.interpolate.CubicHermiteSpline:
         """Double logarithm of the viscosity over the logarithm of the temperature; straight beyond both ends.
 
         Searches for a film's temperature pass through such states; results are within the ends.
         """
         x, y = np.log(self.temperatures), np.log(np.log(np.array(self.viscosities) / TABLE_UNIT))
-        slopes = PchipInterpolator(x, y)(x, 1)
+        slopes = scipy.interpolate.PchipInterpolator(x, y)(x, 1)
         first, last = slopes[0], slopes[-1]
         wide, values = (x[0] - 1.0, *x, x[-1] + 1.0), (y[0] - first, *y, y[-1] + last)
-        return CubicHermiteSpline(wide, values, (first, *slopes, last))
+        return scipy.interpolate.CubicHermiteSpline(wide, values, (first, *slopes, last))
 
     def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
         """Dynamic viscosity, Pa s, at temperatures in K; the density does not matter."""

@@ -29,8 +29,8 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
+import scipy
 from numba import njit
-from scipy.interpolate import CubicSpline
 
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.grid import STRETCH, bearing_grid
@@ -153,14 +153,14 @@ def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.n
     nodes = np.empty((s.size, alpha.size, 8))
     first = (np.cos(alpha), np.sin(alpha))
     for k, (field, ends) in enumerate(((m, "clamped"), (g, "natural"))):
-        field_s = CubicSpline(s, field, axis=0)(s, 1)
+        field_s = scipy.interpolate.CubicSpline(s, field, axis=0)(s, 1)
         # Next to the centre the fields are linear in (x, y): a multiple of cos alpha, or of sin alpha.
         wave = first[k]
         field_s[0] = wave * (field_s[0] @ wave) / (wave @ wave)
         nodes[..., 4 * k] = field
         nodes[..., 4 * k + 1] = field_s
-        nodes[..., 4 * k + 2] = CubicSpline(alpha, field, axis=1, bc_type=ends)(alpha, 1)
-        nodes[..., 4 * k + 3] = CubicSpline(alpha, field_s, axis=1, bc_type=ends)(alpha, 1)
+        nodes[..., 4 * k + 2] = scipy.interpolate.CubicSpline(alpha, field, axis=1, bc_type=ends)(alpha, 1)
+        nodes[..., 4 * k + 3] = scipy.interpolate.CubicSpline(alpha, field_s, axis=1, bc_type=ends)(alpha, 1)
     return nodes
 
 

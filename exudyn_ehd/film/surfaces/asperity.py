@@ -40,8 +40,8 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
+import scipy
 from numba import njit
-from scipy.special import gamma, ndtr, pbdv
 
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
@@ -78,7 +78,7 @@ class AverageGap(GapLimiter):
 def average_gap_ratio(x: np.ndarray, residual: float) -> np.ndarray:
     """h_T / sigma for x = h / sigma."""
     y = np.asarray(x, dtype=float) - residual
-    return residual + y * ndtr(y) + np.exp(-0.5 * y * y) * _INVERSE_ROOT_2_PI
+    return residual + y * scipy.special.ndtr(y) + np.exp(-0.5 * y * y) * _INVERSE_ROOT_2_PI
 
 
 @njit(cache=True)
@@ -209,7 +209,12 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
 def greenwood_tripp_integral(order: float, u: np.ndarray | float) -> np.ndarray:
     """F_order(u) from the parabolic cylinder function; good to about 1e-12 for u within -8 and 8."""
     u = np.asarray(u, dtype=float)
-    return gamma(order + 1.0) / math.sqrt(2.0 * math.pi) * np.exp(-0.25 * u * u) * pbdv(-order - 1.0, u)[0]
+    return (
+        scipy.special.gamma(order + 1.0)
+        / math.sqrt(2.0 * math.pi)
+        * np.exp(-0.25 * u * u)
+        * scipy.special.pbdv(-order - 1.0, u)[0]
+    )
 
 
 @functools.cache

@@ -72,8 +72,8 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
+import scipy
 from numba import njit
-from scipy.interpolate import CubicSpline
 
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.surfaces.asperity import ROUGHNESS, average_gap_ratio
@@ -203,7 +203,7 @@ def _continued(log_value: np.ndarray, s: np.ndarray, start: int, blend: float) -
 def _table(y: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Cubic spline through values(y) as (k, 4) coefficients of the powers of u = (y - y_k) / step."""
     step = y[1] - y[0]
-    return np.ascontiguousarray(CubicSpline(y, values).c[::-1].T * step ** np.arange(4))
+    return np.ascontiguousarray(scipy.interpolate.CubicSpline(y, values).c[::-1].T * step ** np.arange(4))
 
 
 @functools.cache

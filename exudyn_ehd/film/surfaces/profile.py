@@ -17,7 +17,7 @@ from functools import partial
 from typing import ClassVar
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.status import (
@@ -175,7 +175,7 @@ class AxialProfile:
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
         """Addition to the gap; see `OutOfRound.depth`."""
         at = np.asarray(self.positions, dtype=float)
-        line = PchipInterpolator(at, np.asarray(self.depths, dtype=float))(np.clip(z, at[0], at[-1]))
+        line = scipy.interpolate.PchipInterpolator(at, np.asarray(self.depths, dtype=float))(np.clip(z, at[0], at[-1]))
         return np.outer(np.ones(theta.size), line)
 
 
@@ -226,11 +226,11 @@ class ProfileTable:
         """Addition to the gap; see `OutOfRound.depth`."""
         at, turn = np.asarray(self.angles, dtype=float), 2.0 * math.pi
         along, d = np.asarray(self.positions, dtype=float), np.asarray(self.depths, dtype=float)
-        rows = PchipInterpolator(along, d, axis=1)(np.clip(z, along[0], along[-1]))
+        rows = scipy.interpolate.PchipInterpolator(along, d, axis=1)(np.clip(z, along[0], along[-1]))
         # slopes depend on the next points alone: one more at the beginning and two at the end close the ring
         around = at - at[0]
         wide = np.concatenate((around[-1:] - turn, around, around[:2] + turn))
-        ring = PchipInterpolator(wide, np.concatenate((rows[-1:], rows, rows[:2])))
+        ring = scipy.interpolate.PchipInterpolator(wide, np.concatenate((rows[-1:], rows, rows[:2])))
         return np.asarray(ring(np.mod(theta - at[0], turn)))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from scipy.special import lambertw
+import scipy
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import ElrodAdams, SwiftStieber
@@ -135,7 +135,7 @@ def warmer(rise: float, coefficient: float) -> Switch:
 
     The heat is proportional to the viscosity: coefficient r = coefficient rise exp(-coefficient r).
     """
-    return partial(_thinner, math.exp(-float(lambertw(coefficient * rise).real)))
+    return partial(_thinner, math.exp(-float(scipy.special.lambertw(coefficient * rise).real)))
 
 
 def _thinner(factor: float, bearing: JournalBearing) -> JournalBearing:

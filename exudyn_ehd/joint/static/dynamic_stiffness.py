@@ -29,8 +29,8 @@ from collections.abc import Callable
 from typing import NamedTuple, cast
 
 import numpy as np
+import scipy
 from scipy.linalg import block_diag
-from scipy.optimize import brentq
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
@@ -309,7 +309,7 @@ def threshold(stiffness: Callable[[float], np.ndarray], omega: float, rates: np.
         nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(FASTEST / SLOWEST)))
     imag, found = np.array([values(frequency).imag for frequency in nu]), []
     for k, q in np.argwhere(np.diff(np.sign(imag), axis=0)):
-        frequency = brentq(lambda nu, q=q: values(nu)[q].imag, nu[k], nu[k + 1], rtol=1e-9)
+        frequency = scipy.optimize.brentq(lambda nu, q=q: values(nu)[q].imag, nu[k], nu[k + 1], rtol=1e-9)
         real = float(values(frequency)[q].real)
         if real > 0.0:
             found.append((real / frequency**2, frequency / omega))

@@ -90,11 +90,11 @@ def test_free_journal_runs_over_load_periods_and_newton_costs_what_it_does_on_a_
     for bush in (None, BEARING.bush):
         bearing = dataclasses.replace(BEARING, bush=bush, cavitation=CLOSURES[closure])
         mbs, joint, _, _ = scene(bearing)
-        cost = run(mbs, 400)
-        results[bush is None] = cost.newtonStepsCount / 400, joint.history
+        cost = run(mbs, 300)
+        results[bush is None] = cost.newtonStepsCount / 300, joint.history
     assert abs(results[False][0] - results[True][0]) < 1.0
     rigid, elastic = results[True][1], results[False][1]
-    assert len(elastic.time) == 401
+    assert len(elastic.time) == 301
     assert np.all(elastic.minimum_gap > 0.0)
     # the flexible bore lowers the peak (by 3 to 6 % here) and lets the journal go further
     assert 0.85 < elastic.peak_pressure[100:].max() / rigid.peak_pressure[100:].max() < 0.99

@@ -24,7 +24,7 @@ from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.items.objects import as_sparse
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 
-SPEED, LOAD, PERIODS = 314.0, 4000.0, 3
+SPEED, LOAD, PERIODS = 314.0, 4000.0, 2
 PERIOD = 2.0 * np.pi / SPEED
 JOURNAL = InertiaCylinder(7800, 0.15, 0.03, 2)
 BUSH = ehd.ANCFBush(mesh=RING, material=STEEL)

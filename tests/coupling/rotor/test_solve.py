@@ -19,6 +19,7 @@ from rigid_rotors import (
 )
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 SPEED = 300.0
 
@@ -117,7 +118,7 @@ def unstable_motions(result):
     return len(M) - (angles[-1] - angles[0]) / np.pi
 
 
-@pytest.mark.parametrize(("mass", "speed"), [(20.0, 300.0), (200.0, 300.0), (4000.0, 600.0)])
+@pytest.mark.parametrize(("mass", "speed"), sample([(20.0, 300.0), (200.0, 300.0), (4000.0, 600.0)], 1))
 @pytest.mark.parametrize("name", ["oil content", "liner", "oil content, liner"])
 def test_no_vibration_in_films_that_remember_is_missed(name, mass, speed):
     """Nyquist counts the unstable ones, and no vibration stands twice, in a rotor that is not symmetric."""
@@ -246,10 +247,11 @@ def test_what_a_run_does_under_unbalance_is_foretold(speed, options):
     mbs, body, _ = shaft(place=0.05, film=film)
     result = ehd.SolveEquilibrium(mbs, speed)
     unbalance = 0.002 * CLEARANCE * result.stiffness[0, 0, 0, 0] / speed**2
-    # films begin flooded, which takes some turns to fade away, with and without an unbalance; memories are integrated
-    # with errors of first order in the step
+    # films with a memory begin flooded, which takes some turns to fade away, with and without an unbalance; memories
+    # are integrated with errors of first order in the step
     turns, steps = {"cavitation": (24, 120), "bush": (12, 240)}.get(next(iter(options), ""), (12, 80))
-    measured, rest = (amplitudes_of_a_run(result, film, speed, size, steps, turns) for size in (unbalance, 0.0))
+    measured = amplitudes_of_a_run(result, film, speed, unbalance, steps, turns)
+    rest = amplitudes_of_a_run(result, film, speed, 0.0, steps, turns) if options else 0.0
     foretold = result.unbalance_response({body: unbalance}).films[0]
     assert np.all(np.abs(measured - rest - foretold).max(axis=1) < 0.01 * np.abs(foretold).max(axis=1))
 

@@ -118,13 +118,15 @@ def test_tangent_is_exact_in_a_moving_film():
         at = orbit((run.count + 1) * run.step)
         exact = run.model.evaluate(at, run.history, run.step).tangent() * unit
         errors = []
-        for h in (1e-5, 1e-6, 1e-7):
+        for h in (1e-6, 1e-7, 1e-5):
             found = np.empty((6, 10))
             for k in range(10):
                 d = h * unit * np.eye(10)[k]
                 up, down = (run.model.evaluate(at + s * d, run.history, run.step).wrench for s in (1.0, -1.0))
                 found[:, k] = (up - down) / (2.0 * h)
             errors.append(np.abs(found - exact)[:, :9].max() / np.abs(exact).max())
+            if errors[-1] < 1e-6:
+                break
         assert min(errors) < 1e-6
 
 

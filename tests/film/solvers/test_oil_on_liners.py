@@ -72,7 +72,7 @@ SCENES = {
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES)
 def test_stiffness_and_damping_are_of_second_order(measured, scene):
-    """Against 1536 columns, behind a groove, for any place of the line in its cell; on vertices they are of the first.
+    """Against 768 columns, behind a groove, for any place of the line in its cell; on vertices they are of the first.
 
     Without the gap that a soft liner opens in front of the line, stiffness is 3 % off on 96 columns.
     """
@@ -82,7 +82,7 @@ def test_stiffness_and_damping_are_of_second_order(measured, scene):
     for a in np.random.default_rng(3).uniform(-0.4, 0.4, 4):
         motion = np.zeros(10)
         motion[:2], motion[8] = eccentricity * C * np.array([np.cos(a), np.sin(a)]), SPEED
-        fine = _evaluate(motion, (1536, 8), supply=groove, **options)[1][:2, [0, 1, 4, 5]]
+        fine = _evaluate(motion, (768, 8), supply=groove, **options)[1][:2, [0, 1, 4, 5]]
         for n, in_cells in ((48, True), (96, True), (192, True), (96, False)):
             found = _evaluate(motion, (n, 8), in_cells=in_cells, supply=groove, **options)[1][:2, [0, 1, 4, 5]]
             off = [np.abs(found - fine)[:, at].max() / np.abs(fine[:, at]).max() for at in ([0, 1], [2, 3])]

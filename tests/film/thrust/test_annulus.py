@@ -44,9 +44,10 @@ def _found(faces, motion):
 
 
 def _errors(faces, motion):
+    """Relative errors against a grid three times as fine, which has a ninth of an error of second order left."""
     n_theta, n_r, _ = face_grid(faces)
-    fine = dataclasses.replace(faces, n_theta=4 * n_theta, n_r=4 * n_r)
-    return np.abs(_found(faces, motion) / _found(fine, motion) - 1.0)
+    fine = dataclasses.replace(faces, n_theta=3 * n_theta, n_r=3 * n_r)
+    return 9.0 / 8.0 * np.abs(_found(faces, motion) / _found(fine, motion) - 1.0)
 
 
 # as the table of `ThrustFaces` states them

@@ -70,7 +70,7 @@ FLIPS = {
 }
 
 
-@pytest.mark.parametrize("effect", but_slow(FLIPS, "contact", "grid around", "grid along"))
+@pytest.mark.parametrize("effect", but_slow(FLIPS, "contact", "grid around", "grid along", "misalignment"))
 def test_findings_flip_with_the_position(effect):
     calm, hard = (audit(bearing(), **where) for where in FLIPS[effect])
     assert not calm[effect].matters and hard[effect].matters
@@ -467,6 +467,7 @@ def test_inertia_of_a_flow_that_swings_between_plates():
         assert pressure == pytest.approx(1.0 + 0.1j * reynolds, abs=2e-3 * reynolds**2)
 
 
+@pytest.mark.slow
 def test_dampers_have_the_inertia_of_their_squeeze():
     """Whirls and vibrations of any ellipse, with any spin: at an instant, and over a run."""
     rng = np.random.default_rng(3)

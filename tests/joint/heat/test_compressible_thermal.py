@@ -15,6 +15,7 @@ from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
+from tests.tangents import tangent_error
 
 R, L, C = 0.025, 0.05, 25e-6
 SUPPLY, OMEGA, STEP = 320.0, 300.0, 1e-4
@@ -215,16 +216,7 @@ def test_tangent_is_exact(thermal, cavitation, pressure_law):
     history, _ = run(model)
     warm = 15.0 + 5.0 * np.sin(model.grid.x)[:, None] * np.cos(model.grid.z)[None, :]
     history = dataclasses.replace(history, temperature=SUPPLY + (warm if thermal is FIELD else 15.0))
-    exact = model.evaluate(MOTION, history, STEP).tangent() * UNIT
-    size, errors = np.abs(exact).max(axis=1, keepdims=True), []
-    for h in (1e-4, 1e-5, 1e-6, 1e-7):
-        found = []
-        for k in range(10):
-            d = h * np.eye(10)[k] * UNIT
-            w = [model.evaluate(MOTION + a * d, history, STEP).wrench for a in (-2, -1, 1, 2)]
-            found.append((8.0 * (w[2] - w[1]) - (w[3] - w[0])) / (12.0 * h))
-        errors.append(float((np.abs(np.array(found).T - exact) / size).max()))
-    assert min(errors) < 1e-6
+    assert tangent_error(model, MOTION, UNIT, history, STEP) < 1e-6
 
 
 @CLOSURE

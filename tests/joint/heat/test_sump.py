@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from tests.sampling import sample
 
 AMBIENT = 290.0
 OIL = ehd.oil("ISO VG 46")
@@ -33,8 +35,9 @@ HEAT = {
 }
 
 
-@pytest.mark.parametrize("options", ({}, GROOVE, {"inlet": ehd.MaximumGap()}), ids=("flooded", "groove", "line"))
-@pytest.mark.parametrize("kind", HEAT)
+@pytest.mark.parametrize(
+    ("kind", "options"), sample(itertools.product(HEAT, ({}, GROOVE, {"inlet": ehd.MaximumGap()})), 0, 2, 4, 6, 11)
+)
 def test_sump_gives_off_what_the_oil_brings(make_bearing, kind, options):
     """The film is that of a supply with the sump's temperature, from weak cooling to a sump at the ambient."""
     for conductance in (0.5, 8.0, 1e4) if kind in ("lumped", "field") else (8.0,):
@@ -158,6 +161,7 @@ def test_oil_of_constant_viscosity_carries_its_temperature_along(make_bearing, k
     assert film.heat_by_oil + film.heat_to_walls == pytest.approx(film.power_loss, rel=3e-3)
 
 
+@pytest.mark.slow
 def test_audit_counts_a_constant_viscosity_as_no_heating(make_bearing):
     """It advises a law of the temperature, and keeps the bearing's way of heating."""
     thermal = ehd.LumpedThermal(supply_temperature=313.15, housing_conductance=3.0)

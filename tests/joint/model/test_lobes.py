@@ -17,6 +17,7 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.pictures.maps import on_picture
 from exudyn_ehd.pictures.vtk import film_mesh
 from tests.reference.arc_film import arc_film
+from tests.sampling import sample
 
 R, C, MU = 0.025, 25e-6, 0.02
 OIL, HOT = ehd.Lubricant(viscosity=MU), ehd.oil("ISO VG 46")
@@ -58,7 +59,7 @@ def reference(arcs, motion, length=R, shape=(161, 51)):
     return sum(f for f, _, _ in films), sum(t for _, t, _ in films), max(p for _, _, p in films)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", sample(range(10), 0, 1, 2))
 def test_lobes_against_an_independent_solution(seed):
     """Force within 0.5 %, torque within 0.1 %, peak within 1 %."""
     arcs, length, motion = random_scene(np.random.default_rng((3, seed)))
@@ -70,7 +71,7 @@ def test_lobes_against_an_independent_solution(seed):
     assert q["peak_pressure"] == pytest.approx(peak, rel=1e-2)
 
 
-@pytest.mark.parametrize("depth", [0.5 * C, 3.0 * C])
+@pytest.mark.parametrize("depth", sample([0.5 * C, 3.0 * C], 1))
 def test_a_dam_against_an_independent_solution(depth):
     """Force within 0.5 %, torque and peak within 1 % of the reference, which is extrapolated from two grids."""
     arc = ehd.Arc(start=0.2, extent=2.8, dam=ehd.Dam(depth=depth, length=0.03, extent=2.1))
@@ -311,7 +312,7 @@ def run(mbs, end, steps):
     ehd.SolveDynamic(mbs, settings)
 
 
-@pytest.mark.parametrize("arcs", [ehd.two_lobe(preload=0.5), DAM], ids=["lobes", "dam"])
+@pytest.mark.parametrize("arcs", sample(map(pytest.param, (ehd.two_lobe(preload=0.5), DAM)), 0), ids=["lobes", "dam"])
 def test_a_rotor_in_exudyn_comes_to_rest(arcs):
     """Its position is that of `equilibrium`, within 0.5 % of the clearance; the renderer leaves the grooves out."""
     bearing = bearing_of(arcs)

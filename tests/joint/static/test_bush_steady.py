@@ -88,7 +88,7 @@ def test_uniform_pressure_opens_the_bore_as_lame_says_and_leaves_no_force(make):
         assert np.abs(film.bore.load.reshape(-1, 2).sum(axis=0)).max() < 1e-9 * p * 2 * a * 0.066
 
 
-@pytest.mark.parametrize("n_z", sample([8, 24], 1))
+@pytest.mark.parametrize("n_z", sample([8, 24], 0))
 def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(n_z):
     """Against the mesh under consistent nodal forces of the same pressure.
 
@@ -161,6 +161,7 @@ def test_flexibility_widens_the_film_and_lowers_the_peak():
     assert peaks[3] == pytest.approx(12.1e6, rel=0.02)
 
 
+@pytest.mark.slow
 def test_an_aligned_film_deforms_the_bore_symmetrically():
     film = solve(modal())
     d = film.bore_displacement

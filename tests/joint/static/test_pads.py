@@ -132,6 +132,7 @@ def test_unloaded_pads_are_reported():
         ehd.equilibrium(pads, speed=SPEED, load=(0.0, -1.0))
 
 
+@pytest.mark.slow
 def test_a_pad_that_would_carry_too_little_is_tipped_over():
     """On flexible pivots the upper pad carries 96 N, and less at no position: under more load it is unloaded."""
     pads = dataclasses.replace(PADS, pivot_stiffness=3e8, film=ehd.FiniteLength(n_theta=64, n_z=6))

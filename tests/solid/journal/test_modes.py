@@ -11,7 +11,7 @@ from exudyn_ehd.solid.journal import modes
 from exudyn_ehd.solid.journal.harmonics import Cylinder
 from exudyn_ehd.solid.journal.modes import _Reduction, journal_modes
 from tests.reference.elastic_rings import cylinder_yielding
-from tests.sampling import sample
+from tests.sampling import covering_places, sample
 
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 RADIUS, LENGTH = 0.011, 0.022
@@ -50,6 +50,7 @@ def test_elements_through_a_solid_pin_yield_as_closed_forms_do(tolerance, measur
 
 
 FILMS, ANGLES, BEYOND = 200, 256, (2, 4, 6, 8, 10)
+PINS = list(itertools.product(HELD, (0.0, 0.005), (0.1, 0.05)))
 
 
 def random_film(rng, theta, zeta):
@@ -78,17 +79,7 @@ def square(weight, values):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("held", "inner", "tolerance"),
-    [
-        ("ends", 0.0, 0.1),
-        *(
-            pytest.param(held, inner, tolerance, marks=pytest.mark.slow)
-            for held, inner, tolerance in itertools.product(HELD, (0.0, 0.005), (0.1, 0.05))
-            if (held, inner, tolerance) != ("ends", 0.0, 0.1)
-        ),
-    ],
-)
+@pytest.mark.parametrize(("held", "inner", "tolerance"), [PINS[k] for k in covering_places(PINS)])
 def test_told_error_is_that_of_the_elements_under_films(held, inner, tolerance):
     """The told error against the elements', over |v| max(|v| / |u|, 0.05) of `exudyn_ehd.solid.pressure_modes`.
 
