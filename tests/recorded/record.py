@@ -52,7 +52,8 @@ QUANTITIES = (
     "stored_power",
     "supply_flow",
 )
-FIELDS = tuple(f.name for f in dataclasses.fields(History))
+# of a film's memory; no bearing here has pockets behind restrictors, or a sump
+FIELDS = tuple(f.name for f in dataclasses.fields(History) if f.name not in ("pockets", "sump"))
 LOADS = tuple(f"force {x}" for x in "xyz") + tuple(f"moment {x}" for x in "xyz") + ("load 1", "load 2")
 COLUMNS = (
     ("status",)

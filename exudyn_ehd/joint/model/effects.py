@@ -78,7 +78,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     grid = grid_of(bearing, start_angle, open_ring)
     supply = _supply_map(bearing, grid)
     grid = grid if supply is None else supply.grid
-    mixing = [*mixing_grooves(grid), *([] if supply is None else supply.masks)]
+    mixing = [*(mixing_grooves(grid) if bearing.bore_arcs else ()), *(() if supply is None else supply.masks)]
     touching: list[Contact] = list(effects.contacts)
     if supply is not None:
         touching = [LandContact(contact, supply.land) for contact in effects.contacts]
