@@ -192,6 +192,32 @@ def test_an_unloaded_pad_rests_on_its_leading_edge_in_contact():
     assert joint.pads[2].history.minimum_gap[-1] == pytest.approx(last.minimum_gaps[2], rel=0.02)
 
 
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::exudyn_ehd.RingingWarning", "ignore::exudyn_ehd.GridWarning")
+def test_pads_without_preload_flutter_at_about_half_the_spin():
+    """Under a turning load the pads beside the loaded one flutter (M. L. Adams, S. Payandeh, J. Lubrication Technology
+    105 (1983) 377), and slap on the shaft; with preload they follow it at its own frequency."""
+    shares, turning = [], 2500.0
+    for preload in (0.0, 0.5):
+        contact = ehd.RegularisedWall(onset=2e-6)
+        pads = dataclasses.replace(PADS, preload=preload, contact=contact, first_pivot=-0.5 * np.pi)
+        mbs, joint = scene(pads, load=(0.0, -6000.0))
+        joint.place_in_equilibrium(load=(0.0, -5990.0))
+
+        def unbalance(mbs, t, load):
+            return [turning * np.cos(SPEED * t), turning * np.sin(SPEED * t), 0.0]
+
+        mbs.CreateForce(itemNumber=exu.ObjectIndex(0), loadVector=[1.0, 0.0, 0.0], loadVectorUserFunction=unbalance)
+        mbs.Assemble()
+        run(mbs, 0.4, 1600)
+        gap = joint.pads[1].history.minimum_gap[800:]
+        size = np.abs(np.fft.rfft((gap - gap.mean()) * np.hanning(gap.size)))
+        over_spin = np.fft.rfftfreq(gap.size, 0.4 / 1600) * 2.0 * np.pi / SPEED
+        low, own = (size[(over_spin > a) & (over_spin < b)].max() for a, b in ((0.3, 0.7), (0.9, 1.1)))
+        shares.append(low / own)
+    assert shares[0] > 0.5 and shares[1] < 0.05, shares
+
+
 def test_weight_of_the_pads_goes_through_the_pivots():
     """Pads have their centres of mass in their pivots: their weight loads the housing alone."""
     histories = []
