@@ -20,12 +20,18 @@ _0, _1 = np.int64(0), np.int64(1)
 
 
 @njit(cache=True)
-def _of_axis(flux, axis):
-    """Return g, dg/dh, dg/dvx, c and dc/dh of the links in theta (0) or z (1), flat; None for a plain film."""
+def _along(flux):
+    """Return g, dg/dh, dg/dvx, c and dc/dh of the links in theta; None for a plain film."""
     if flux is None:
         return None, None, None, None, None
-    if axis == 0:
-        return flux.gx, flux.gx_h, flux.gx_v, flux.cx, flux.cx_h
+    return flux.gx, flux.gx_h, flux.gx_v, flux.cx, flux.cx_h
+
+
+@njit(cache=True)
+def _across(flux):
+    """Return those of the links in z."""
+    if flux is None:
+        return None, None, None, None, None
     return flux.gz, flux.gz_h, flux.gz_v, flux.cz, flux.cz_h
 
 
@@ -104,13 +110,13 @@ def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
     """
     m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
     last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
-    g, g_h, _, _, c_h = _of_axis(flux, 0)
+    g, g_h, _, _, c_h = _along(flux)
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
         at, law = h_x[start:stop], (part(g, start, stop), part(g_h, start, stop))
         leans, out = both(E, start, stop, there, end), (by[0, start:stop], by[1, start:stop])
         _pressure_flow(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, *law, *out)
     _add_couette_flow(vx, by_metric[2], part(c_h, _0, size), up[0], by[0])
-    g, g_h, _, _, c_h = _of_axis(flux, 1)
+    g, g_h, _, _, c_h = _across(flux)
     law, leans = (part(g, _0, e), part(g_h, _0, e)), both(E, _0, e, _1, size)
     _pressure_flow(p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
     _add_couette_flow(vz, by_metric[3], part(c_h, _0, size), up[1], by[2])
@@ -124,12 +130,12 @@ def speed_derivatives(P, H, HF, E, up, flux, metric, by):
     `gap_derivatives`."""
     m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
     last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
-    _, _, g_v, carrier, _ = _of_axis(flux, 0)
+    _, _, g_v, carrier, _ = _along(flux)
     _own_speed(by_metric[2], part(carrier, _0, size), h_x, h_x, up[0], by[0])
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
         at, leans, slower = h_x[start:stop], both(E, start, stop, there, end), part(g_v, start, stop)
         _other_speed(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, slower, by[0, start:stop])
-    _, _, g_v, carrier, _ = _of_axis(flux, 1)
+    _, _, g_v, carrier, _ = _across(flux)
     _own_speed(by_metric[3, :e], part(carrier, _0, e), h[:e], h[1:], up[1, :e], by[1, :e])
     for c in range(size):
         by[2, c] = 0.0

@@ -222,14 +222,6 @@ def _set_along(h_a, h_b, g, carrier, metric, width, v, k_out, f_out):
 
 
 @njit(cache=True)
-def _flow_along(flow, axis):
-    """Return conductances and carriers of the links in theta (0) or z (1), flat; None for a plain film."""
-    if flow is None:
-        return None, None
-    return flow[axis].reshape(-1), flow[2 + axis].reshape(-1)
-
-
-@njit(cache=True)
 def set_links(H, HF, flow, metric, vx, vz, terms):
     """Conductances and Couette flows of the links into ``terms``, the first four fields (n, m) of a `FilmTerms`.
 
@@ -237,10 +229,14 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
     """
     e, h, h_x = H.size - 1, H.reshape(-1), HF.reshape(-1)
     by, out = metric.reshape(4, H.size), terms.reshape(len(terms), H.size)
-    g, carrier = _flow_along(flow, 0)
-    _set_along(h_x, h_x, g, carrier, by[0], by[2], vx, out[0], out[2])
-    g, carrier = _flow_along(flow, 1)
-    _set_along(h[:e], h[1:], g, carrier, by[1, :e], by[3, :e], vz, out[1, :e], out[3, :e])
+    if flow is None:
+        _set_along(h_x, h_x, None, None, by[0], by[2], vx, out[0], out[2])
+        _set_along(h[:e], h[1:], None, None, by[1, :e], by[3, :e], vz, out[1, :e], out[3, :e])
+    else:
+        gx, gz, cx, cz = flow
+        _set_along(h_x, h_x, gx.reshape(-1), cx.reshape(-1), by[0], by[2], vx, out[0], out[2])
+        z = gz.reshape(-1)[:e], cz.reshape(-1)[:e]
+        _set_along(h[:e], h[1:], z[0], z[1], by[1, :e], by[3, :e], vz, out[1, :e], out[3, :e])
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -54,16 +54,19 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
 @pytest.mark.slow
 @pytest.mark.parametrize("contact", [None, ehd.RegularisedWall(onset=2e-6)], ids=["plain", "contact"])
 def test_slight_films_rupture_without_turning_in_circles(contact):
-    """Pressures next to rounding took 400 solves; now some 100, most of them in pseudo time."""
-    motion = np.zeros(10)
-    motion[0], motion[8] = 0.02548220424684501 * CLEARANCE, -123.07779066684151
-    found = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(motion)
-    near = motion.copy()
-    near[0] *= 1.001
-    other = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(near)
-    # a film that nothing feeds may have none
-    assert found.status is other.status and found.status in (ehd.Status.CONVERGED, ehd.Status.NO_OIL)
-    assert max(found.iterations, other.iterations) < 120
-    assert found.status is ehd.Status.NO_OIL or np.allclose(
-        found.wrench, other.wrench, rtol=1e-2, atol=1e-3 * np.abs(other.wrench).max()
-    )
+    """Pressures next to rounding took 400 solves; now some 20, in one of four films some 80 and more in pseudo time."""
+    counts, made = [], bearing(ehd.ElrodAdams(), contact=contact)
+    for place in (0.0255, 0.02, 0.021, 0.0223, 0.03, 0.04):
+        motion, near = np.zeros((2, 10))
+        motion[0], motion[8] = place * CLEARANCE, -123.07779066684151
+        near[:] = motion
+        near[0] *= 1.001
+        found, other = (build_model(made).evaluate_steady(m) for m in (motion, near))
+        # a film that nothing feeds may have none
+        assert found.status is other.status and found.status in (ehd.Status.CONVERGED, ehd.Status.NO_OIL)
+        counts += [found.iterations, other.iterations]
+        assert found.status is ehd.Status.NO_OIL or np.allclose(
+            found.wrench, other.wrench, rtol=1e-2, atol=1e-3 * np.abs(other.wrench).max()
+        )
+    # which films need pseudo time, and for how long, is a matter of rounding
+    assert np.mean(counts) < 100 and max(counts) < 300
