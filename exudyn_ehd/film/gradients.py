@@ -101,8 +101,6 @@ def join(*parts: Gradients) -> Gradients:
 def _ends(by_h, by_d, a, b, follows, gap):
     """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b, by its gap, of which row
     ``gap`` of ``follows`` tells how it follows, and by E."""
-    if follows is None:
-        return 0.5 * by_h, 0.5 * by_h
     here, there = by_h * follows[gap, a] - by_d * follows[1, a], by_h * follows[gap, b] + by_d * follows[1, b]
     return 0.5 * here, 0.5 * there
 
@@ -139,13 +137,17 @@ def link_rows(order, count, m, by, by_speed, follows, storage, out):
             own += here - at
             out[8, r], out[9, r] = there, -behind
         if j + 1 < m:
-            here, there = _ends(by[2, c], by[3, c], c, c + 1, follows, 2)
+            here, there = 0.5 * by[2, c], 0.5 * by[2, c]
+            if follows is not None:
+                here, there = _ends(by[2, c], by[3, c], c, c + 1, follows, 2)
             own += here
             out[3, r] = there
             vx += by_speed[2, c]
             vz += by_speed[1, c]
         if j > 0:
-            behind, at = _ends(by[2, c - 1], by[3, c - 1], c - 1, c, follows, 2)
+            behind, at = 0.5 * by[2, c - 1], 0.5 * by[2, c - 1]
+            if follows is not None:
+                behind, at = _ends(by[2, c - 1], by[3, c - 1], c - 1, c, follows, 2)
             own -= at
             out[4, r] = -behind
             vx -= by_speed[2, c - 1]

@@ -153,7 +153,7 @@ def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squ
     """`Gradients.by` of the last solution at ``places`` (c,) into zeros ``by`` (10, c).
 
     ``weights``: of `RuptureLine.weights`; ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
-    `exudyn_ehd.film.reynolds.link_derivatives.gap_derivatives`.
+    `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`.
     """
     mesh = Mesh(*mesh)
     n, m = H.shape

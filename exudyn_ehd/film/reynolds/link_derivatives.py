@@ -12,27 +12,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.balance import both, part
+from exudyn_ehd.film.reynolds.balance import part
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 # numpy's integers, since numba compiles kernels anew for each plain one
 _0, _1 = np.int64(0), np.int64(1)
-
-
-@njit(cache=True)
-def _along(flux):
-    """Return g, dg/dh, dg/dvx, c and dc/dh of the links in theta; None for a plain film."""
-    if flux is None:
-        return None, None, None, None, None
-    return flux.gx, flux.gx_h, flux.gx_v, flux.cx, flux.cx_h
-
-
-@njit(cache=True)
-def _across(flux):
-    """Return those of the links in z."""
-    if flux is None:
-        return None, None, None, None, None
-    return flux.gz, flux.gz_h, flux.gz_v, flux.cz, flux.cz_h
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
@@ -60,18 +44,13 @@ def _pressure_flow(P_a, P_b, metric, h_a, h_b, E_a, E_b, g, g_h, by_h, by_d):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _add_couette_flow(v, width, c_h, up, by_h):
-    """Add the derivative of the Couette flow to h."""
+def _couette_flow(v, width, carrier, c_h, h_a, h_b, up, by_h, by_own):
+    """Add the derivative of the Couette flow to h, and set that to the link's own speed."""
     for c in range(by_h.size):
         slope = v * width[c] * up[c]
         if c_h is not None:
             slope *= c_h[c]
         by_h[c] += slope
-
-
-@njit(cache=True, fastmath=_FAST)
-def _own_speed(width, carrier, h_a, h_b, up, by_own):
-    """Set the derivative of the Couette flow to the link's own speed."""
     for c in range(by_own.size):
         flow = 0.5 * (h_a[c] + h_b[c])
         if carrier is not None:
@@ -80,19 +59,18 @@ def _own_speed(width, carrier, h_a, h_b, up, by_own):
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _other_speed(P_a, P_b, metric, h_a, h_b, E_a, E_b, g_v, by_vx):
+def _slower(P_a, P_b, metric, h_a, h_b, E_a, E_b, g_v, by_vx):
     """Add the derivative of the pressure flow to vx."""
-    if g_v is not None:
-        for c in range(by_vx.size):
-            lean = 0.0
-            if E_a is not None:
-                lean = (E_b[c] - E_a[c]) / (h_a[c] + h_b[c])
-            by_vx[c] -= metric[c] * g_v[c] * (1.0 + lean * lean) * (P_b[c] - P_a[c])
+    for c in range(by_vx.size):
+        lean = 0.0
+        if E_a is not None:
+            lean = (E_b[c] - E_a[c]) / (h_a[c] + h_b[c])
+        by_vx[c] -= metric[c] * g_v[c] * (1.0 + lean * lean) * (P_b[c] - P_a[c])
 
 
 @njit(cache=True)
-def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
-    """Set derivatives ``by`` (4, n m) of the links' flows to h and d, in theta, then in z.
+def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
+    """Set the derivatives of the links' flows.
 
     Parameters
     ----------
@@ -102,43 +80,40 @@ def gap_derivatives(P, H, HF, E, up, flux, metric, vx, vz, by):
         None: without a liner; the derivatives to d are not set.
     up : (2, n m) array
         Of `exudyn_ehd.film.reynolds.balance.upstream`.
-    flux : LinkFlux or None
+    laws : twice five (n, m) arrays, or None
+        `LinkFlux.laws`; None: a plain film.
     metric : (4, n, m) array
         `exudyn_ehd.film.reynolds.links.link_metric`.
     vx, vz : float
         Scaled mean speeds.
+    by : (4, n m) array
+        To h and d, in theta, then in z.
+    by_speed : (3, n m) array
+        In theta to vx, in z to vz and to vx.
     """
     m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
-    last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
-    g, g_h, _, _, c_h = _along(flux)
+    last, e, width = size - m, size - 1, metric.reshape(4, size)
+    if laws is None:
+        g_x = g_x_h = c_x = c_x_h = g_z = g_z_h = c_z = c_z_h = None
+    else:
+        (g_x, g_x_h, g_x_v, c_x, c_x_h), (g_z, g_z_h, g_z_v, c_z, c_z_h) = laws
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        at, law = h_x[start:stop], (part(g, start, stop), part(g_h, start, stop))
-        leans, out = both(E, start, stop, there, end), (by[0, start:stop], by[1, start:stop])
-        _pressure_flow(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, *law, *out)
-    _add_couette_flow(vx, by_metric[2], part(c_h, _0, size), up[0], by[0])
-    g, g_h, _, _, c_h = _across(flux)
-    law, leans = (part(g, _0, e), part(g_h, _0, e)), both(E, _0, e, _1, size)
-    _pressure_flow(p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
-    _add_couette_flow(vz, by_metric[3], part(c_h, _0, size), up[1], by[2])
-    # there are no links behind the last row
-    by[2:, e] = 0.0
-
-
-@njit(cache=True)
-def speed_derivatives(P, H, HF, E, up, flux, metric, by):
-    """Set derivatives ``by`` (3, n m) of the links' flows: in theta to vx, in z to vz and to vx; the rest as for
-    `gap_derivatives`."""
-    m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
-    last, e, by_metric = size - m, size - 1, metric.reshape(4, size)
-    _, _, g_v, carrier, _ = _along(flux)
-    _own_speed(by_metric[2], part(carrier, _0, size), h_x, h_x, up[0], by[0])
-    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        at, leans, slower = h_x[start:stop], both(E, start, stop, there, end), part(g_v, start, stop)
-        _other_speed(p[start:stop], p[there:end], by_metric[0, start:stop], at, at, *leans, slower, by[0, start:stop])
-    _, _, g_v, carrier, _ = _across(flux)
-    _own_speed(by_metric[3, :e], part(carrier, _0, e), h[:e], h[1:], up[1, :e], by[1, :e])
+        at, law = h_x[start:stop], (part(g_x, start, stop), part(g_x_h, start, stop))
+        leans, out = (part(E, start, stop), part(E, there, end)), (by[0, start:stop], by[1, start:stop])
+        _pressure_flow(p[start:stop], p[there:end], width[0, start:stop], at, at, *leans, *law, *out)
+    _couette_flow(vx, width[2], part(c_x, _0, size), part(c_x_h, _0, size), h_x, h_x, up[0], by[0], by_speed[0])
+    law, leans = (part(g_z, _0, e), part(g_z_h, _0, e)), (part(E, _0, e), part(E, _1, size))
+    _pressure_flow(p[:e], p[1:], width[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
+    law, out = (part(c_z, _0, e), part(c_z_h, _0, e)), (by[2, :e], by_speed[1, :e])
+    _couette_flow(vz, width[3, :e], *law, h[:e], h[1:], up[1, :e], *out)
     for c in range(size):
-        by[2, c] = 0.0
-    leans = both(E, _0, e, _1, size)
-    _other_speed(p[:e], p[1:], by_metric[1, :e], h[:e], h[1:], *leans, part(g_v, _0, e), by[2, :e])
-    by[1, e] = 0.0
+        by_speed[2, c] = 0.0
+    if laws is not None:
+        for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+            at, leans = h_x[start:stop], (part(E, start, stop), part(E, there, end))
+            slower, out = part(g_x_v, start, stop), by_speed[0, start:stop]
+            _slower(p[start:stop], p[there:end], width[0, start:stop], at, at, *leans, slower, out)
+        leans = part(E, _0, e), part(E, _1, size)
+        _slower(p[:e], p[1:], width[1, :e], h[:e], h[1:], *leans, part(g_z_v, _0, e), by_speed[2, :e])
+    # there are no links behind the last row
+    by[2, e] = by[3, e] = by_speed[1, e] = 0.0

@@ -85,6 +85,12 @@ class LinkFlux(NamedTuple):
         return self.gx, self.gz, self.cx, self.cz
 
     @property
+    def laws(self) -> tuple[tuple[np.ndarray, ...], ...]:
+        """Conductances with their derivatives to gap and speed, carriers with theirs to the gap, in theta and in z."""
+        x = self.gx, self.gx_h, self.gx_v, self.cx, self.cx_h
+        return x, (self.gz, self.gz_h, self.gz_v, self.cz, self.cz_h)
+
+    @property
     def slopes(self) -> tuple[np.ndarray, ...]:
         """Conductances' derivatives, carriers and their derivatives, each in theta and z."""
         return self.gx_h, self.gz_h, self.cx, self.cz, self.cx_h, self.cz_h

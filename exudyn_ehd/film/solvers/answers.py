@@ -12,7 +12,7 @@ from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.gradients import Gradients, join, link_rows
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, upstream
-from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
@@ -161,16 +161,16 @@ class FilmAnswers(FilmArrays):
         """
         at, storage = self.work.order[: self.work.count] if places is None else places, self.storage_weights()
         out, e, s = Gradients(np.arange(at.size), at, np.empty((10, at.size))), self.elements, self.system
-        by, by_speed = np.empty((4, self.area.size)), np.empty((3, self.area.size))
-        carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
-        at_links = s.linear_pressure, self.H, self.HF
-        up = upstream(s.fx, s.fz, carried, rho)
-        speed_derivatives(*at_links, None if e is None else e.gaps.E, up, self.flux, self.metric, by_speed)
+        if e is None:
+            by, by_speed, follows = np.empty((4, self.area.size)), np.empty((3, self.area.size)), None
+            carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
+            up, laws = upstream(s.fx, s.fz, carried, rho), None if self.flux is None else self.flux.laws
+            at_links, speeds = (s.linear_pressure, self.H, self.HF), (self.vx, self.vz)
+            link_derivatives(*at_links, None, up, laws, self.metric, *speeds, by, by_speed)
+        else:
+            by, by_speed, follows = e.by, e.by_speed, e.follows()
         if not self.axial:
             by_speed[1] = 0.0
-        if e is None:
-            gap_derivatives(*at_links, None, up, self.flux, self.metric, self.vx, self.vz, by)
-        by, follows = (by, None) if e is None else (e.by, e.follows())
         link_rows(at, at.size, self.grid.z.size, by, by_speed, follows, storage, out.by)
         line = self.line_gradients(places)
         return out if line is None else join(out, line)

@@ -15,7 +15,7 @@ from exudyn_ehd.film.cavitation.rupture_line import line_gradients, line_weights
 from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.gradients import add_columns, functional_gradients, link_rows
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gradient
-from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.plain_film import has_plain_edges
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
@@ -90,8 +90,7 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shape
     by_links, by_speed = np.empty((4, H.size)), np.empty((3, H.size))
     columns, whole = np.zeros((10, count)), np.empty((10, count))
     up = np.ones((2, H.size))
-    gap_derivatives(P, H, HF, None, up, None, metric, vx, vz, by_links)
-    speed_derivatives(P, H, HF, None, up, None, metric, by_speed)
+    link_derivatives(P, H, HF, None, up, None, metric, vx, vz, by_links, by_speed)
     link_rows(order, count, H.shape[1], by_links, by_speed, None, (by_rate, by_gap), whole)
     add_columns(np.arange(count), order[:count], whole, shapes, columns)
     if line is not None:

@@ -7,7 +7,7 @@ import pytest
 
 from exudyn_ehd.film.gradients import Gradients, link_rows
 from exudyn_ehd.film.reynolds import links as reynolds
-from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives, speed_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 
 CASES = [(1, False, 1.0), (2, True, 1.0), (3, False, 0.0)]
 
@@ -76,8 +76,7 @@ def test_adjoint_sensitivities(make_film, seed, cut, flow_x):
     P, lam = rng.normal(size=f.H.shape), rng.normal(size=(2, *f.H.shape))
     by, by_speed, rows, places = *(np.empty((k, P.size)) for k in (4, 3, 10)), np.arange(P.size)
     up = np.ones((2, P.size))
-    gap_derivatives(P, f.H, f.HF, None, up, None, f.metric, f.vx, f.vz, by)
-    speed_derivatives(P, f.H, f.HF, None, up, None, f.metric, by_speed)
+    link_derivatives(P, f.H, f.HF, None, up, None, f.metric, f.vx, f.vz, by, by_speed)
     link_rows(places, P.size, P.shape[1], by, by_speed, None, np.zeros((2, *P.shape)), rows)
     cell, face, _, speed = Gradients(places, places, rows).fields(lam.reshape(2, -1), f.H.shape)
     step = 1e-5  # the residual is cubic in the gap: central differences leave step^2 = 1e-10 and rounding 1e-10

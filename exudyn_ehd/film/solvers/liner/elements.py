@@ -300,7 +300,7 @@ def _add_pseudo(area, P, drive, slope, factor, out):
 @njit(cache=True)
 def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, slopes):
     """Add the derivatives of flows and storage through the gap to ``slopes`` of `balance.film_slopes`; ``by``: that of
-    `exudyn_ehd.film.reynolds.link_derivatives.gap_derivatives`."""
+    `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`."""
     n, m = P.shape
     size = n * m
     last, e = size - m, size - 1

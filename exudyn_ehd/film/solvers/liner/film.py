@@ -106,7 +106,7 @@ class LinerFilm(WinklerElements):
         # whether the pressure changes the deflection of the liner alone
         self.plain = self.contact is None and self.limiter is None and self.oil is None and not film.flux_effects
         self.term_fields, self.film_fields = s.term_fields, s.film
-        self.by = np.zeros((4, w.order.size))
+        self.by, self.by_speed = np.zeros((4, w.order.size)), np.zeros((3, w.order.size))
         self.fill = s.fill if s.kind == OIL else np.ones(shape)
         # the film at the pressure of the rupture line inside the cells
         self.at_line, self.shut = AtLine((film.H, film.HF), None, None), np.zeros(shape, dtype=np.bool_)
@@ -216,7 +216,7 @@ class LinerFilm(WinklerElements):
             self.slope_fields, self.gap_fields, self.load_fields, tuple(self.rates), self.beta, self.by,
             self.rigid_slope, self.contact_G, self.bend,
         )  # fmt: skip
-        return elements, (f.flux, f.metric, f.vx, f.vz)
+        return elements, (None if f.flux is None else f.flux.laws, f.metric, f.vx, f.vz, self.by_speed)
 
     @property
     def _response(self) -> tuple[np.ndarray, ...] | None:
@@ -224,7 +224,7 @@ class LinerFilm(WinklerElements):
         return None if self.thin is None else self.thin.response()
 
     def gradients(self) -> None:
-        """Update ``gap_slopes`` and ``by``: derivatives of the gaps and of the links' flows at the present state."""
+        """Update ``gap_slopes``, ``by`` and ``by_speed``: derivatives of gaps and links' flows at the present state."""
         fill, rho, _ = self.oil_fields
         find_slopes(self.P, fill, rho, self.film_fields, *self._seen)
 

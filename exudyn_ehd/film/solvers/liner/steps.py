@@ -16,7 +16,7 @@ from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
 from exudyn_ehd.film.cavitation.solve import BENDS, EVEN, EVEN_DENSE, GOES_ON, LOST, MOST_STEPS, look, take_step
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE, add_sink, place_states, set_states
 from exudyn_ehd.film.reynolds.balance import carried_fill, film_slopes, oil_links, terms_of, upstream
-from exudyn_ehd.film.reynolds.link_derivatives import gap_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes, element_slopes, gaps_of, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.winkler import plain_residual
 
@@ -52,17 +52,18 @@ def _add_edge(fill, curve, terms, rho, slopes):
 
 @njit(cache=True, nogil=True)
 def find_slopes(P, fill, rho, film, elements, links):
-    """Set the derivatives of the gaps (gap slopes) and of the links' flows (``by``) at the present state.
+    """Set the derivatives of the gaps (gap slopes) and of the links' flows (``by``, ``by_speed``) at the present state.
 
-    ``elements``: (gap slopes, gaps, load, rates, beta, by of `gap_derivatives`, slope of the undeformed film gap, slope
-    of the contact pressure, ``bend`` of `element_slopes`); ``links``: (`LinkFlux` or None, metric, vx, vz).
+    ``elements``: (gap slopes, gaps, load, rates, beta, by of `link_derivatives`, slope of the undeformed film gap,
+    slope of the contact pressure, ``bend`` of `element_slopes`); ``links``: (`LinkFlux.laws` or None, metric, vx, vz,
+    by_speed).
     """
     gap_slopes, gaps, load, rates, beta, by, rigid_slope, contact_G, bend = elements
-    flux, metric, vx, vz = links
+    laws, metric, vx, vz, by_speed = links
     element_slopes(P, load, rigid_slope, contact_G, bend, beta, rates[1], gap_slopes)
     terms, at = terms_of(film[0], film[1]), gaps_of(gaps)
     up = upstream(terms.fx, terms.fz, carried_fill(fill, terms), rho)
-    gap_derivatives(P, at.H, at.HF, at.E, up, flux, metric, vx, vz, by)
+    link_derivatives(P, at.H, at.HF, at.E, up, laws, metric, vx, vz, by, by_speed)
 
 
 @njit(cache=True, nogil=True)
