@@ -50,4 +50,4 @@ def test_random_states(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", hard_random.CAMPAIGNS)
 def test_many_random_states(name):
-    run(name, count(name, 1))
+    run(name, count(name, 4))

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+import scipy
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
@@ -95,11 +96,11 @@ class LoadSearch(Balance):
         room = max(1.0 - 0.5 * b.length * float(np.hypot(*motion[2:4])) / b.radial_clearance, 0.0)
         motion[:2] = ratio * room * b.radial_clearance * direction
         if b.is_lobed and np.any(direction):
-            # imported here: few searches need it. The journal without a film: farthest along the load, on no bore
-            from scipy.optimize import linprog
-
+            # the journal without a film lies farthest along the load, where no gap is closed
             gaps = gaps_of_arcs(self.model, motion * (np.arange(motion.size) > 1)).min(axis=1) / b.radial_clearance
-            found = linprog(-direction, np.transpose(self.model.grid.directions[:2]), gaps, bounds=(None, None))
+            found = scipy.optimize.linprog(
+                -direction, np.transpose(self.model.grid.directions[:2]), gaps, bounds=(None, None)
+            )
             if found.success:
                 motion[:2] = ratio * b.radial_clearance * found.x
         return motion

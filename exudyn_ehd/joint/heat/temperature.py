@@ -83,8 +83,8 @@ class OilTemperature:
     def outside(self, film: SolvedFilm) -> tuple[float, float]:
         """Return the temperature, K, to which the oil takes its heat in the film's step, and the conductance, W/K.
 
-        Without a sump that are the supply, which is as a tank of any conductance. A sump's heat capacity is, over a
-        step, one more conductance to the temperature at the step's start.
+        Without a sump it is the supply's temperature, and the conductance is infinite. A sump's heat capacity acts over
+        a step as one more conductance, to the sump's temperature at the start of the step.
         """
         sump, known = self.sump, None if film.history is None else film.history.sump
         if sump is None or known is None or film.step <= 0.0:

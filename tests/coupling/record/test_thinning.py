@@ -249,5 +249,5 @@ def test_memory_of_ten_joints(kind, tmp_path):
     growth = (tracemalloc.get_traced_memory()[0] - before) * (10 / 3) * (1e6 / 5e3)
     tracemalloc.stop()
     print(f"{kind}: {1e-6 * growth:.1f} MB")
-    # a chunk of rows more or less at the end counts for 20 MB
+    # kept rows of some 60 numbers; a chunk of rows more or less at the end counts for 20 MB
     assert growth < (620e6 if kind == "thinned" else 40e6)
