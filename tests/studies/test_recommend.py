@@ -33,8 +33,8 @@ def _solid(kind=ehd.ModalBush, **options):
 # of the films themselves, behind the advice, which warns of none
 @pytest.mark.filterwarnings("ignore:.* it departs from a straight line .*:UserWarning")
 def test_random_bearings():
-    """The first 24 of the 200 that its record is about (studies/README.md)."""
-    outcomes = [ask(draw(seed)) for seed in range(24)]
+    """The first 40 of the 200 that its record is about (studies/README.md)."""
+    outcomes = [ask(draw(seed)) for seed in range(40)]
     found = [out for out in outcomes if out.advice.found]
     assert len(found) >= 0.9 * len(outcomes)
     assert sum(out.true <= out.advice.error for out in found) >= 0.95 * len(found)

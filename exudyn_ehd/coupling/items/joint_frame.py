@@ -110,7 +110,7 @@ def checked_rotation(where: str, matrix: ArrayLike) -> np.ndarray:
         raise InputError(f"{where} must be a rotation matrix (3, 3), got {matrix!r}.")
     # 1e-8: a matrix computed in double precision is orthonormal to 1e-15, one typed with few digits is not meant
     if np.abs(rotation.T @ rotation - np.eye(3)).max() > 1e-8 or np.linalg.det(rotation) < 0.0:
-        raise InputError(f"{where} must be orthonormal and right-handed, got {matrix!r}.")
+        raise InputError(f"{where} must be orthonormal and right-handed, got {matrix!r}; its columns are the axes.")
     return rotation
 
 
