@@ -24,7 +24,7 @@ from exudyn_ehd.coupling.record.rows import Every, File, Period
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
 from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
-from exudyn_ehd.joint.model.build import build_model, compile_together
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector, warn_user
 
@@ -239,7 +239,7 @@ def CreateLubricatedJoint(
     bearing, (housing, journal) = hold_fe_surfaces(mbs, bearing, (housing, journal), points, rotation)
     joint = attach(
         mbs,
-        _model_of(bearing, housing, journal),
+        cast(JointModel, build_model(bearing)),
         housing,
         journal,
         points,
@@ -285,13 +285,6 @@ def equip(joint: Joint, control: StepControl | None, record: RecordOption | None
         steps.record.thin(rule)
     if isinstance(record, File):
         steps.record.keep_on_disk(record.of(joint.name).absolute(), joint.name)
-
-
-def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:
-    """The film's model, its kernels and those of its items compiled."""
-    if isinstance(bearing, JournalBearing) and any(item.node is not None for item in items):
-        compile_together(bearing, "bodies")
-    return cast(JointModel, build_model(bearing))
 
 
 def _items_of_older_calls(

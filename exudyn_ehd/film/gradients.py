@@ -92,9 +92,10 @@ class Gradients(NamedTuple):
         return out
 
 
-def join(*parts: Gradients) -> Gradients:
-    """Entries of all ``parts``."""
-    return Gradients(*(np.concatenate(fields, axis=-1) for fields in zip(*parts, strict=True)))
+def join(a: Gradients, b: Gradients) -> Gradients:
+    """Entries of both."""
+    rows, places = np.concatenate((a.rows, b.rows)), np.concatenate((a.places, b.places))
+    return Gradients(rows, places, np.concatenate((a.by, b.by), axis=1))
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -129,6 +129,11 @@ class FilmGrid:
         return np.column_stack(((np.roll(last, 1) + 1) % self.x.size, last))
 
     @cached_property
+    def closed(self) -> bool:
+        """Return whether the columns are a ring."""
+        return not self.edges.size
+
+    @cached_property
     def mesh(self) -> tuple[np.ndarray, ...]:
         """The metric for kernels, as in `Mesh`."""
         return self.width_x, self.width_z, self.link_x, self.link_z

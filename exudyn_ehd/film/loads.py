@@ -67,7 +67,7 @@ def couette_integral(H, weight, active, fixed, cavity_share):
     return unbroken + cavity_share * cavity - (1.0 - cavity_share) * ends
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def end_forces(H, width, pressures):
     """Integral over both ends of the gap times the pressures (lower, upper) there, the upper end's less the lower's.
 
@@ -85,20 +85,21 @@ def end_forces(H, width, pressures):
 
 
 @njit(cache=True)
-def journal_wrench(pose, integrals, couette, extra_theta, extra_z, ends, edges, force, shear, R, omega, w, out):
+def journal_wrench(pose, integrals, couette, extra_theta, extra_z, H, width, ends, edges, scales, omega, w, out):
     """Wrench on the journal -> out (>= 6,), SI; returns the scaled integral of the pressure flow's shear along theta.
 
     ``extra_theta`` and ``extra_z``: what gap terms and uneven drag add to those integrals. On the bore, gap terms act
     twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag pulls the
-    journal by as much as it holds the bore back. ``ends``: of `end_forces`; ``edges``: the same of an arc's
-    edges, 0 of a ring; ``force``, ``shear``, R: scales; omega, w: spin and axial speed.
+    journal by as much as it holds the bore back. H, ``width``, ``ends``: for `end_forces`; ``edges``: the same of
+    an arc's edges, 0 of a ring; ``scales``: of force and shear, and R; omega, w: spin and axial speed.
     """
+    force, shear, R = scales
     x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
     sc, ss, szc, szs = integrals[0], integrals[1], integrals[2], integrals[3]
     s_theta = x * ss - y * sc + bx * szs - by * szc + extra_theta - edges
     s_z = -(bx * sc + by * ss) + extra_z
     out[0], out[1] = -force * sc, -force * ss
-    out[2] = -shear * (w * couette + 6.0 * R * (s_z - 2.0 * extra_z - ends))
+    out[2] = -shear * (w * couette + 6.0 * R * (s_z - 2.0 * extra_z - end_forces(H, width, ends)))
     out[3], out[4] = force * R * szs, -force * R * szc
     out[5] = -shear * R**2 * (omega * couette + 6.0 * (s_theta - 2.0 * extra_theta))
     return s_theta

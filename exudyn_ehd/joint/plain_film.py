@@ -12,7 +12,7 @@ from numba import njit
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.linear_film import extend_film
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
-from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
+from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
 from exudyn_ehd.film.solvers.solver import FilmSolver
@@ -131,7 +131,7 @@ def _plain_film(motion, scale, known, sizes, kinds, normals, links, weight, fiel
         count = extend_film(columns, b, sets, pc, factor, count, P)
     pressure_integrals(P, weight, shapes, integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
-    ends = end_forces(H, mesh[0], known)
     speeds = motion[8], motion[9]
-    s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, ends, 0.0, force, shear, radius, *speeds, out)
+    scales, ends = (force, shear, radius), (H, mesh[0], known)
+    s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, *ends, 0.0, scales, *speeds, out)
     return ok, steps, count, width, smallest, couette, s_theta

@@ -1,4 +1,4 @@
-"""First films from empty caches, with a helper and where nothing can be written, against a film of this process."""
+"""First films from an empty cache and where nothing can be written, against a film of this process."""
 
 import os
 import pathlib
@@ -10,23 +10,13 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.kernels import ahead
-from exudyn_ehd.kernels.compilations import MESSAGE
+from exudyn_ehd.kernels import MESSAGE
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-HELPERS = 1 if ahead.cores() > 1 else 0
 FILM = """
 import exudyn_ehd as ehd
-from exudyn_ehd.kernels import ahead
-start, ahead.helpers = ahead._start_helper, []
-def noted():
-    ahead.helpers.append(start())
-    return ahead.helpers[-1]
-ahead._start_helper = noted
 b = ehd.JournalBearing(journal_radius=.01, length=.02, radial_clearance=2e-5, lubricant=ehd.Lubricant(viscosity=.04))
-film = ehd.steady(b, speed=314.0, eccentricity_ratio=0.6)
-print(len(ahead.helpers), [helper.returncode for helper in ahead.helpers])
-print(*film.force)
+print(*ehd.steady(b, speed=314.0, eccentricity_ratio=0.6).force)
 """
 
 
@@ -38,30 +28,21 @@ def expected():
 
 
 def first_film(folder, **environment):
-    """Helpers that started and the force of a first film in a new process."""
-    kept = {k: v for k, v in os.environ.items() if k not in ("PYTEST_XDIST_WORKER", ahead.HELPER_VARIABLE)}
+    """Force of a first film in a new process, and its messages."""
     done = subprocess.run(
-        [sys.executable, "-c", FILM], env=kept | environment, cwd=folder, capture_output=True, text=True
+        [sys.executable, "-c", FILM], env=os.environ | environment, cwd=folder, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
-    lines = done.stdout.splitlines()
-    return int(lines[-2].split()[0]), np.array(lines[-1].split(), dtype=float), done.stderr
-
-
-def test_a_variable_switches_the_helper_off(monkeypatch):
-    monkeypatch.delenv("PYTEST_XDIST_WORKER", raising=False)
-    for switch, wanted in (("0", False), ("1", HELPERS == 1)):
-        monkeypatch.setenv(ahead.HELPER_VARIABLE, switch)
-        assert ahead._may_start() == wanted
+    return np.array(done.stdout.split(), dtype=float), done.stderr
 
 
 @pytest.mark.slow
 def test_kernels_are_compiled_once(tmp_path):
-    """First films with a helper are those of this process; a run ahead adds its own kernels to theirs."""
+    """First films are those of this process; a run ahead adds its own kernels to theirs."""
     # a second process with the first's cache has nothing to compile
-    for wanted, line in ((HELPERS, f"{MESSAGE}\n"), (0, "")):
-        found, force, errors = first_film(ROOT, NUMBA_CACHE_DIR=str(tmp_path), EXUDYN_EHD_HELPER="1")
-        assert found == wanted and errors == line
+    for line in (f"{MESSAGE}\n", ""):
+        force, errors = first_film(ROOT, NUMBA_CACHE_DIR=str(tmp_path))
+        assert errors == line
         # arrays lie elsewhere in every process, which a vectorised sum rounds otherwise
         np.testing.assert_allclose(force, expected(), rtol=1e-12, atol=1e-9)
     environment, call = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}, [sys.executable, "-m", "exudyn_ehd", "film"]
@@ -77,7 +58,7 @@ def test_a_first_film_where_nothing_can_be_written(tmp_path):
     for folder, _, _ in list(os.walk(tmp_path / "exudyn_ehd")):
         (pathlib.Path(folder) / "__pycache__").touch()
     nowhere = {"HOME": os.devnull, "XDG_CACHE_HOME": os.devnull, "TMPDIR": str(tmp_path), "PYTHONPATH": str(tmp_path)}
-    found, force, errors = first_film(tmp_path, NUMBA_CACHE_DIR=f"{os.devnull}/kernels", **nowhere)
-    assert found == HELPERS and "numba can write its cache neither" in errors
+    force, errors = first_film(tmp_path, NUMBA_CACHE_DIR=f"{os.devnull}/kernels", **nowhere)
+    assert "numba can write its cache neither" in errors
     np.testing.assert_allclose(force, expected(), rtol=1e-12, atol=1e-9)
     assert not list(tmp_path.glob("exudyn_ehd_kernels*")), "the folder of a process goes with it"

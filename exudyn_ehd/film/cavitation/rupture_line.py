@@ -80,8 +80,6 @@ class RuptureLine:
     def gradients(
         self,
         work: Workspace,
-        places: np.ndarray,
-        weights: np.ndarray,
         gaps: tuple[np.ndarray, np.ndarray],
         flux: LinkFlux | None,
         speeds: tuple[float, float],
@@ -89,20 +87,9 @@ class RuptureLine:
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> Gradients:
-        """`Gradients` of the last solution at vertices ``places`` (c,) with their `weights`.
-
-        They are derivatives to the film's ``gaps`` at vertices and links.
-        """
-        rows, by = work.number.reshape(-1)[places], np.zeros((10, places.size))
+        """`Gradients` of -N in the last solution's balances, to the film's ``gaps`` at vertices and links."""
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        line_gradients(places, weights, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
-        return Gradients(rows, places, by)
-
-    def weights(self, places: np.ndarray) -> np.ndarray:
-        """Derivatives (2, c) of -N at vertices (c,) to their right-hand side b and to their mean conductance k."""
-        out = np.empty((2, places.size))
-        line_weights(places, self.f, self.k, self.s, out)
-        return out
+        return Gradients(*line_rows(self.block, work.number, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
 
 
 @njit(cache=True, inline="always")
@@ -138,21 +125,34 @@ def _clear_known(before, known, behind, f, whole, limit):
         limit[c] = np.inf if known[c] else (LEAST - 0.5) * f[c]
 
 
+@njit(cache=True, inline="always")
+def weigh_line(line, number):
+    """Rows of the balances at the line, their flat vertices, and weights (2, c): derivatives of -N to the right-hand
+    side b and to the mean conductance k."""
+    f, k, s, numbers, found = line[0], line[1], line[2], number.reshape(-1), 0
+    rows, places, weights = np.empty(s.size, dtype=np.int64), np.empty(s.size, dtype=np.int64), np.empty((2, s.size))
+    for c in range(s.size):
+        if s[c] < 1.0:
+            rows[found], places[found], weights[0, found] = numbers[c], c, 0.5 * (1.0 - s[c])
+            weights[1, found] = weights[0, found] * f[c] * s[c] / k[c]
+            found += 1
+    return rows[:found], places[:found], weights[:, :found].copy()
+
+
 @njit(cache=True)
-def line_weights(places, f, k, s, out):
-    """`RuptureLine.weights` at ``places`` (c,) from fields (n, m)."""
-    f, k, s = f.reshape(-1), k.reshape(-1), s.reshape(-1)
-    for found in range(places.size):
-        c = places[found]
-        out[0, found] = 0.5 * (1.0 - s[c])
-        out[1, found] = out[0, found] * f[c] * s[c] / k[c]
+def line_rows(line, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
+    """Rows, flat vertices and derivatives of `RuptureLine.gradients`."""
+    rows, places, weights = weigh_line(line, number)
+    by = np.zeros((10, places.size))
+    line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by)
+    return rows, places, by
 
 
 @njit(cache=True)
 def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by):
-    """`Gradients.by` of the last solution at ``places`` (c,) into zeros ``by`` (10, c).
+    """`Gradients.by` of the last solution at ``places`` (c,) added to ``by`` (10, c).
 
-    ``weights``: of `RuptureLine.weights`; ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
+    ``weights``: of `weigh_line`; ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
     `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`.
     """
     mesh = Mesh(*mesh)
@@ -167,10 +167,10 @@ def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squ
             half = 0.5 * conduct * mesh.link_x[face] * flow_x * wz
             if slopes is None:
                 h = HF[face, j]
-                by[q, found] = side * source * vx * wz + half * 3.0 * h * h
+                by[q, found] += side * source * vx * wz + half * 3.0 * h * h
                 by[6, found] += side * source * h * wz
             else:
-                by[q, found] = side * source * vx * wz * slopes[4][face, j] + half * slopes[0][face, j]
+                by[q, found] += side * source * vx * wz * slopes[4][face, j] + half * slopes[0][face, j]
                 by[6, found] += side * source * slopes[2][face, j] * wz
             if by_speed is not None:
                 by[6, found] += half * by_speed[0][face, j]
@@ -181,7 +181,7 @@ def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squ
                     carrier, carrier_h = slopes[3][i, face], slopes[5][i, face]
                 across = 0.5 * side * source * vz * wx * carrier_h
                 by[2, found] += across
-                by[q, found] = across
+                by[q, found] += across
                 by[7, found] += side * source * wx * carrier
         if squeeze:
-            by[5, found] = -source * wx * wz
+            by[5, found] -= source * wx * wz

@@ -55,7 +55,7 @@ def join_film(links, line, active, lack, p):
 
 
 @njit(cache=True, inline="always")
-def line_rows(lack, line, order, count, rhs_out):
+def lack_at_line(lack, line, order, count, rhs_out):
     """Write the lack of the unknowns' balances (count,) with the line, and its share of their diagonals."""
     rest, f, k, s, share = lack.reshape(-1), line[0], line[1], line[2], line[6]
     for r in range(count):
@@ -183,7 +183,7 @@ def _newton(links, line, active, factor, x, forth, p):
             count, width = number_along(active, links[0], forth, _NONE, order, number)
             # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
             first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else FIRST_ROW
-        line_rows(lack, line, order, count, x)
+        lack_at_line(lack, line, order, count, x)
         ok, kept = factor_line(links, line, factor, count, width, first, REUSABLE)
         if not ok:
             return False, step + 1, count, width

@@ -11,7 +11,7 @@ from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.gradients import Gradients, join, link_rows
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, upstream
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
@@ -160,18 +160,17 @@ class FilmAnswers(FilmArrays):
         To the film's gaps between rigid surfaces, to those of the undeformed surfaces on a liner.
         """
         at, storage = self.work.order[: self.work.count] if places is None else places, self.storage_weights()
-        out, e, s = Gradients(np.arange(at.size), at, np.empty((10, at.size))), self.elements, self.system
+        e, s, by = self.elements, self.system, np.empty((10, at.size))
         if e is None:
-            by, by_speed, follows = np.empty((4, self.area.size)), np.empty((3, self.area.size)), None
-            carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
-            up, laws = upstream(s.fx, s.fz, carried, rho), None if self.flux is None else self.flux.laws
-            at_links, speeds = (s.linear_pressure, self.H, self.HF), (self.vx, self.vz)
-            link_derivatives(*at_links, None, up, laws, self.metric, *speeds, by, by_speed)
+            rows, by_speed, follows = np.empty((4, self.area.size)), np.empty((3, self.area.size)), None
+            links, laws = (s.linear_pressure, self.H, self.HF), None if self.flux is None else self.flux.laws
+            link_derivatives(*links, None, self.taken_along(), laws, self.metric, self.vx, self.vz, rows, by_speed)
         else:
-            by, by_speed, follows = e.by, e.by_speed, e.follows()
+            rows, by_speed, follows = e.by, e.by_speed, e.follows()
         if not self.axial:
             by_speed[1] = 0.0
-        link_rows(at, at.size, self.grid.z.size, by, by_speed, follows, storage, out.by)
+        link_rows(at, at.size, self.grid.z.size, rows, by_speed, follows, storage, by)
+        out = Gradients(np.arange(at.size), at, by)
         line = self.line_gradients(places)
         return out if line is None else join(out, line)
 
@@ -237,9 +236,8 @@ class FilmAnswers(FilmArrays):
             return s.column_line.gradients(self.work, s.cavity_pressure, self.H, self.flux)
         if self.line is None:
             return None
-        (gaps, flux, _), v, at = self._at_line(), (self.vx, self.vz), np.flatnonzero(self.line.s < 1.0)
-        found = self.work, at, self.line.weights(at)
-        return self._to_motion(self.line.gradients(*found, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh))
+        (gaps, flux, _), v = self._at_line(), (self.vx, self.vz)
+        return self._to_motion(self.line.gradients(self.work, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh))
 
     def fill_gradients(self) -> tuple[Gradients, Gradients] | None:
         """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their

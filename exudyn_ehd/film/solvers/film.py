@@ -36,6 +36,7 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
+from exudyn_ehd.film.reynolds.balance import upstream
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
     lag_void,
@@ -195,6 +196,7 @@ class FilmArrays:
         self.grid, self.closure, self.squeeze, self.flux_effects = grid, closure, squeeze, flux_effects
         self.flow_x, self.area, self.work = flow_x, grid.area, Workspace(*shape)
         self.ones, self.nothing, self.metric = np.ones(shape), np.zeros(shape), link_metric(grid, flow_x)
+        self._whole = np.ones((2, grid.x.size * grid.z.size))
         self.vx = self.vz = 0.0
         # whether oil flows in z; without links it does not, the flow by an axially moving surface included
         self.axial = bool(grid.link_z.any())
@@ -252,6 +254,14 @@ class FilmArrays:
         if not self.closure.conserves_mass:
             return self.ones
         return s.prompt * s.fill + s.terms.late if self.lagging or self.oil_line is not None else s.fill
+
+    def taken_along(self) -> np.ndarray:
+        """Fill times mean density (2, n m) that the Couette flows of the last solution take along from upstream."""
+        if self.law is None and not self.closure.conserves_mass:
+            return self._whole
+        carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
+        taken: np.ndarray = upstream(self.system.fx, self.system.fz, carried, rho)
+        return taken
 
     @property
     def content(self) -> np.ndarray:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film.loads import couette_integral, end_forces, journal_wrench, pressure_integrals
+from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.supply.cuts import RecessShear, recess_shear
 from exudyn_ehd.film.surfaces.contact import add_contact
@@ -105,18 +105,18 @@ def film_loads(
         couette = float(np.vdot(sheared, (1.0 if oil.ratio is None else oil.ratio) / s.H))
     if recess is not None:
         couette += float(recess.density.sum())
-    wrench, ends = np.empty(6), end_forces(s.H, g.width_x, scales.ends)
+    wrench = np.empty(6)
     s_theta = journal_wrench(
         journal.pose,
         integrals,
         couette,
         extra_theta,
         extra_z,
-        ends,
+        s.H,
+        g.width_x,
+        scales.ends,
         edge_forces(parts, scales),
-        scales.force,
-        scales.shear,
-        g.reference_length,
+        (scales.force, scales.shear, g.reference_length),
         journal.omega,
         journal.axial_speed,
         wrench,

@@ -312,8 +312,7 @@ class BearingModel:
         Returns the smallest, scaled, with the record's fields of these names.
         """
         s, p, at = self.solver, self.parts, self.grid.directions
-        closed = not p.grid.edges.size
-        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, closed, s.H, s.HF, s.H_t)
+        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, p.grid.closed, s.H, s.HF, s.H_t)
         extra = None
         if self.effects.gap_terms or self.flexible:
             smallest, extra = self._add_gap_terms(history)

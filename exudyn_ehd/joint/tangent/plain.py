@@ -11,7 +11,7 @@ from numba import njit
 
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.cavitation.linear_film import column_gradients, couple_columns, rows_of_linear
-from exudyn_ehd.film.cavitation.rupture_line import line_gradients, line_weights
+from exudyn_ehd.film.cavitation.rupture_line import line_gradients, weigh_line
 from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.gradients import add_columns, functional_gradients, link_rows
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gradient
@@ -94,14 +94,8 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shape
     link_rows(order, count, H.shape[1], by_links, by_speed, None, (by_rate, by_gap), whole)
     add_columns(np.arange(count), order[:count], whole, shapes, columns)
     if line is not None:
-        f, k, s, found = line[0], line[1], line[2], 0
-        places, rows = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
-        for r in range(count):
-            if s[order[r]] < 1.0:
-                places[found], rows[found] = order[r], r
-                found += 1
-        places, rows, weights, by = places[:found], rows[:found], np.empty((2, found)), np.zeros((10, found))
-        line_weights(places, f, k, s, weights)
+        rows, places, weights = weigh_line(line, number)
+        by = np.zeros((10, places.size))
         line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
         add_columns(rows, places, by, shapes, columns)
     if between is not None:

@@ -31,7 +31,7 @@ from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.oil_line import CurveFields, OilLine
-from exudyn_ehd.film.cavitation.rupture_line import LineFields, RuptureLine, line_terms
+from exudyn_ehd.film.cavitation.rupture_line import LineFields, RuptureLine, line_gradients, line_terms, weigh_line
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux
@@ -85,30 +85,24 @@ def _by_bare(t):
 
 
 @njit(cache=True)
-def weigh_yielding(places, f, k, lean, weights):
-    """Convert `RuptureLine.weights` (2, c) at ``places`` to those of a film on a liner, in place."""
-    sources, conductances, t = f.reshape(-1), k.reshape(-1), lean.reshape(-1)
+def yielding_rows(line, lean, density, liner, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
+    """Return `exudyn_ehd.film.cavitation.rupture_line.line_rows`, through t too, and through the liner's conductance.
+
+    ``liner``: compliance, vx, and widths (m,) of the vertices in z.
+    """
+    rows, places, weights = weigh_line(line, number)
+    (beta, sliding, width), gap, t, m = liner, HF.reshape(-1), lean.reshape(-1), HF.shape[1]
+    f, k, s, by = line[0], line[1], line[2], np.zeros((10, places.size))
     for q in range(places.size):
         c = places[q]
         by_f, turned = _by_bare(t[c])
-        weights[1, q] -= weights[0, q] * turned * sources[c] / conductances[c]
-        weights[0, q] *= by_f
-
-
-@njit(cache=True)
-def add_yielding(places, line, lean, HF, liner, by):
-    """Add to `Gradients.by` the derivatives through t to the gap, and through the liner's conductance to vx."""
-    (beta, vx, width), gap, t, m = liner, HF.reshape(-1), lean.reshape(-1), HF.shape[1]
-    f, k, s = line[0], line[1], line[2]
-    for q in range(places.size):
-        c = places[q]
-        _, turned = _by_bare(t[c])
-        short = 0.5 * (1.0 - s[c])
-        by_gap = short * turned * f[c] / (gap[c - m] + gap[c])
-        by[0, q] -= by_gap
-        by[1, q] -= by_gap
-        conduct = short * (s[c] - turned) * f[c] / k[c]
-        by[6, q] += conduct * 0.5 * beta * np.sign(vx) * width[c % m]
+        short = weights[0, q]
+        weights[1, q] -= short * turned * f[c] / k[c]
+        weights[0, q] = density * short * by_f
+        by[0, q] = by[1, q] = -short * turned * f[c] / (gap[c - m] + gap[c])
+        by[6, q] = short * (s[c] - turned) * f[c] / k[c] * 0.5 * beta * np.sign(sliding) * width[c % m]
+    line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by)
+    return rows, places, by
 
 
 class GapChain(NamedTuple):
@@ -217,18 +211,9 @@ class FilmLine(RuptureLine):
         """Set s of the ``active`` vertices (n, m) from the curves of the solved film, 1 elsewhere."""
         np.copyto(self.s, np.where(active, self.curve.s.reshape(active.shape), 1.0))
 
-    def weights(self, places: np.ndarray) -> np.ndarray:
-        """Derivatives as of `RuptureLine.weights`, for a film of this density on its liner."""
-        out = super().weights(places)
-        weigh_yielding(places, self.f, self.k, self.lean, out)
-        out[0] *= self.density
-        return out
-
     def gradients(
         self,
         work: Workspace,
-        places: np.ndarray,
-        weights: np.ndarray,
         gaps: tuple[np.ndarray, np.ndarray],
         flux: LinkFlux | None,
         speeds: tuple[float, float],
@@ -237,9 +222,9 @@ class FilmLine(RuptureLine):
         mesh: tuple[np.ndarray, ...],
     ) -> Gradients:
         """Return `RuptureLine.gradients`, with what the liner adds, for gaps and flux at the cavity's pressure."""
-        line = super().gradients(work, places, weights, gaps, flux, speeds, flow_x, squeeze, mesh)
-        add_yielding(places, self.block, self.lean, gaps[1], self.liner, line.by)
-        return line
+        slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
+        rest = self.block, self.lean, self.density, self.liner, work.number
+        return Gradients(*yielding_rows(*rest, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
 
 
 def undeformed(line: Gradients, chain: GapChain | None) -> Gradients:

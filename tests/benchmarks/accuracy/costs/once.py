@@ -28,10 +28,7 @@ TOLERANCE = 0.02
 
 
 def first_result(kernels: str) -> float:
-    """Seconds of a new interpreter up to its first film, with numba's cache in the folder ``kernels``.
-
-    By the clock, since two processes compile.
-    """
+    """Seconds of a new interpreter up to its first film, with numba's cache in the folder ``kernels``."""
     start = time.perf_counter()
     subprocess.run(
         [sys.executable, "-c", FIRST_RESULT],
