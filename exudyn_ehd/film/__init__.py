@@ -2,10 +2,10 @@
 
 Module map
 ----------
+kernels      integers of one type, and the freedom of sums, for kernels
 grid         vertices (theta, z), control volumes, weights
 gradients    derivatives of balances and other sums to the gaps around their vertices, to a pose, to a bore
 arcs         bores on parts of the circle: lobes, pads and dams, their columns and rows
-differences  differences over the links of a grid, sums over links by vertices
 combinations options of a bearing that exclude or need each other
 models       film models that a scene names; their grids and solvers
 supply       grooves, holes, pockets

@@ -20,7 +20,8 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
+from exudyn_ehd.film.kernels import FAST
+
 # Weights of a vertex and its neighbours (columns: itself, next and last in theta, next and last in z) by
 # `Gradients.by` (rows) for a gap or a rate of vertices, which on links in theta is the mean of both ends.
 _BY_GAP, _BY_RATE = np.zeros((2, 10, 5))
@@ -98,7 +99,7 @@ def join(a: Gradients, b: Gradients) -> Gradients:
     return Gradients(rows, places, np.concatenate((a.by, b.by), axis=1))
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _ends(by_h, by_d, a, b, follows, gap):
     """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b, by its gap, of which row
     ``gap`` of ``follows`` tells how it follows, and by E."""
@@ -106,7 +107,7 @@ def _ends(by_h, by_d, a, b, follows, gap):
     return 0.5 * here, 0.5 * there
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def link_rows(order, count, m, by, by_speed, follows, storage, out):
     """Derivatives ``out`` (10, count) of the balances at vertices ``order``, see `Gradients.by`.
 
@@ -156,7 +157,7 @@ def link_rows(order, count, m, by, by_speed, follows, storage, out):
         out[0, r], out[1, r], out[2, r], out[5, r], out[6, r], out[7, r] = face, -before, own, rate[c], vx, vz
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def add_columns(rows, places, by, shapes, out):
     """Add the sums' derivatives (10, count) to a motion, see `Gradients.columns`."""
     at, link = shapes[0].reshape(-1), shapes[1].reshape(-1)
@@ -228,7 +229,7 @@ def _add_fields(lam, rows, places, by, cell, face, rate, speed):
             speed[k, 1] += w * by[7, e]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def functional_gradients(lam, columns, out):
     """Gradients ``-lam . dr`` (k, 10) of adjoint functionals lam (k, count), for dr (10, count)."""
     for k in range(lam.shape[0]):
@@ -240,7 +241,7 @@ def functional_gradients(lam, columns, out):
             out[k, q] = total
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def add_rows(rows, weight, place, fields, out):
     """Add to the ``rows`` of sums (count, r) those of fields (., r) at ``place`` times ``weight``, both (c, s)."""
     for e in range(rows.size):

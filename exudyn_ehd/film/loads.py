@@ -22,12 +22,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.gap import transposed_slopes
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
-
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def pressure_integrals(P, weight, shapes, out):
     """S_c, S_s, S_zc, S_zs -> out (4,); ``shapes``: `FilmGrid.gap_shapes`."""
     by_pose, p, w = shapes[0].reshape(-1, 4), P.reshape(-1), weight.reshape(-1)
@@ -50,7 +49,7 @@ def ends_cavity(active, fixed, i, end):
 
 
 # A flat loop without checks for a division by zero, which the compiler vectorises.
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def couette_integral(H, weight, active, fixed, cavity_share):
     """C of an oil of one viscosity, with ``cavity_share`` where the film is broken."""
     h, w, free, known = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1)
@@ -106,7 +105,7 @@ def journal_wrench(pose, integrals, couette, extra_theta, extra_z, H, width, end
 
 
 # A flat loop as in `couette_integral`.
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def couette_gradient(H, weight, active, fixed, cavity_share, out):
     """dC/dH -> out (n, m)."""
     h, w, free, known, by = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1), out.reshape(-1)
@@ -119,7 +118,7 @@ def couette_gradient(H, weight, active, fixed, cavity_share, out):
             out[i, end] *= cavity_share if ends_cavity(active, fixed, i, end) else 1.0
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def load_adjoint_rhs(order, count, weight, shapes, active, rhs_out):
     """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped.
 
@@ -275,7 +274,7 @@ def integral_weights(pose, R, force, shear, omega, w, out):
     out[5, 4], out[5, 5] = -shear * R * R * omega, -turning
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def shear_fields(P, weight, width, z, couette, ends, factors, out):
     """Combinations (2, n, m) of the fields that shear owes to an elastic gap.
 

@@ -5,16 +5,11 @@ Storage and numbering as in `exudyn_ehd.film.banded.factors`, in dense bands as 
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
 from exudyn_ehd.film.banded.workspace import PAD
-
-_unsigned: Any = np.uint64
-_0, _1 = _unsigned(0), _unsigned(1)
+from exudyn_ehd.film.kernels import U0, U1, unsigned
 
 
 # slices alone, which Python does faster than the way into a compiled kernel takes
@@ -40,19 +35,19 @@ def assemble(kx, kz, slopes, number, order, count, lower, upper):
         of the storage to the vertex's own unknown.
     """
     n, m = number.shape
-    size, rows = _unsigned(n * m), _unsigned(m)
+    size, rows = unsigned(n * m), unsigned(m)
     last = size - rows
     places, along, across = number.reshape(-1), kx.reshape(-1), kz.reshape(-1)
     ax, bx, az, bz, store = slopes[0], slopes[1], slopes[2], slopes[3], slopes[4]
     low, up = lower.reshape(-1), upper.reshape(-1)
-    stride = _unsigned(lower.shape[1])
+    stride = unsigned(lower.shape[1])
     for q in range(low.size):
         low[q] = 0.0
     for q in range(up.size):
         up[q] = 0.0
     for r in range(count):
-        row = _unsigned(r)
-        c = _unsigned(order[r])
+        row = unsigned(r)
+        c = unsigned(order[r])
         nxt = c + rows if c < last else c - last
         prv = c - rows if c >= rows else c + last
         # links in theta, then in z, where those at the film's ends conduct nothing
@@ -60,21 +55,21 @@ def assemble(kx, kz, slopes, number, order, count, lower, upper):
         b = places[nxt]
         if along[c] != 0.0 and b >= 0:
             if b > r:
-                up[row * stride + _unsigned(b - r)] += bx[c]
+                up[row * stride + unsigned(b - r)] += bx[c]
             else:
-                low[_unsigned(b) * stride + _unsigned(r - b)] += bx[c]
+                low[unsigned(b) * stride + unsigned(r - b)] += bx[c]
         b = places[prv]
         if along[prv] != 0.0 and b >= 0:
             if b > r:
-                up[row * stride + _unsigned(b - r)] -= ax[prv]
+                up[row * stride + unsigned(b - r)] -= ax[prv]
             else:
-                low[_unsigned(b) * stride + _unsigned(r - b)] -= ax[prv]
-        if across[c] != 0.0 and places[c + _1] >= 0:
-            up[row * stride + _1] += bz[c]
-        if c > _0:
-            diagonal -= bz[c - _1]
-            if across[c - _1] != 0.0 and places[c - _1] >= 0:
-                low[(row - _1) * stride + _1] -= az[c - _1]
+                low[unsigned(b) * stride + unsigned(r - b)] -= ax[prv]
+        if across[c] != 0.0 and places[c + U1] >= 0:
+            up[row * stride + U1] += bz[c]
+        if c > U0:
+            diagonal -= bz[c - U1]
+            if across[c - U1] != 0.0 and places[c - U1] >= 0:
+                low[(row - U1) * stride + U1] -= az[c - U1]
         up[row * stride] = diagonal
 
 
@@ -104,10 +99,10 @@ def _add_flow(value, place, ends, places, full, stride, low, up):
     column = places[place]
     if column < 0 or not (full is None or full.reshape(-1)[place]):
         return
-    c = _unsigned(column)
+    c = unsigned(column)
     for row, share in ((ends[0], value), (ends[1], -value)):
         if row >= 0:
-            r = _unsigned(row)
+            r = unsigned(row)
             if c >= r:
                 up[r * stride + (c - r)] += share
             else:
@@ -135,31 +130,31 @@ def add_corners(across, weights, kx, kz, full, number, lower, upper):
     n, m = kx.shape
     back_x, on_x, back_z, on_z = weights
     low, up, places = lower.reshape(-1), upper.reshape(-1), number.reshape(-1)
-    stride, rows = _unsigned(lower.shape[1]), _unsigned(m)
+    stride, rows = unsigned(lower.shape[1]), unsigned(m)
     for i in range(n):
-        on, back = _unsigned(i + 1 if i + 1 < n else 0) * rows, _unsigned(i - 1 if i > 0 else n - 1) * rows
+        on, back = unsigned(i + 1 if i + 1 < n else 0) * rows, unsigned(i - 1 if i > 0 else n - 1) * rows
         for j in range(m):
-            c = _unsigned(i) * rows + _unsigned(j)
-            far = on + _unsigned(j)
+            c = unsigned(i) * rows + unsigned(j)
+            far = on + unsigned(j)
             a, b = places[c], places[far]
             k = -0.5 * kx[i, j] * across[0, i, j]
             if k != 0.0 and (a >= 0 or b >= 0):
                 before, behind = k * back_z[j] if j > 0 else 0.0, k * on_z[j] if j + 1 < m else 0.0
                 for end in (c, far):
                     if before != 0.0:
-                        _add_flow(-before, end - _1, (a, b), places, full, stride, low, up)
+                        _add_flow(-before, end - U1, (a, b), places, full, stride, low, up)
                     if behind != 0.0:
-                        _add_flow(behind, end + _1, (a, b), places, full, stride, low, up)
+                        _add_flow(behind, end + U1, (a, b), places, full, stride, low, up)
                     if before != behind:
                         _add_flow(before - behind, end, (a, b), places, full, stride, low, up)
             if j + 1 == m:
                 continue
-            b = places[c + _1]
+            b = places[c + U1]
             k = -0.5 * kz[i, j] * across[1, i, j]
             if k != 0.0 and (a >= 0 or b >= 0):
                 before, behind = k * back_x[i], k * on_x[i]
-                for row in (_unsigned(j), _unsigned(j) + _1):
+                for row in (unsigned(j), unsigned(j) + U1):
                     _add_flow(-before, back + row, (a, b), places, full, stride, low, up)
                     _add_flow(behind, on + row, (a, b), places, full, stride, low, up)
                     if before != behind:
-                        _add_flow(before - behind, _unsigned(i) * rows + row, (a, b), places, full, stride, low, up)
+                        _add_flow(before - behind, unsigned(i) * rows + row, (a, b), places, full, stride, low, up)

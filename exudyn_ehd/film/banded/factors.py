@@ -25,7 +25,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-import numpy as np
 from llvmlite import ir
 from numba import njit, types
 from numba.core.base import BaseContext
@@ -34,6 +33,7 @@ from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
 from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.kernels import U0, U1, U2, U3, U4, unsigned
 
 LANES = 4
 _int32 = ir.IntType(32)
@@ -92,8 +92,6 @@ def subtract_four_lanes(typingctx, target, at, source, p0, p1, p2, p3, f0, f1, f
 
 
 _FAST = {"contract", "nsz", "arcp"}
-_unsigned = np.uint64
-_0, _1, _2, _3, _4 = (_unsigned(k) for k in range(5))
 
 
 @njit(cache=True)
@@ -104,24 +102,24 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
     """
     n, m = number.shape
     along, across, places, flat = kx.reshape(-1), kz.reshape(-1), number.reshape(-1), band_out.reshape(-1)
-    size, rows, stride = _unsigned(n * m), _unsigned(m), _unsigned(band_out.shape[1])
-    wide = _unsigned(min(width + 1 + PAD, band_out.shape[1]))
+    size, rows, stride = unsigned(n * m), unsigned(m), unsigned(band_out.shape[1])
+    wide = unsigned(min(width + 1 + PAD, band_out.shape[1]))
     for r in range(first, count):
-        c, row = _unsigned(order[r]), _unsigned(r) * stride
+        c, row = unsigned(order[r]), unsigned(r) * stride
         # links to rows above come from below
         for q in range(row, row + wide):
             flat[q] = 0.0
-        before, on = c - _1 if c > _0 else size - _1, c + _1 if c + _1 < size else _0
+        before, on = c - U1 if c > U0 else size - U1, c + U1 if c + U1 < size else U0
         prv, nxt = c - rows if c >= rows else c + size - rows, c + rows if c + rows < size else c + rows - size
         flat[row] += along[prv] + along[c] + across[before] + across[c]
         b = places[on]
         if b > r:
-            flat[row + _unsigned(b - r)] -= across[c]
+            flat[row + unsigned(b - r)] -= across[c]
         b = places[nxt]
         if b > r and b - r <= width:
-            flat[row + _unsigned(b - r)] -= along[c]
+            flat[row + unsigned(b - r)] -= along[c]
         elif first <= b < r and r - b <= width:
-            flat[_unsigned(b) * stride + _unsigned(r - b)] -= along[c]
+            flat[unsigned(b) * stride + unsigned(r - b)] -= along[c]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -131,23 +129,23 @@ def factor_band(band, count, width, first, inv_diag_out):
     Rows below ``first`` (a multiple of 4) are factored already and stay; those from it on hold the matrix. The
     operations on every row, and so its bits, are the same as for ``first = 0``.
     """
-    flat, stride, w, size = band.reshape(-1), _unsigned(band.shape[1]), _unsigned(width), _unsigned(count)
-    begin, changed = _unsigned(max(0, first - width - 4) // 4 * 4), _unsigned(first)
+    flat, stride, w, size = band.reshape(-1), unsigned(band.shape[1]), unsigned(width), unsigned(count)
+    begin, changed = unsigned(max(0, first - width - 4) // 4 * 4), unsigned(first)
     for block in range((count + 3) // 4 - int(begin) // 4):
-        k = begin + _4 * _unsigned(block)
-        if k >= changed and not _factor_four(flat, stride, k, min(_4, size - k), w, inv_diag_out):
+        k = begin + U4 * unsigned(block)
+        if k >= changed and not _factor_four(flat, stride, k, min(U4, size - k), w, inv_diag_out):
             return False
         row0 = k * stride
-        row1, row2, row3 = row0 + stride, row0 + _2 * stride, row0 + _3 * stride
-        for i in range(max(k + _4, changed), min(size, k + _4 + w)):
-            d = i - k - _3
-            p0, p1, p2, p3 = row0 + d + _3, row1 + d + _2, row2 + d + _1, row3 + d
-            f0, f1 = flat[p0] * inv_diag_out[k], flat[p1] * inv_diag_out[k + _1]
-            f2, f3 = flat[p2] * inv_diag_out[k + _2], flat[p3] * inv_diag_out[k + _3]
-            own, t = i * stride, _0
+        row1, row2, row3 = row0 + stride, row0 + U2 * stride, row0 + U3 * stride
+        for i in range(max(k + U4, changed), min(size, k + U4 + w)):
+            d = i - k - U3
+            p0, p1, p2, p3 = row0 + d + U3, row1 + d + U2, row2 + d + U1, row3 + d
+            f0, f1 = flat[p0] * inv_diag_out[k], flat[p1] * inv_diag_out[k + U1]
+            f2, f3 = flat[p2] * inv_diag_out[k + U2], flat[p3] * inv_diag_out[k + U3]
+            own, t = i * stride, U0
             while t <= w - d:
                 subtract_four_lanes(flat, own + t, flat, p0 + t, p1 + t, p2 + t, p3 + t, f0, f1, f2, f3)
-                t += _4
+                t += U4
     return True
 
 
@@ -160,36 +158,36 @@ def _factor_four(flat, stride, k, rows, w, inv_diag_out):
             return False
         inverse = 1.0 / flat[row]
         inv_diag_out[k + q] = inverse
-        for s in range(q + _1, min(rows, q + w + _1)):
+        for s in range(q + U1, min(rows, q + w + U1)):
             d = s - q
-            own, factor, t = (k + s) * stride, flat[row + d] * inverse, _0
+            own, factor, t = (k + s) * stride, flat[row + d] * inverse, U0
             while t <= w - d:
                 subtract_lanes(flat, own + t, flat, row + d + t, factor)
-                t += _4
+                t += U4
     return True
 
 
 @njit(cache=True, fastmath=_FAST)
 def factor_lu(lower, upper, count, width, inv_diag_out):
     """Factor in place, four pivots at a time; returns False if a pivot vanishes."""
-    low, up, stride = lower.reshape(-1), upper.reshape(-1), _unsigned(upper.shape[1])
-    w, size = _unsigned(width), _unsigned(count)
+    low, up, stride = lower.reshape(-1), upper.reshape(-1), unsigned(upper.shape[1])
+    w, size = unsigned(width), unsigned(count)
     for block in range((count + 3) // 4):
-        k = _4 * _unsigned(block)
-        if not _factor_lu_four(low, up, stride, k, min(_4, size - k), w, inv_diag_out):
+        k = U4 * unsigned(block)
+        if not _factor_lu_four(low, up, stride, k, min(U4, size - k), w, inv_diag_out):
             return False
         row0 = k * stride
-        row1, row2, row3 = row0 + stride, row0 + _2 * stride, row0 + _3 * stride
-        for i in range(k + _4, min(size, k + _4 + w)):
-            d = i - k - _3
-            p0, p1, p2, p3 = row0 + d + _3, row1 + d + _2, row2 + d + _1, row3 + d
+        row1, row2, row3 = row0 + stride, row0 + U2 * stride, row0 + U3 * stride
+        for i in range(k + U4, min(size, k + U4 + w)):
+            d = i - k - U3
+            p0, p1, p2, p3 = row0 + d + U3, row1 + d + U2, row2 + d + U1, row3 + d
             a0, a1, a2, a3 = low[p0], low[p1], low[p2], low[p3]
             b0, b1, b2, b3 = up[p0], up[p1], up[p2], up[p3]
-            own, t = i * stride, _0
+            own, t = i * stride, U0
             while t <= w - d:
                 subtract_four_lanes(up, own + t, up, p0 + t, p1 + t, p2 + t, p3 + t, a0, a1, a2, a3)
                 subtract_four_lanes(low, own + t, low, p0 + t, p1 + t, p2 + t, p3 + t, b0, b1, b2, b3)
-                t += _4
+                t += U4
     return True
 
 
@@ -202,13 +200,13 @@ def _factor_lu_four(low, up, stride, k, rows, w, inv_diag_out):
             return False
         inverse = 1.0 / up[row]
         inv_diag_out[k + q] = inverse
-        for d in range(_1, w + _1):
+        for d in range(U1, w + U1):
             low[row + d] *= inverse
-        for s in range(q + _1, min(rows, q + w + _1)):
+        for s in range(q + U1, min(rows, q + w + U1)):
             d = s - q
-            own, a, b, t = (k + s) * stride, low[row + d], up[row + d], _0
+            own, a, b, t = (k + s) * stride, low[row + d], up[row + d], U0
             while t <= w - d:
                 subtract_lanes(up, own + t, up, row + d + t, a)
                 subtract_lanes(low, own + t, low, row + d + t, b)
-                t += _4
+                t += U4
     return True

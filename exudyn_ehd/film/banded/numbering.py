@@ -14,8 +14,8 @@ The numbering depends on the active set alone and not on how it was found.
 import numpy as np
 from numba import njit
 
-# numpy's integer, since numba compiles kernels anew for a plain 0
-_NONE = np.int64(0)
+from exudyn_ehd.film.kernels import I0
+
 # as spare links: the ring is cut at columns without active cells alone
 _NOWHERE = np.int64(-1)
 
@@ -34,7 +34,7 @@ def number_cells(active, kx, order_out, number_out):
     number_out : (n, m) int array
         Unknown of every cell, -1 if not active.
     """
-    return number_along(active, kx, np.int64(1), _NONE, order_out, number_out)
+    return number_along(active, kx, np.int64(1), I0, order_out, number_out)
 
 
 @njit(cache=True)

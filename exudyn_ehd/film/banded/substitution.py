@@ -24,41 +24,39 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
+from exudyn_ehd.film.kernels import FAST, I1, I4, NO, U0, U1, U2, YES, unsigned
+
 _FUSE = {"contract", "nsz", "arcp"}
-_unsigned = np.uint64
-_0, _1, _2 = (_unsigned(k) for k in range(3))
-# numba would compile everything below anew for each plain True and False
-_YES, _NO = np.True_, np.False_
 
 
 @njit(cache=True, nogil=True, inline="always")
 def solve_ldl(band, inverse, count, width, x):
     """Solve ``A x = b`` with the symmetric factor of `factors.factor_band` for every row of x (k, count), in place."""
-    _solve_rows(band, band, _YES, _YES, inverse, count, width, x)
+    _solve_rows(band, band, YES, YES, inverse, count, width, x)
 
 
 @njit(cache=True, inline="always")
 def solve_ldl_one(band, inverse, count, width, x):
     """Solve ``A x = b`` as `solve_ldl`, for one right-hand side x (count,), in place."""
-    _solve_one(band.reshape(-1), band.reshape(-1), band.shape[1], _YES, _YES, inverse, count, width, x)
+    _solve_one(band.reshape(-1), band.reshape(-1), band.shape[1], YES, YES, inverse, count, width, x)
 
 
 @njit(cache=True)
 def solve_lu(lower, upper, inverse, count, width, x):
     """Solve ``A x = b`` with the factor of `factors.factor_lu` for every row of x (k, count), in place."""
-    _solve_rows(lower, upper, _NO, _YES, inverse, count, width, x)
+    _solve_rows(lower, upper, NO, YES, inverse, count, width, x)
 
 
 @njit(cache=True)
 def solve_lu_one(lower, upper, inverse, count, width, x):
     """Solve ``A x = b`` as `solve_lu`, for one right-hand side x (count,), in place."""
-    _solve_one(lower.reshape(-1), upper.reshape(-1), upper.shape[1], _NO, _YES, inverse, count, width, x)
+    _solve_one(lower.reshape(-1), upper.reshape(-1), upper.shape[1], NO, YES, inverse, count, width, x)
 
 
 @njit(cache=True)
 def solve_lu_transposed(lower, upper, inverse, count, width, x):
     """Solve ``A^T x = b`` with the factor of `factors.factor_lu` for every row of x (k, count), in place."""
-    _solve_rows(upper, lower, _YES, _NO, inverse, count, width, x)
+    _solve_rows(upper, lower, YES, NO, inverse, count, width, x)
 
 
 @njit(cache=True)
@@ -81,39 +79,39 @@ def _solve_rows(forward, backward, scale_forth, scale_back, inverse, count, widt
 @njit(cache=True, fastmath=_FUSE)
 def _solve_one(col, row, stride, scale_forth, scale_back, inverse, count, width, x):
     """One right-hand side x (count,) with the rows of F and G in flat arrays, ``stride`` apart."""
-    step, size, w = _unsigned(stride), _unsigned(count), _unsigned(width)
-    along = step - _1
+    step, size, w = unsigned(stride), unsigned(count), unsigned(width)
+    along = step - U1
     for r in range(size):
         reach = w if w < r else r
         at, k, s, t = r * step - reach * along, r - reach, x[r], 0.0
-        while k + _1 < r:
+        while k + U1 < r:
             s -= col[at] * x[k]
-            t += col[at + along] * x[k + _1]
+            t += col[at + along] * x[k + U1]
             at += along + along
-            k += _2
+            k += U2
         s -= t
         if k < r:
             s -= col[at] * x[k]
         x[r] = s * inverse[r] if scale_forth else s
     for q in range(size):
-        i = size - _1 - q
+        i = size - U1 - q
         own, d, t = i * step, w if w < q else q, 0.0
         s = x[i] * row[own] if scale_forth and scale_back else x[i]
-        while d > _1:
+        while d > U1:
             s -= row[own + d] * x[i + d]
-            t += row[own + d - _1] * x[i + d - _1]
-            d -= _2
+            t += row[own + d - U1] * x[i + d - U1]
+            d -= U2
         s -= t
-        if d > _0:
-            s -= row[own + _1] * x[i + _1]
+        if d > U0:
+            s -= row[own + U1] * x[i + U1]
         x[i] = s * inverse[i] if scale_back else s
 
 
 @njit(cache=True, fastmath=_FUSE)
 def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width, x0, x1, x2, x3):
     """Solve as `_solve_one`, for four right-hand sides at once."""
-    step, size, w = _unsigned(stride), _unsigned(count), _unsigned(width)
-    along = step - _1
+    step, size, w = unsigned(stride), unsigned(count), unsigned(width)
+    along = step - U1
     for r in range(size):
         reach = w if w < r else r
         at, k, s0, s1, s2, s3 = r * step - reach * along, r - reach, x0[r], x1[r], x2[r], x3[r]
@@ -124,11 +122,11 @@ def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width
             s2 -= f * x2[k]
             s3 -= f * x3[k]
             at += along
-            k += _1
+            k += U1
         f = inverse[r] if scale_forth else 1.0
         x0[r], x1[r], x2[r], x3[r] = f * s0, f * s1, f * s2, f * s3
     for q in range(size):
-        i = size - _1 - q
+        i = size - U1 - q
         own, reach = i * step, w if w < q else q
         f = row[own] if scale_forth and scale_back else 1.0
         s0, s1, s2, s3 = f * x0[i], f * x1[i], f * x2[i], f * x3[i]
@@ -139,16 +137,13 @@ def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width
             s1 -= f * x1[k]
             s2 -= f * x2[k]
             s3 -= f * x3[k]
-            at -= _1
-            k -= _1
+            at -= U1
+            k -= U1
         f = inverse[i] if scale_back else 1.0
         x0[i], x1[i], x2[i], x3[i] = f * s0, f * s1, f * s2, f * s3
 
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 TILE = 48
-# numpy's integers, since numba compiles kernels anew for each plain one
-_ONE, _FOUR = np.int64(1), np.int64(4)
 
 
 @njit(cache=True)
@@ -169,7 +164,7 @@ def pack_blocks(band, scale, scaled, count, width):
     return out
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _subtract(c, row, column, known, x):
     """x -= C y for four rows of a tile each; entry (i, j) of C is ``c[i * row + j * column]``."""
     c00, c01, c02, c03 = c[0], c[column], c[2 * column], c[3 * column]
@@ -184,7 +179,7 @@ def _subtract(c, row, column, known, x):
         x[3 * TILE + q] -= c30 * y0 + c31 * y1 + c32 * y2 + c33 * y3
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _solve_tile(forward, backward, diagonal, rows):
     """Solve ``forward^T diagonal backward`` times unknowns = rows, one tile (blocks, 4 TILE), in place.
 
@@ -194,7 +189,7 @@ def _solve_tile(forward, backward, diagonal, rows):
     for k in range(blocks):
         own, c = rows[k], forward[k, 0]
         for b in range(min(k, reach), 0, -1):
-            _subtract(forward[k - b, b], _ONE, _FOUR, rows[k - b], own)
+            _subtract(forward[k - b, b], I1, I4, rows[k - b], own)
         c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
         for q in range(TILE):
             y0 = own[q]
@@ -212,7 +207,7 @@ def _solve_tile(forward, backward, diagonal, rows):
             own[2 * TILE + q] *= i2
             own[3 * TILE + q] *= i3
         for b in range(min(blocks - 1 - k, reach), 0, -1):
-            _subtract(backward[k, b], _FOUR, _ONE, rows[k + b], own)
+            _subtract(backward[k, b], I4, I1, rows[k + b], own)
         c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
         for q in range(TILE):
             y3 = own[3 * TILE + q]
@@ -236,8 +231,8 @@ def solve_columns(lower, upper, inverse, symmetric, count, width, x):
     symmetric : bool
         ``A = U^T D^-1 U`` with ``upper`` alone; else ``A = L U`` with a unit diagonal of L.
     """
-    back = pack_blocks(upper, inverse, _YES, count, width)
-    ahead = back if symmetric else pack_blocks(lower, inverse, _NO, count, width)
+    back = pack_blocks(upper, inverse, YES, count, width)
+    ahead = back if symmetric else pack_blocks(lower, inverse, NO, count, width)
     blocks = len(ahead)
     diagonal, tile = np.zeros(4 * blocks), np.zeros((blocks, 4 * TILE))
     rows = tile.reshape(4 * blocks, TILE)
@@ -267,7 +262,7 @@ def product(matrix: np.ndarray | csr_matrix, columns: np.ndarray) -> np.ndarray:
     return out
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _sparse_product(indptr, indices, data, columns, out):
     """`product` with the rows of a sparse matrix, by tiles that the processor's cache holds."""
     sides = columns.shape[1]

@@ -8,8 +8,6 @@ import numpy as np
 
 # Zeros behind the half-bandwidth of every band: four pivots, and vectors of four, may read past it.
 PAD = 6
-# First row of a whole matrix; numpy's integer, since numba compiles kernels anew for a plain 0.
-FIRST_ROW = np.int64(0)
 
 
 class Workspace:

@@ -30,9 +30,10 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.film.banded.factors import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
-from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
+from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.kernels import I0
 from exudyn_ehd.film.reynolds.links import LinkFlux, lacks
 
 
@@ -51,8 +52,8 @@ def solve_linear(links, active, factor, x, P):
     """
     (kx, kz, _), (order, _, number, band, inv_diag) = links, factor
     count, width = number_cells(active, kx, order, number)
-    assemble_band(kx, kz, number, order, count, width, FIRST_ROW, band)
-    if not factor_band(band, count, width, FIRST_ROW, inv_diag):
+    assemble_band(kx, kz, number, order, count, width, I0, band)
+    if not factor_band(band, count, width, I0, inv_diag):
         return False, count, width
     pressures, lack = P.reshape(-1), np.empty(P.shape)
     for r in range(count):

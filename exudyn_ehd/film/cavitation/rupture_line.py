@@ -31,12 +31,12 @@ from numba import njit
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import Mesh
+from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
 # Smallest s of a vertex in the film, as dp/ds vanishes at 0: what lies below is the rounding of its neighbours'
 # pressures.
 LEAST = 1e-8
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class LineFields(NamedTuple):
@@ -108,7 +108,7 @@ def line_terms(kx, b, fixed, in_cells, line):
         _clear_known(known[before], known[at], known[behind], f[at], whole[at], limit[at])
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def _terms(before, links, rest, f, k, whole):
     for c in range(f.size):
         k[c] = 0.5 * (before[c] + links[c])

@@ -39,6 +39,7 @@ from exudyn_ehd.film.cavitation.states import (
     take_sink,
 )
 from exudyn_ehd.film.cavitation.system import FilmSystem, imbalance
+from exudyn_ehd.film.kernels import NO
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, know_at
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, oil_links, terms_of
 from exudyn_ehd.film.reynolds.links import hold_back
@@ -66,8 +67,6 @@ BENDS = 6.0
 FAR = 10.0
 # Outcomes of `look`.
 GOES_ON, FOUND, LOST = 0, 1, 2
-# numba would compile everything below anew for a plain False
-_NO = np.False_
 
 
 @njit(cache=True, inline="always")
@@ -187,7 +186,7 @@ def _newton(film, pc, kind, oil, start, factor, x, full, state):
         start_states(terms, pc, curve, full, u)
     else:
         place_states(curve, full, P, fill, u)
-    progress, band = (ready, _NO, _NO, 0.0, LEFT), (order, lower, upper, inv_diag)
+    progress, band = (ready, NO, NO, 0.0, LEFT), (order, lower, upper, inv_diag)
     set_states(terms, carried, curve, full, u, P, fill)
     for step in range(MOST_STEPS):
         if oil is None:

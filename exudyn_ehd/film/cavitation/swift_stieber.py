@@ -20,11 +20,12 @@ from numba import njit
 from exudyn_ehd.film.banded.factors import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_along
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
-from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
+from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 from exudyn_ehd.film.cavitation.solve import FAR, LEFT, REUSABLE
 from exudyn_ehd.film.cavitation.states import ROUNDING
 from exudyn_ehd.film.cavitation.system import FilmSystem
+from exudyn_ehd.film.kernels import I0
 from exudyn_ehd.film.reynolds.links import lacks
 
 # s that a vertex starts from whose pressure says nothing of it.
@@ -160,7 +161,6 @@ def place_line(line, fixed, active, p):
 
 # Steps of a film, or one for each column if these are more: a line may have as far to go.
 MOST_STEPS = 100
-_NONE = np.int64(0)
 
 
 @njit(cache=True, inline="always")
@@ -169,7 +169,7 @@ def _newton(links, line, active, factor, x, forth, p):
     order, old_order, number, band, inv_diag = factor
     lack = np.empty(p.shape)
     lacks(links, p, lack)
-    count, width, changes, done = FIRST_ROW, np.int64(1), 1, False
+    count, width, changes, done = I0, np.int64(1), 1, False
     most = max(MOST_STEPS, p.shape[0])
     for step in range(most + 1):
         changes += join_film(links, line, active, lack, p)
@@ -180,9 +180,9 @@ def _newton(links, line, active, factor, x, forth, p):
             old_count, old_width = count, width
             for r in range(old_count):
                 old_order[r] = order[r]
-            count, width = number_along(active, links[0], forth, _NONE, order, number)
+            count, width = number_along(active, links[0], forth, I0, order, number)
             # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
-            first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else FIRST_ROW
+            first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else I0
         lack_at_line(lack, line, order, count, x)
         ok, kept = factor_line(links, line, factor, count, width, first, REUSABLE)
         if not ok:

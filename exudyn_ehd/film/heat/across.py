@@ -31,11 +31,11 @@ import numpy as np
 from numba import njit
 from numpy.polynomial import Polynomial
 
-from exudyn_ehd.film.differences import drops, to_ends
 from exudyn_ehd.film.heat.energy import ViscosityField, downstream_weight, passed
+from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.film.reynolds.differences import drops, to_ends
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
 _MOMENTS = (np.array([1.0, 5.0, 5.0, 1.0]) / 12.0)[:, None] * LOBATTO[:, None] ** np.arange(3)
 # five heights, exact for the degrees of a flow (5), a temperature (3) and a weight (1)
@@ -173,7 +173,7 @@ def start_heights(fields: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(np.einsum("gc,cij->igj", _CUBIC, fields))
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, content_out):
     """Add what the links in theta (axis 0) or z (1) carry.
 

@@ -11,12 +11,12 @@ the density stays.
 
 from numba import njit
 
+from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.lubricant.density import law_at
 
 # Change of dp/dq, and an eighth of that of the density's slope, as shares, up to which Taylor's polynomial about a
 # known value is the law: to 1e-14 in the density, which the balance is solved with, and 1e-10 in its slope.
 NEAR = 5e-4
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True)
@@ -57,7 +57,7 @@ def _within(x, lowest, highest):
     return x if x < highest else highest
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _ratio_near(x, scale, lowest, highest, known, rho_out):
     """Density ratio by what is known; returns how many pressures are far from it."""
     at, rho, r1, r2, r3, r4, reach = known[0], known[1], known[4], known[5], known[6], known[7], known[8]
@@ -71,7 +71,7 @@ def _ratio_near(x, scale, lowest, highest, known, rho_out):
     return far
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def density_slope_at(P, scale, floor, law, known, rho_P_out):
     """Derivative (n, m) of the density ratio to P at the pressures of the last `density_at`; 0 where it stays."""
     x, slope = P.reshape(-1), rho_P_out.reshape(-1)

@@ -19,9 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-# numpy's integers, since numba compiles kernels anew for each plain one
-_0, _1 = np.int64(0), np.int64(1)
+from exudyn_ehd.film.kernels import FAST, I0, I1
 
 
 class FilmTerms(NamedTuple):
@@ -106,7 +104,7 @@ def both(x, start, stop, there, end):
     return part(x, start, stop), part(x, there, end)
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _upstream(f, fill_a, fill_b, rho_a, rho_b, up):
     for c in range(up.size):
         if fill_a is not None:
@@ -128,17 +126,17 @@ def upstream(fx, fz, fill, rho):
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
         fills, densities = both(fill, start, stop, there, end), both(rho, start, stop, there, end)
         _upstream(part(fx, start, stop), *fills, *densities, up[0, start:stop])
-    _upstream(part(fz, _0, e), *both(fill, _0, e, _1, size), *both(rho, _0, e, _1, size), up[1, :e])
+    _upstream(part(fz, I0, e), *both(fill, I0, e, I1, size), *both(rho, I0, e, I1, size), up[1, :e])
     return up
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _link_flows(k, f, P_a, P_b, up, out):
     for c in range(out.size):
         out[c] = k[c] * (P_a[c] - P_b[c]) + f[c] * up[c]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _gather_flows(area, grow, known, kept, fill, rho, across, across_in, along, along_in, out):
     """Flows that leave and the mass in store, less the flows that come in, flat."""
     for c in range(out.size):
@@ -173,8 +171,8 @@ def film_balance(P, fill, rho, film, out):
         film.grow.reshape(-1),
         film.known.reshape(-1),
         film.kept.reshape(-1),
-        part(fill, _0, size),
-        part(rho, _0, size),
+        part(fill, I0, size),
+        part(rho, I0, size),
         across[1:],
         across[:size],
         along[m:],
@@ -183,7 +181,7 @@ def film_balance(P, fill, rho, film, out):
     )
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def violation(r, P, fixed, pc, complementary):
     """Norm of the balances that do not hold; at pc oil may be drawn away if ``complementary``."""
     leaves, x, known = r.reshape(-1), P.reshape(-1), fixed.reshape(-1)
@@ -195,7 +193,7 @@ def violation(r, P, fixed, pc, complementary):
     return np.sqrt(total)
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, prompt, out):
     """Derivatives of the flows over links a -> b at fixed gaps to the unknown
     at one end, b (side 1) or a (-1); by: of its density."""
@@ -219,7 +217,7 @@ def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, prompt, out)
             out[c] = slope if full[c] else leaves
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _storage_slopes(area, full, fill, rho, by, grow, known, out):
     """Derivatives of the storage at fixed gaps to the unknowns, flat."""
     for c in range(out.size):
@@ -261,9 +259,9 @@ def film_slopes(fill, full, rho, rho_P, film, slopes):
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
         at = start, stop, there, end
         _link_slopes(film.kx, film.fx, full, carried, rho, rho_P, film.prompt, *at, slopes[0], slopes[1])
-    _link_slopes(film.kz, film.fz, full, carried, rho, rho_P, film.prompt, _0, e, _1, size, slopes[2], slopes[3])
+    _link_slopes(film.kz, film.fz, full, carried, rho, rho_P, film.prompt, I0, e, I1, size, slopes[2], slopes[3])
     slopes[2:4, e] = 0.0
     _storage_slopes(
-        film.area.reshape(-1), part(full, _0, size), part(fill, _0, size), part(rho, _0, size), part(rho_P, _0, size),
+        film.area.reshape(-1), part(full, I0, size), part(fill, I0, size), part(rho, I0, size), part(rho_P, I0, size),
         film.grow.reshape(-1), film.known.reshape(-1), slopes[4],
     )  # fmt: skip

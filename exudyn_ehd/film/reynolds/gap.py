@@ -25,12 +25,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
-
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def rigid_gap(pose, cos_x, sin_x, z, base, H_out):
     """Gap ``base - e(z) . n`` of a rigid journal at the angles given by cos_x, sin_x: H_out (n, m)."""
     for i in range(cos_x.size):
@@ -68,7 +67,7 @@ def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
     return min(H.min(), HF.min())
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def gap_slopes(field, width, links, z, link_out, slope_x_out, slope_z_out):
     """Mean on the links in theta and slopes of a field (n, m): central differences, one-sided at the ends of z and at
     columns without a link.
@@ -95,7 +94,7 @@ def gap_slopes(field, width, links, z, link_out, slope_x_out, slope_z_out):
             ) / (low * high * (low + high))
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def transposed_slopes(field, width, z, along_x_out, along_z_out):
     """Fields whose products with any gap term are those of ``field`` with its slopes of `gap_slopes` on a ring of
     columns of one ``width``."""
@@ -119,7 +118,7 @@ def transposed_slopes(field, width, z, along_x_out, along_z_out):
             along_z_out[i, j] += (high * high - low * low) * share
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def add_gap(field, rate, width, links, z, H, HF, H_t, slope_x_out, slope_z_out):
     """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as in `gap_slopes`.
 

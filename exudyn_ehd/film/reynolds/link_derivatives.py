@@ -9,17 +9,13 @@ gap at a vertex, ``d = (E_b - E_a) / 2``. The flow over a link is ``up f - k (P_
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.kernels import FAST, I0, I1
 from exudyn_ehd.film.reynolds.balance import part
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-# numpy's integers, since numba compiles kernels anew for each plain one
-_0, _1 = np.int64(0), np.int64(1)
 
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def _pressure_flow(P_a, P_b, metric, h_a, h_b, E_a, E_b, g, g_h, by_h, by_d):
     """Set the derivatives of the pressure flow to h and d; loops of one result each, which the compiler vectorises."""
     for c in range(by_h.size):
@@ -43,7 +39,7 @@ def _pressure_flow(P_a, P_b, metric, h_a, h_b, E_a, E_b, g, g_h, by_h, by_d):
             by_d[c] = -metric[c] * (P_b[c] - P_a[c]) * base * (E_b[c] - E_a[c])
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _couette_flow(v, width, carrier, c_h, h_a, h_b, up, by_h, by_own):
     """Add the derivative of the Couette flow to h, and set that to the link's own speed."""
     for c in range(by_h.size):
@@ -58,7 +54,7 @@ def _couette_flow(v, width, carrier, c_h, h_a, h_b, up, by_h, by_own):
         by_own[c] = width[c] * flow * up[c]
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def _slower(P_a, P_b, metric, h_a, h_b, E_a, E_b, g_v, by_vx):
     """Add the derivative of the pressure flow to vx."""
     for c in range(by_vx.size):
@@ -101,10 +97,10 @@ def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
         at, law = h_x[start:stop], (part(g_x, start, stop), part(g_x_h, start, stop))
         leans, out = (part(E, start, stop), part(E, there, end)), (by[0, start:stop], by[1, start:stop])
         _pressure_flow(p[start:stop], p[there:end], width[0, start:stop], at, at, *leans, *law, *out)
-    _couette_flow(vx, width[2], part(c_x, _0, size), part(c_x_h, _0, size), h_x, h_x, up[0], by[0], by_speed[0])
-    law, leans = (part(g_z, _0, e), part(g_z_h, _0, e)), (part(E, _0, e), part(E, _1, size))
+    _couette_flow(vx, width[2], part(c_x, I0, size), part(c_x_h, I0, size), h_x, h_x, up[0], by[0], by_speed[0])
+    law, leans = (part(g_z, I0, e), part(g_z_h, I0, e)), (part(E, I0, e), part(E, I1, size))
     _pressure_flow(p[:e], p[1:], width[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
-    law, out = (part(c_z, _0, e), part(c_z_h, _0, e)), (by[2, :e], by_speed[1, :e])
+    law, out = (part(c_z, I0, e), part(c_z_h, I0, e)), (by[2, :e], by_speed[1, :e])
     _couette_flow(vz, width[3, :e], *law, h[:e], h[1:], up[1, :e], *out)
     for c in range(size):
         by_speed[2, c] = 0.0
@@ -113,7 +109,7 @@ def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
             at, leans = h_x[start:stop], (part(E, start, stop), part(E, there, end))
             slower, out = part(g_x_v, start, stop), by_speed[0, start:stop]
             _slower(p[start:stop], p[there:end], width[0, start:stop], at, at, *leans, slower, out)
-        leans = part(E, _0, e), part(E, _1, size)
-        _slower(p[:e], p[1:], width[1, :e], h[:e], h[1:], *leans, part(g_z_v, _0, e), by_speed[2, :e])
+        leans = part(E, I0, e), part(E, I1, size)
+        _slower(p[:e], p[1:], width[1, :e], h[:e], h[1:], *leans, part(g_z_v, I0, e), by_speed[2, :e])
     # there are no links behind the last row
     by[2, e] = by[3, e] = by_speed[1, e] = 0.0

@@ -42,10 +42,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.grid import FilmGrid
-
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-_unsigned = np.uint64
-_0, _1 = _unsigned(0), _unsigned(1)
+from exudyn_ehd.film.kernels import FAST, U0, U1, unsigned
 
 
 class LinkFlux(NamedTuple):
@@ -182,7 +179,7 @@ def link_flux(gap_x: np.ndarray, effects: tuple[FluxEffect, ...]) -> LinkFlux:
     return LinkFlux(carriers, speeds, gap_x, gap_z, gx, gx_h, gx_v, gz, gz_h, gz_v, cx, cx_h, cz, cz_h)
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
     """The plain film's conductances with their derivatives, and the links' gap in z."""
     n, m = H.shape
@@ -212,7 +209,7 @@ def link_metric(grid: FilmGrid, flow_x: float) -> np.ndarray:
     return metric
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _set_along(h_a, h_b, g, carrier, metric, width, v, k_out, f_out):
     for c in range(k_out.size):
         h = 0.5 * (h_a[c] + h_b[c])
@@ -245,7 +242,7 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
         _set_along(h[:e], h[1:], z[0], z[1], by[1, :e], by[3, :e], vz, out[1, :e], out[3, :e])
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
     """b = net Couette inflow of every control volume, with a ``squeeze`` less the storage ``dH/dt area``."""
     n, m = fx.shape
@@ -261,27 +258,27 @@ def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
                 b_out[i, j] -= H_t[i, j] * area[i, j]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def lacks(links, p, out):
     """Write what the balances lack (n, m), ``b - A P`` for links (kx, kz, b): b less what pressure flows take away.
 
     At fixed vertices it is minus the inflow that they supply.
     """
     kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
-    x, lack, m, size = p.reshape(-1), out.reshape(-1), _unsigned(p.shape[1]), _unsigned(p.size)
+    x, lack, m, size = p.reshape(-1), out.reshape(-1), unsigned(p.shape[1]), unsigned(p.size)
     last = size - m
     for c in range(m):
         # nothing flows over the last row's links
-        before, far = (c if c > _0 else size) - _1, last + c
+        before, far = (c if c > U0 else size) - U1, last + c
         lack[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
-        lack[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + _1])
+        lack[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + U1])
     for c in range(m, last):
         taken = kx[c] * (x[c] - x[c + m]) - kx[c - m] * (x[c - m] - x[c])
-        lack[c] = b[c] - taken - kz[c] * (x[c] - x[c + _1]) + kz[c - _1] * (x[c - _1] - x[c])
+        lack[c] = b[c] - taken - kz[c] * (x[c] - x[c + U1]) + kz[c - U1] * (x[c - U1] - x[c])
     for c in range(last, size):
-        on, far = c + _1 if c + _1 < size else _0, c - last
+        on, far = c + U1 if c + U1 < size else U0, c - last
         lack[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
-        lack[c] += kz[c - _1] * (x[c - _1] - x[c]) - kz[c] * (x[c] - x[on])
+        lack[c] += kz[c - U1] * (x[c - U1] - x[c]) - kz[c] * (x[c] - x[on])
 
 
 # Largest w; a half would be of second order to the last digit, and leave Fourier modes of short waves undamped.

@@ -46,6 +46,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, require_number
 
 # Share of land below which a vertex lies inside an area: far above round-off, far below what an edge leaves.
@@ -338,9 +339,6 @@ class ArchardWear(Checked):
         return depth
 
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-
-
 @njit(cache=True)
 def slip(motion, R, transition):
     """Regularised slip direction (theta, z) of a motion (10,), and its derivatives (2, 2) to (omega, w).
@@ -383,7 +381,7 @@ def contact_weights(motion, friction, transition, R):
     return out
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _integral(density, weight, moment):
     total = 0.0
     for c in range(density.size):

@@ -75,6 +75,7 @@ import numpy as np
 import scipy
 from numba import njit
 
+from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.surfaces.asperity import ROUGHNESS, average_gap_ratio
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
@@ -239,7 +240,6 @@ def nominal_gap(t: np.ndarray, residual: float) -> np.ndarray:
     return 0.5 * (low + high)
 
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 _unsigned = np.uint64
 
 
@@ -282,7 +282,7 @@ class RoughFlow(FluxEffect):
 
 # Checks for a division by zero would keep the compiler from vectorising the loops below; the tables' gathers stand
 # apart for the same reason.
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
     """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)).
 
@@ -310,7 +310,7 @@ def _aligned(gap):
     return True
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def look_up(gap, inverse_sigma, table, f_out, f_h_out):
     """Value of a table at gaps (n, m), and its derivative by them."""
     n, m = gap.shape
@@ -330,7 +330,7 @@ def look_up(gap, inverse_sigma, table, f_out, f_h_out):
         f[k], f_h[k] = _table_at(f[k], scale, flat)
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy", inline="always")
+@njit(cache=True, fastmath=FAST, error_model="numpy", inline="always")
 def _table_at(y, scale, table):
     """Value of a flat table at y, and its derivative by the gap."""
     steps = table.size // 4
@@ -345,7 +345,7 @@ def _table_at(y, scale, table):
     return f, (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def drag_weights(carriers, gap, link, widths):
     """Weights (2, n, m) of the pressures in E_x and E_z.
 
@@ -367,7 +367,7 @@ def drag_weights(carriers, gap, link, widths):
     return out
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def drag_by_gap(P, carrier_slopes, slope, face_slope, widths):
     """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices.
 

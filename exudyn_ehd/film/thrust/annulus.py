@@ -31,8 +31,8 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from exudyn_ehd.film.differences import drop_weights, drops, on_links, to_ends
 from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid, rows_between
+from exudyn_ehd.film.reynolds.differences import drop_weights, drops, on_links, to_ends
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.status import (

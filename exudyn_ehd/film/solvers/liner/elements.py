@@ -14,11 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.kernels import FAST, I0, I1
 from exudyn_ehd.film.reynolds.balance import part
-
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-# numpy's integers, since numba compiles kernels anew for each plain one
-_0, _1 = np.int64(0), np.int64(1)
 
 
 class Gaps(NamedTuple):
@@ -102,7 +99,7 @@ class Rates(NamedTuple):
     own: float
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def drive_elements(P, fixed, pc, clips, load_fields):
     """Set ``drive`` of `Load`, and p as for an oil of constant viscosity."""
     load = load_of(load_fields)
@@ -113,7 +110,7 @@ def drive_elements(P, fixed, pc, clips, load_fields):
         p[c] = drive[c]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def scale_load(load_fields, scale):
     """Scale pressures (Pa) and second derivatives (1/Pa) of an oil's law to the film's unit of pressure, in place;
     returns the largest pressure, Pa."""
@@ -137,7 +134,7 @@ def _smallest(x):
     return smallest
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def press_elements(rigid, load_fields, beta, G_out):
     """Set the gap under the film's pressure alone, without contact; returns the smallest."""
     gap, p, out = rigid[0].reshape(-1), load_of(load_fields).p.reshape(-1), G_out.reshape(-1)
@@ -146,7 +143,7 @@ def press_elements(rigid, load_fields, beta, G_out):
     return _smallest(out)
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def move_elements(rigid, G, delta_old, inverse, gap_fields):
     """Set deflections, gaps and rate of the deformed surfaces, before a limiter changes them; returns the smallest gap
     on a link."""
@@ -171,7 +168,7 @@ def deflect(P, fixed, pc, clips, load_fields, rigid, beta, G, delta_old, inverse
     return smallest, move_elements(rigid, G, delta_old, inverse, gap_fields)
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def set_storage(gaps, load, P, fills, known, rates, beta, film):
     """Set E of the elements, and the storage of the vertices: ``grow`` and ``kept`` of `balance.FilmTerms`.
 
@@ -195,7 +192,7 @@ def set_storage(gaps, load, P, fills, known, rates, beta, film):
         kept[c] = -old[c] * rates.mass - slow[c] * rates.pseudo
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
     """Set `GapSlopes`, but ``rate_t`` (slope of the film gap) and ``link``, which are inputs.
 
@@ -215,7 +212,7 @@ def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
         E_r[c], rate_r[c] = H_r[c] - rigid[c], moved * D_r[c] + turned[c]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def bend_links(gaps, film):
     """Correct conductances of links for different deflections at their ends: mean over the linear course of the gap.
 
@@ -231,7 +228,7 @@ def bend_links(gaps, film):
     _bend(H[:-1], H[1:], E[:-1], E[1:], kz[:-1])
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=FAST, error_model="numpy")
 def _bend(h_a, h_b, E_a, E_b, k):
     for c in range(k.size):
         lean = (E_b[c] - E_a[c]) / (h_a[c] + h_b[c])
@@ -260,7 +257,7 @@ def ends_open(rigid, p, beta, fixed):
     return True
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _add_end(by_h, by_d, side, steep, lean, full, out):
     """Add the derivative of a link's flow to the unknown at its end b (``side`` 1) or a (-1), through the gap there."""
     for c in range(out.size):
@@ -270,13 +267,13 @@ def _add_end(by_h, by_d, side, steep, lean, full, out):
         out[c] += slope
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _product(a, b, out):
     for c in range(out.size):
         out[c] = a[c] * b[c]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
     """Add the derivative of the storage to the unknowns, through the gap."""
     for c in range(out.size):
@@ -290,7 +287,7 @@ def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
         out[c] += area[c] * by
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FAST)
 def _add_pseudo(area, P, drive, slope, factor, out):
     """Add the derivative of pseudo time's storage, for a film that does not conserve mass."""
     for c in range(out.size):
@@ -317,13 +314,13 @@ def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, 
         _add_end(h, d, -1.0, D[start:stop], H[start:stop], part(full, start, stop), slopes[0, start:stop])
         _add_end(h, d, 1.0, D[there:end], H[there:end], part(full, there, end), slopes[1, start:stop])
     h, d = by[2, :e], by[3, :e]
-    _add_end(h, d, -1.0, H[:e], H[:e], part(full, _0, e), slopes[2, :e])
-    _add_end(h, d, 1.0, H[1:], H[1:], part(full, _1, size), slopes[3, :e])
+    _add_end(h, d, -1.0, H[:e], H[:e], part(full, I0, e), slopes[2, :e])
+    _add_end(h, d, 1.0, H[1:], H[1:], part(full, I1, size), slopes[3, :e])
     _add_storage(
         area,
-        part(fill, _0, size),
-        part(full, _0, size),
-        part(rho, _0, size),
+        part(fill, I0, size),
+        part(full, I0, size),
+        part(rho, I0, size),
         H,
         gap_slopes.rate_P.reshape(-1),
         rates,
