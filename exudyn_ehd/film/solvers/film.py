@@ -117,6 +117,25 @@ def _move_beside(field, fixed, P, pc, out):
                 out[i, beside] += field[i, end]
 
 
+@njit(cache=True)
+def shear_by_unknown(weight, H, ratio, by_pressure, fill, rise, active, fixed, P, pc, out):
+    """Weights (n, m) of the unknowns of a film that conserves mass in its Couette shear, pressures where ``active``.
+
+    ``weight``, ``ratio``, ``by_pressure``: of the shear, viscosity ratio that it sees, and this one's derivative to the
+    unknown; ``rise``: derivative of the fill to the pressure, at the line. Ends share the fill of the vertices beside
+    them.
+    """
+    n, m = out.shape
+    for i in range(n):
+        for j in range(m):
+            by = by_pressure[i, j] * fill[i, j] + ratio[i, j] * rise[i, j] if active[i, j] else ratio[i, j]
+            out[i, j] = weight[i, j] / H[i, j] * by
+        for end, beside in ((0, 1), (m - 1, m - 2)):
+            if m > 2 and fixed[i, end] and not fixed[i, beside] and P[i, end] <= pc:
+                by = rise[i, beside] if active[i, beside] else 1.0
+                out[i, beside] += weight[i, end] / H[i, end] * ratio[i, end] * by
+
+
 def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:
     """Let the films between supply areas and a cavity end where they do, in the balances (n, m)."""
     cuts = np.ones((2, *grid.shape)) if grid.cuts is None else grid.cuts

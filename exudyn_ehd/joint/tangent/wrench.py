@@ -13,6 +13,7 @@ import numpy as np
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.gradients import functional_gradients
 from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
+from exudyn_ehd.film.solvers.film import shear_by_unknown
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
@@ -22,7 +23,6 @@ from exudyn_ehd.joint.tangent.true_gap import (
     add_drag_by_pose,
     drag_by_deflection,
     ratio_of,
-    shear_of_ends,
     shear_of_fills,
     true_fills,
     true_gradients,
@@ -192,7 +192,7 @@ def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> 
     if continued is not None:
         rows_of_linear(continued, y.fixed, y.linked, y.cavity_pressure, s.work.active, s.work.number, rows)
     # what follows the pressure of a vertex itself
-    if shear:
+    if liner is not None or oil.ratio_g is not None:
         rows[4] += _shear_of_vertices(film, active).ravel()[at]
     if liner is not None and film.loads.drag is not None:
         rows[own - 2 : own] += drag_by_deflection(film, liner).reshape(2, -1)[:, at]
@@ -208,26 +208,23 @@ def _shear_weights(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
 
     Through the oil's pressure where they are pressures, through fill elsewhere.
     """
-    s, g, oil = film.solver, film.grid, film.oil
-    ratio, by_pressure = ratio_of(film), s.nothing if oil.ratio_q is None else oil.ratio_q
-    by_fill = ratio if s.closure.conserves_mass else s.nothing
-    if s.oil_line is not None:
-        # at the line the fill follows the pressure
-        by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
-    return g.shear_weight / s.H * np.where(active, by_pressure, by_fill)
+    s, y, g, oil, out = film.solver, film.solver.system, film.grid, film.oil, np.empty(film.grid.shape)
+    by_pressure = s.nothing if oil.ratio_q is None else oil.ratio_q
+    if not s.closure.conserves_mass:
+        return g.shear_weight / s.H * by_pressure * active
+    rise = s.nothing if s.oil_line is None else s.oil_line.rise
+    oils = ratio_of(film), by_pressure, s.fill, rise
+    shear_by_unknown(g.shear_weight, s.H, *oils, active, g.fixed, s.pressure, y.cavity_pressure, out)
+    return out
 
 
 def _shear_of_vertices(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
-    """Return what in `_shear_weights` follows the liner's deflection, the pressure's gradients, and fills beside the
-    ends."""
+    """Return what in `_shear_weights` follows the liner's deflection and the pressure's gradients."""
     p, s, g, oil, out = film.parts, film.solver, film.grid, film.oil, np.zeros(film.grid.shape)
     if p.liner is not None:
         out += couette_slopes(film)[0] * p.liner.gap_slopes.H_P * active
     if oil.ratio_g is not None:
         out += film.gather_shear(oil.ratio_g * g.shear_weight * film.share() / s.H)
-    if s.closure.conserves_mass:
-        rise = 0.0 if s.oil_line is None else s.oil_line.rise
-        out += shear_of_ends(film) * np.where(active, rise, 1.0)
     return out
 
 
