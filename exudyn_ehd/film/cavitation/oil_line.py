@@ -85,8 +85,8 @@ def curve_of(f):
 
 
 def straight(shape: tuple[int, int]) -> np.ndarray:
-    """Return the fields of a `CurveFields` without a line at any vertex."""
-    fields = np.zeros((9, shape[0] * shape[1]))
+    """Return the fields (12, n m) of a `RuptureLine` without a line at any vertex."""
+    fields = np.zeros((12, shape[0] * shape[1]))
     fields[6] = 1.0
     return fields
 

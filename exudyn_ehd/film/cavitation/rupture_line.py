@@ -23,8 +23,6 @@ columns with prescribed pressure, in which no line is to be looked for.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
@@ -39,43 +37,31 @@ from exudyn_ehd.film.reynolds.links import LinkFlux
 LEAST = 1e-8
 
 
-class LineFields(NamedTuple):
-    """The arrays of a rupture line as kernels take them.
-
-    Attributes
-    ----------
-    f, k, s : (n m,) arrays
-        Symbols of the module; f is 0 where there can be no line, s is 1 where there is none.
-    whole, limit : (n m,) arrays
-        Pressure at s = 1; what the balance of a vertex without film has to lack for it to join, never at known ones.
-    shift, share : (n m,) arrays
-        The line's share of the unknowns' diagonals, in the factor and of the present film.
-    """
-
-    f: np.ndarray
-    k: np.ndarray
-    s: np.ndarray
-    whole: np.ndarray
-    limit: np.ndarray
-    shift: np.ndarray
-    share: np.ndarray
-
-
 class RuptureLine:
     """The rupture line of one film.
 
+    Parameters
+    ----------
+    block : (12, n m) array
+        Its fields; see below.
+    shape : (int, int)
+
     Attributes
     ----------
-    block : (7, n m) array
-        The arrays of a `LineFields`, as kernels are handed it.
+    block : (12, n m) array
+        Fields as kernels take them. The first nine are those of `exudyn_ehd.film.cavitation.oil_line.CurveFields`, of
+        which f is 0 where there can be no line, and s is 1 where there is none. Then: what the balance of a vertex
+        without film has to lack for it to join, never at known ones; the line's share of the unknowns' diagonals, in
+        the factor and of the present film.
+    whole : (n m,) array
+        Pressure at s = 1.
     f, k, s : (n, m) arrays
         Of ``block``.
     """
 
-    def __init__(self, shape: tuple[int, int]) -> None:
-        self.block = np.zeros((7, shape[0] * shape[1]))
-        self.f, self.k, self.s = (field.reshape(shape) for field in self.block[:3])
-        self.s[:] = 1.0
+    def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
+        self.block, self.whole = block, block[4]
+        self.f, self.k, self.s = (block[row].reshape(shape) for row in (0, 1, 6))
 
     def gradients(
         self,
@@ -96,7 +82,7 @@ class RuptureLine:
 def line_terms(kx, b, fixed, in_cells, line):
     """f and k of all vertices, and what follows from them; f = 0 where the line is not looked for ``in_cells``."""
     links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]
-    f, k, whole, limit = line[0], line[1], line[3], line[4]
+    f, k, whole, limit = line[0], line[1], line[4], line[9]
     if not in_cells:
         for c in range(f.size):
             f[c], whole[c], limit[c] = 0.0, 0.0, np.inf if known[c] else 0.0
@@ -129,7 +115,7 @@ def _clear_known(before, known, behind, f, whole, limit):
 def weigh_line(line, number):
     """Rows of the balances at the line, their flat vertices, and weights (2, c): derivatives of -N to the right-hand
     side b and to the mean conductance k."""
-    f, k, s, numbers, found = line[0], line[1], line[2], number.reshape(-1), 0
+    f, k, s, numbers, found = line[0], line[1], line[6], number.reshape(-1), 0
     rows, places, weights = np.empty(s.size, dtype=np.int64), np.empty(s.size, dtype=np.int64), np.empty((2, s.size))
     for c in range(s.size):
         if s[c] < 1.0:

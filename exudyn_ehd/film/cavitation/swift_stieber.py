@@ -39,7 +39,7 @@ def join_film(links, line, active, lack, p):
     At the line they meet their own balances between given neighbours: ``g s^2 / 2 + s = e``.
     """
     kx, kz, rest, free, m = links[0].reshape(-1), links[1].reshape(-1), lack.reshape(-1), active.reshape(-1), p.shape[1]
-    f, k, s, whole, limit = line[0], line[1], line[2], line[3], line[4]
+    f, k, whole, s, limit = line[0], line[1], line[4], line[6], line[9]
     pressures, joined = p.reshape(-1), 0
     for c in range(rest.size):
         if (rest[c] < limit[c]) | free[c]:
@@ -58,7 +58,7 @@ def join_film(links, line, active, lack, p):
 @njit(cache=True, inline="always")
 def lack_at_line(lack, line, order, count, rhs_out):
     """Write the lack of the unknowns' balances (count,) with the line, and its share of their diagonals."""
-    rest, f, k, s, share = lack.reshape(-1), line[0], line[1], line[2], line[6]
+    rest, f, k, s, share = lack.reshape(-1), line[0], line[1], line[6], line[11]
     for r in range(count):
         c = order[r]
         short = 1.0 - s[c]
@@ -75,7 +75,7 @@ def factor_line(links, line, factor, count, width, first, kept):
     """
     kx, kz, _ = links
     order, _, number, band, inv_diag = factor
-    k, s, shift, share = line[1], line[2], line[5], line[6]
+    k, s, shift, share = line[1], line[6], line[10], line[11]
     row, stale = 0, 0.0
     while row < first:
         if share[row] != shift[row]:
@@ -106,7 +106,7 @@ def move_film(line, order, count, steps, active, p):
     left : int
         Number of vertices that leave the film.
     """
-    k, s, whole, shift, pressures, free = line[1], line[2], line[3], line[5], p.reshape(-1), active.reshape(-1)
+    k, whole, s, shift, pressures, free = line[1], line[4], line[6], line[10], p.reshape(-1), active.reshape(-1)
     in_line = stale = largest = peak = lowest = 0.0
     left = 0
     for r in range(count):
@@ -144,7 +144,7 @@ def move_film(line, order, count, steps, active, p):
 @njit(cache=True)
 def place_line(line, fixed, active, p):
     """s of all vertices from the last film's, or from their pressures."""
-    s, whole, known, free, pressures = line[2], line[3], fixed.reshape(-1), active.reshape(-1), p.reshape(-1)
+    whole, s, known, free, pressures = line[4], line[6], fixed.reshape(-1), active.reshape(-1), p.reshape(-1)
     for c in range(s.size):
         own = s[c]
         s[c] = 1.0
@@ -209,15 +209,15 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
         1: the columns are numbered in theta, -1: against it.
     is_known : bool
         Whether P are pressures of a film close by.
-    line : (7, n m) array
-        `LineFields`.
+    line : (12, n m) array
+        `RuptureLine.block`.
     active : (n, m) bool array
         In and out.
     factor : `Workspace.factor`
     x : (n m,) array
         Newton's step.
     """
-    f, s, known, free, pressures = line[0], line[2], fixed.reshape(-1), active.reshape(-1), P.reshape(-1)
+    f, s, known, free, pressures = line[0], line[6], fixed.reshape(-1), active.reshape(-1), P.reshape(-1)
     line_terms(links[0], links[2], fixed, in_cells, line)
     above, ruptures = np.empty(P.shape), False
     p = above.reshape(-1)
@@ -264,7 +264,7 @@ def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace) -> Non
 @njit(cache=True, nogil=True, inline="always")
 def refine_line(links, line, factor, count, width):
     """Factor of a solution; rows whose diagonals are its own to rounding stay."""
-    (order, _, _, _, _), k, s, share = factor, line[1], line[2], line[6]
+    (order, _, _, _, _), k, s, share = factor, line[1], line[6], line[11]
     for r in range(count):
         c = order[r]
         share[r] = k[c] * (1.0 - s[c]) / s[c]

@@ -22,8 +22,6 @@ Anal. Appl. 32 (1970) 274). Two kinds of films do not have that:
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from numba import njit
 
@@ -81,7 +79,7 @@ class FilmSystem:
     oil_line : OilLine or None
         The same of a film that conserves mass.
     curve : (9, n m) array
-        `CurveFields` of the vertices; straight ones of a film without a line in its cells. Made when it is asked for.
+        `CurveFields` of the vertices; straight ones of a film without a line in its cells.
     density : DensityField or None
         None: the density does not follow the pressure.
     instant : bool
@@ -117,7 +115,7 @@ class FilmSystem:
         self.line: RuptureLine | None = None
         self.column_line: ColumnLine | None = None
         self.continued: np.ndarray | None = None
-        self.rupture = RuptureLine(shape)
+        self.rupture = RuptureLine(straight(shape), shape)
         self.oil_line: OilLine | None = None
         self.density: DensityField | None = None
         self.instant = False
@@ -143,10 +141,10 @@ class FilmSystem:
         if self.kind != OIL:
             self.fill, self.mass_old = np.ones((2, *self.H.shape))
 
-    @cached_property
+    @property
     def curve(self) -> np.ndarray:
         """Fields of the vertices' curves, of a film that Newton's method solves."""
-        return straight(self.H.shape)
+        return self.rupture.block[:9]
 
     @property
     def film(self) -> tuple[np.ndarray, ...]:

@@ -235,7 +235,7 @@ class FilmArrays:
         elif closure.line_in_cells and (closure.clips or flow_x == 0.0):
             s.count_in_cells(grid, closure.clips)
         elif closure.line_in_cells:
-            self.line = s.rupture if self.symmetric else FilmLine(s.curve, shape)
+            self.line = s.rupture if self.symmetric else FilmLine(s.rupture.block, shape)
             s.line = None if yields else self.line
         # density over that at ambient pressure (n, m), of the last solution, and at the last factor its derivative to
         # the unknown pressures; without a law it does not follow the pressure

@@ -12,7 +12,6 @@ from functools import partial
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure, solve_sets
-from exudyn_ehd.film.cavitation.rupture_line import LineFields
 from exudyn_ehd.film.cavitation.system import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
@@ -165,7 +164,7 @@ class FilmSolver(FilmAnswers):
         new = P[at] - change[reduced[0]] @ reduced[2]
         # below this pressure above the cavity's a vertex has a rupture line beside it
         whole = self.nothing.reshape(-1) if self.oil_line is None else self.oil_line.fields.whole
-        whole = whole if self.line is None else LineFields(*self.line.block).whole
+        whole = whole if self.line is None else self.line.whole
         if self.ruptures and (np.minimum(P[at], new) - whole[at]).min() < s.cavity_pressure:
             return False
         P[at], P[r.at] = new, P[r.at] + change[r.of_vertices]
@@ -220,8 +219,6 @@ class FilmSolver(FilmAnswers):
             self.forget()
             status, more = solve_sets(s, self.work)
             steps += more
-        if isinstance(s.line, FilmLine):
-            s.line.settle(self.work.active)
         return status_of(s, status), steps
 
     def _solve_yielding(self, e: LinerFilm, mass_old: np.ndarray | None, step: float) -> tuple[Status, int]:

@@ -8,7 +8,7 @@ import pytest
 from exudyn_ehd import FullSommerfeld, Gumbel, InputError, Status, SwiftStieber, bearing_grid
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
-from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
+from exudyn_ehd.film.cavitation.oil_line import straight
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.solvers.solver import FilmSolver
 
@@ -129,7 +129,7 @@ def test_clip_pressure_twin():
 def test_a_singular_start_is_reported():
     w, shape = Workspace(8, 4), (8, 4)
     fixed, zero, active = np.zeros(shape, dtype=bool), np.zeros(shape), np.ones(shape, dtype=bool)
-    line, P = RuptureLine(shape).block, np.zeros(shape)
+    line, P = straight(shape), np.zeros(shape)
     ok, steps, _, _ = find_film((zero, zero, zero), fixed, 0.0, False, 1, False, line, active, w.factor, w.unknowns, P)
     assert not ok
     assert steps == 1

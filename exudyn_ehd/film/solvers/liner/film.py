@@ -60,7 +60,6 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import pseudo_time
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
-from exudyn_ehd.film.cavitation.oil_line import CurveFields
 from exudyn_ehd.film.cavitation.solve import FOUND, GOES_ON, LEFT, base_of, is_exact
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.cavitation.system import has_unfed_row
@@ -180,7 +179,7 @@ class LinerFilm(WinklerElements):
     def fill_up(self, most: np.ndarray) -> None:
         """Remove the cavity: every vertex is full and has at least the pressure of a fully developed curve, or
         ``most``, whichever is less."""
-        curve = CurveFields(*self.film.system.curve).whole.reshape(self.P.shape)
+        curve = self.film.system.rupture.whole.reshape(self.P.shape)
         np.logical_not(self.film.grid.fixed, out=self.film.work.active)
         self.fill[:] = 1.0
         np.maximum(self.P, np.minimum(base_of(self.film.system) + curve, most), out=self.P, where=curve > 0.0)
@@ -242,8 +241,6 @@ class LinerFilm(WinklerElements):
         """Set the fields of a solution: rupture line, clipped pressure, gap derivatives, rates, right-hand side."""
         f, s, w = self.film, self.film.system, self.film.work
         g, pc = f.grid, s.cavity_pressure
-        if isinstance(f.line, FilmLine):
-            f.line.settle(w.active)
         if f.closure.clips:
             clip_pressure(self.P, g.fixed, pc, s.pressure, w.active)
             if s.continued is not None:

@@ -30,8 +30,8 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.oil_line import CurveFields, OilLine
-from exudyn_ehd.film.cavitation.rupture_line import LineFields, RuptureLine, line_gradients, line_terms, weigh_line
+from exudyn_ehd.film.cavitation.oil_line import OilLine
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_gradients, line_terms, weigh_line
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux
@@ -58,7 +58,7 @@ def see_line(
     ``liner``: (compliance, vx); ``touching``: of `open_gaps`.
     """
     (beta, vx), m, flat = liner, b.shape[1], b.reshape(-1)
-    f, k, s, whole = line_out[0], line_out[1], line_out[2], line_out[3]
+    f, k, whole, s = line_out[0], line_out[1], line_out[4], line_out[6]
     H, HF, kx, shut = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1), terms[0].reshape(-1), touching.reshape(-1)
     at_vertices, at_links, lean = gaps_out[0].reshape(-1), gaps_out[1].reshape(-1), lean_out.reshape(-1)
     for c in range(s.size):
@@ -92,7 +92,7 @@ def yielding_rows(line, lean, density, liner, number, H, HF, slopes, by_speed, v
     """
     rows, places, weights = weigh_line(line, number)
     (beta, sliding, width), gap, t, m = liner, HF.reshape(-1), lean.reshape(-1), HF.shape[1]
-    f, k, s, by = line[0], line[1], line[2], np.zeros((10, places.size))
+    f, k, s, by = line[0], line[1], line[6], np.zeros((10, places.size))
     for q in range(places.size):
         c = places[q]
         by_f, turned = _by_bare(t[c])
@@ -157,8 +157,6 @@ class FilmLine(RuptureLine):
 
     Attributes
     ----------
-    fields, curve : LineFields, CurveFields
-        Of its vertices.
     density : float
         Density in the cavity over that at ambient pressure.
     lean : (n, m) array
@@ -167,9 +165,8 @@ class FilmLine(RuptureLine):
         Compliance, vx and widths in z.
     """
 
-    def __init__(self, curve: np.ndarray, shape: tuple[int, int]) -> None:
-        super().__init__(shape)
-        self.fields, self.curve = LineFields(*self.block), CurveFields(*curve)
+    def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
+        super().__init__(block, shape)
         self.density, self.lean = 1.0, np.zeros(shape)
         self.liner = 0.0, 0.0, np.zeros(shape[1])
 
@@ -177,12 +174,6 @@ class FilmLine(RuptureLine):
         """Set f and k from the terms and the right-hand side b (n, m) of a film between rigid surfaces."""
         self.density, self.s[:] = density, 1.0
         line_terms(film.kx, density * b, film.fixed, True, self.block)
-        self._bend()
-
-    def _bend(self) -> None:
-        """Give the vertices the curves of f and k."""
-        line, curve = self.fields, self.curve
-        curve.f[:], curve.k[:], curve.whole[:] = line.f, line.k, line.whole
 
     def see(
         self,
@@ -205,11 +196,6 @@ class FilmLine(RuptureLine):
             gap_fields, term_fields, touching, b, width_z, fixed, density, liner, self.block, gaps_out,
             self.lean,
         )  # fmt: skip
-        self._bend()
-
-    def settle(self, active: np.ndarray) -> None:
-        """Set s of the ``active`` vertices (n, m) from the curves of the solved film, 1 elsewhere."""
-        np.copyto(self.s, np.where(active, self.curve.s.reshape(active.shape), 1.0))
 
     def gradients(
         self,
