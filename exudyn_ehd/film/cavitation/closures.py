@@ -50,21 +50,16 @@ from exudyn_ehd.film.reynolds.balance import store_content
 from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
 
 MOST_STEPS = 200
-# Rates of the storage over that of the film: of the first one, of one above which the continuation ends, and of one
-# below which the film without storage is tried.
-FIRST, HOPELESS, LAST = 100.0, 1e6, 1e-3
+# Rates of the storage over that of the film: of the first one, of one above which the continuation ends, of one below
+# which the film without storage is tried, and of one below which it is not tried again.
+FIRST, HOPELESS, LAST, LEAST = 100.0, 1e6, 1e-3, 1e-7
 # Factors of the storage after a film that is found, and after one that is not.
 FADES, GROWS = 0.3, 8.0
 # Share of its compressibility with which an oil counts as nearly incompressible.
 SOFTEST = 1e-9
-# ``first`` and ``least`` of `pseudo_time` for `follow`, whose rate is the largest flow into a vertex over the smallest
-# area.
-FIRST_RATE, LAST_RATE = 0.01, 1e-7
 
 
-def pseudo_time(
-    attempt: Callable[[float], tuple[bool, int]], rate: float, first: float = FIRST, *, least: float = 0.0
-) -> tuple[bool, int]:
+def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float) -> tuple[bool, int]:
     """Find a film by pseudo-transient continuation; returns (found, Newton steps).
 
     Parameters
@@ -74,12 +69,8 @@ def pseudo_time(
         next; returns (found, Newton steps).
     rate : float
         Rate of the film itself, 1/s, > 0.
-    first : float
-        Rate of the first storage over ``rate``.
-    least : float
-        Rate over ``rate`` of the smallest storage from which the film without one is tried.
     """
-    extra, total = first * rate, 0
+    extra, total = FIRST * rate, 0
     for _ in range(MOST_STEPS):
         ok, steps = attempt(extra)
         total += steps
@@ -94,7 +85,7 @@ def pseudo_time(
             total += steps
             if ok:
                 return True, total
-            if extra < least * rate:
+            if extra < LEAST * rate:
                 return False, total
     return False, total
 
@@ -151,7 +142,7 @@ def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
             runs_dry = has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)
         return ok, steps
 
-    ok, steps = pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE, least=LAST_RATE)
+    ok, steps = pseudo_time(attempt, rate if rate > 0.0 else 1.0)
     if ok:
         return Status.CONVERGED, steps
     return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
