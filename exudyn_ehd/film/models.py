@@ -89,8 +89,9 @@ class FiniteLength(_OnVertices):
     ========  ==========  =========  ============  ============  ======================
 
     Errors of the default grid (aligned journal in any direction, L/D 0.25 to 2, eps 0.1 to 0.9): entries of K and C 1 %
-    up to eps 0.8 and 1.5 % at 0.9 (of W/c, load over clearance, for entries below that), critical mass 2 %,
-    whirl ratio 1 %, load 0.2 %, peak pressure 0.5 %. With the rupture line on vertices
+    up to eps 0.8 and 2 % at 0.9 (of W/c, load over clearance, for entries below that), load 0.2 %, peak pressure 0.5 %;
+    critical mass 2 % and whirl ratio 1 % up to eps 0.74, far more where the bearing is about to become stable at any
+    mass, which `EquilibriumResult.critical_mass_error` tells. With the rupture line on vertices
     (`SwiftStieber(line_in_cells=False)`) the error of K is up to 8 % and that of C 13 %.
 
     A `GridWarning`, once per result or run, says that the error of the peak pressure is above some 5 %, as with

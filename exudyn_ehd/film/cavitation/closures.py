@@ -248,7 +248,7 @@ class SwiftStieber(Closure):
 
     With the rupture line inside the cells of the grid the error of stiffness and damping is at most 1.5 % in any
     direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On vertices it is up to 13 %, in two thirds
-    of the time. Loads differ by 0.1 %. Errors of a `ShortBearing` are told there.
+    of the time. Loads differ by 0.2 %. Errors of a `ShortBearing` are told there.
 
     With an `ElasticLiner` or a density law, a rupture line inside the cells takes 1.4 times (liner) or 1.7 times
     (density law) the time of one on vertices (`exudyn_ehd.film.solvers.liner.line`). It does not lower the errors where

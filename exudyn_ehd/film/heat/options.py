@@ -269,11 +269,11 @@ class FilmEnergy(Checked):
     Oil is mixed over the height of supply areas. `SteadyResult.walls` has the temperatures ``across`` the film,
     histories the means of the surfaces.
 
-    Errors of the grid. Load with 10, 20 and 40 intervals along z: 0.5, 0.1 and 0.01 % in films with a supply; 6, 3 and
-    1 % without supply and with hardly cooled walls, where hot oil that turns with the journal lies beside cold oil from
-    the ends. Rise of the hottest place on 10 intervals: mostly 3 %; up to 20 % too low in films fed through their ends
-    alone (``tests/joint/heat/test_energy_along_z.py``). Heat that oil and walls carry away, against the power loss: 2 %
-    on 10 intervals, 0.5 % on 40, in steady films and over a periodic cycle of 64 steps
+    Errors of the grid. Load with 10, 20 and 40 intervals along z: 0.7, 0.1 and 0.04 % in films with a supply; 12, 6 and
+    2 % with `ElrodAdams`, no supply and hardly cooled walls, where hot oil that turns with the journal lies beside cold
+    oil from the ends. Rise of the hottest place on 10 intervals: mostly 3 %; up to 20 % too low in films fed through
+    their ends alone (``tests/joint/heat/test_energy_along_z.py``). Heat that oil and walls carry away, against the
+    power loss: 2 % on 10 intervals, 0.5 % on 40, in steady films and over a periodic cycle of 64 steps
     (``tests/joint/heat/test_heat_balance.py``).
 
     Parameters

@@ -57,7 +57,7 @@ class FilmAnswers(FilmArrays):
         (B, C), D = np.zeros((2, r.live.sum(), w.count)), np.zeros((r.live.sum(), r.live.sum()))
         add_border(np.append(live, -1)[r.areas], w.number, slopes.reshape(5, *self.grid.shape), B, C, D)
         thin = None if self.elements is None else self.elements.thin
-        if thin is not None:
+        if thin is not None and r.live.any():
             E = np.zeros((len(D), *self.grid.shape))
             E.reshape(len(D), -1)[:, r.at] = r.within().T
             self._add_corners(thin, E, B, C, D)

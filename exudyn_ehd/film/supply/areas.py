@@ -10,6 +10,11 @@ balance to rounding, the other closures lose oil at the film's rupture.
 With `SwiftStieber` on the default grid an area in the housing feeds mostly within 2 %, next to a cavity within 2.5 % of
 the larger of its flow and the bearing's leakage.
 
+The flow out of an area that turns with the journal ripples with `ElrodAdams`, as its edges pass columns of the grid.
+Its mean over time is that of an area at rest, within 0.2 %; the ripple of an axial groove has a standard deviation of
+5 % of the mean at 150 steps a turn, 14 % at 600 and 17 % at 2400. Eccentricity and power loss agree within 0.3 %,
+leakage within 1.5 %.
+
 Within the cavity of `ElrodAdams` the band of oil behind an area is as wide as it, unless rows of other areas are in the
 way. Loads of films that live on that oil alone are mostly within 2 % on the default grid, at worst within 15 %, flows
 within twice that; ``supply resolution`` of the audit measures it.

@@ -121,9 +121,10 @@ class StepLand(_Pads):
     pads : int
         As for `TaperLand`.
     depth : float
-        Depth of the recess below the land, m; 0.9 to 1.2 minimum film thicknesses carry most.
+        Depth of the recess below the land, m; 0.7 of the minimum film thickness carries most.
     share : float, default 0.75
-        Share of a pad's length that is recessed, above 0 up to 1; 0.7 carries most.
+        Share of a pad's length that is recessed, above 0 up to 1; 0.5 carries most in pads longer than they are wide,
+        0.6 in others. A depth of 1.0 with a share of 0.7, as for pads without ends, carries 5 to 13 % less.
     reverse : bool, default False
         As for `TaperLand`.
 

@@ -211,7 +211,7 @@ class TiltingPads(Checked):
             thermal=self.thermal,
             end_pressures=self.end_pressures,
             arc=Arc(
-                start=float(self.pivots[number]) - self.pivot_offset * self.extent,
+                start=math.fmod(self.pivots[number] - self.pivot_offset * self.extent, TURN),
                 extent=self.extent,
                 leading_pressure=self.edge_pressures[0],
                 trailing_pressure=self.edge_pressures[1],
@@ -316,7 +316,7 @@ class Pad:
         self.across = np.array([-self.radial[1], self.radial[0]])
         self.pivot = (self.arm - bearing.preload * bearing.machined_clearance) * self.radial
         self.stiffness = bearing.pivot_stiffness or 0.0
-        self.columns = self.model.grid.x - angle
+        self.columns = self.model.grid.x - self.model.grid.x[0] - bearing.pivot_offset * bearing.extent
         self.near: History | None = None
 
     def place(self, journal: np.ndarray, shift: float, tilt: float) -> np.ndarray:

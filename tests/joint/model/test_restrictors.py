@@ -314,6 +314,23 @@ def test_a_starved_pocket_is_told():
         ehd.steady(bearing, **state | {"direction": 4.0})
 
 
+@pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)], ids=_name)
+@pytest.mark.filterwarnings("ignore::exudyn_ehd.StarvationWarning")
+def test_starved_pockets_under_a_shear_law(closure):
+    """None of the areas has a balance."""
+    size = SIZE | {"lubricant": THIN, "film": GRID, "cavitation": closure}
+    pocket = ehd.Pocket(angle=2.0, width_angle=0.8, length=0.02, supply=ehd.GivenFlow(flow=1e-9))
+    starved = build_model(ehd.JournalBearing(**size, supply=(pocket,)))
+    given = dataclasses.replace(pocket, supply=None, pressure=closure.cavity_pressure)
+    motion = np.array([0.0, 0.5 * CLEARANCE, *[0.0] * 6, 150.0, 0.0])
+    tangents = [
+        model.evaluate(motion).tangent()
+        for model in (starved, build_model(ehd.JournalBearing(**size, supply=(given,))))
+    ]
+    assert starved.evaluate(motion).film.solver.reservoirs.pressures[0] == closure.cavity_pressure
+    np.testing.assert_allclose(*tangents, rtol=1e-9, atol=1e-8)
+
+
 def test_stiffness_of_equilibrium():
     """Stiffness from differences between steady films, with cavities whose oil follows."""
     for closure in (ehd.SwiftStieber(), ehd.ElrodAdams()):

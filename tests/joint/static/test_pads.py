@@ -151,11 +151,12 @@ def test_contact_holds_a_pad_that_sprags():
     assert np.argmin(rest.films[2].gap[:, 5]) == 0
 
 
+@pytest.mark.filterwarnings("error")
 def test_turns_and_mirrors():
     pads = dataclasses.replace(PADS, pivot_stiffness=3e8, pivot_offset=0.6)
     base = ehd.equilibrium(pads, speed=SPEED, load=(1000.0, -LOAD))
-    turn = rotation(1.234)
-    turned = dataclasses.replace(pads, first_pivot=pads.pivots[0] + 1.234)
+    turn = rotation(7.0)
+    turned = dataclasses.replace(pads, first_pivot=pads.pivots[0] + 7.0)
     rest = ehd.equilibrium(turned, speed=SPEED, load=tuple(turn @ [1000.0, -LOAD]))
     assert rest.position == pytest.approx(turn @ base.position, rel=1e-6)
     assert rest.tilts == pytest.approx(base.tilts, rel=1e-6)
