@@ -33,6 +33,8 @@ class LoadSearch(Balance):
     also from where the film is as strong as the load, on the way on which the load presses the journal onto the bore.
     """
 
+    nearest: Place | None = None
+
     def find(self, motion: np.ndarray, near: Place | None = None) -> Place:
         """Position, from that of a motion on, in which the film carries the load.
 

@@ -116,6 +116,7 @@ class NodalEvaluation(BoreEvaluation, Protocol):
 
 
 Result = TypeVar("Result", bound=BoreEvaluation, covariant=True)
+Film = TypeVar("Film", bound=BoreEvaluation)
 
 
 class FilmOnBore(Protocol[Result]):
@@ -130,11 +131,11 @@ class FilmOnBore(Protocol[Result]):
 
 
 def bore_equilibrium(
-    model: FilmOnBore[Result],
+    model: FilmOnBore[Film],
     motion: np.ndarray,
     film: tuple[History | None, float, float],
     start: np.ndarray,
-) -> tuple[Result | None, tuple[float, np.ndarray]]:
+) -> tuple[Film | None, tuple[float, np.ndarray]]:
     """Evaluate with the bore in equilibrium.
 
     The place is approached in parts where the rigid surfaces would touch, each from where the last two lead: a thin
@@ -150,7 +151,7 @@ def bore_equilibrium(
         return found, (1.0, start)
     path, straight = [(-1.0, still), (0.0, still)], model.elasticity.straight
 
-    def reach(part: float, here: Result | None, final: bool) -> Result | None:
+    def reach(part: float, here: Film | None, final: bool) -> Film | None:
         (before, first), (last, q) = path[-2:]
         guess = q + (part - last) / (last - before) * (q - first)
         near = newton.solve(guess, part, straight) if newton.trials < MOST_TRIALS else None
@@ -162,16 +163,14 @@ def bore_equilibrium(
     return found if reached == 1.0 else None, path[-1]
 
 
-class BoreNewton(DampedNewton[Result]):
+class BoreNewton(DampedNewton[Film]):
     """Search for the coordinates q of a bore in balance with the film at a motion."""
 
-    def __init__(
-        self, model: FilmOnBore[Result], motion: np.ndarray, film: tuple[History | None, float, float]
-    ) -> None:
+    def __init__(self, model: FilmOnBore[Film], motion: np.ndarray, film: tuple[History | None, float, float]) -> None:
         self.model, self.motion, self.film = model, motion, film
         self.trials = 0
 
-    def solve(self, q: np.ndarray, part: float, straight: bool = False) -> Result | None:
+    def solve(self, q: np.ndarray, part: float, straight: bool = False) -> Film | None:
         """Equilibrium from coordinates q (k,) with the pose scaled by ``part``, the model's last; None if not found.
 
         ``straight``: nor where a step has to be damped.
@@ -186,7 +185,7 @@ class BoreNewton(DampedNewton[Result]):
             return None
         return found if found is self._last else self._evaluate(found.bore.coordinates.copy())
 
-    def _evaluate(self, q: np.ndarray) -> Result | None:
+    def _evaluate(self, q: np.ndarray) -> Film | None:
         self._full[MOTION_SIZE : MOTION_SIZE + q.size] = q
         self.trials += 1
         self._last = found = self.model.evaluate(self._full, *self.film)
@@ -195,30 +194,30 @@ class BoreNewton(DampedNewton[Result]):
         self._size = max(self._size, float(np.linalg.norm(found.bore.load)))
         return found
 
-    def _residual(self, place: Result) -> np.ndarray:
+    def _residual(self, place: Film) -> np.ndarray:
         elasticity = self.model.elasticity
         return place.bore.load + elasticity.load - elasticity.force(place.bore.coordinates)
 
-    def step(self, here: Result, damping: float) -> np.ndarray:
+    def step(self, here: Film, damping: float) -> np.ndarray:
         """Step (k,) of a bore with a viscosity, m."""
         if here is not self._at:  # its film is the model's last then
             self._at, self._softening = here, here.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
         held = 1.0 + damping
         return self.model.elasticity.solve(here.bore.coordinates, self._softening / held, self._residual(here) / held)
 
-    def moved(self, here: Result, step: np.ndarray) -> Result | None:
+    def moved(self, here: Film, step: np.ndarray) -> Film | None:
         """The film a step on."""
         return self._evaluate(here.bore.coordinates + step)
 
-    def error(self, place: Result) -> float:
+    def error(self, place: Film) -> float:
         """Residual over the largest load of the search."""
         return float(np.linalg.norm(self._residual(place))) / self._size
 
-    def is_balanced(self, place: Result, tolerance: float = ROUNDING) -> bool:
+    def is_balanced(self, place: Film, tolerance: float = ROUNDING) -> bool:
         """Return whether the residual is below a share of the load."""
         return self.error(place) <= tolerance
 
-    def accepts(self, here: Result, there: Result, damping: float) -> bool:
+    def accepts(self, here: Film, there: Film, damping: float) -> bool:
         """Return whether a step is taken: with what the viscosity resists, less of the balance is left."""
         resisted = damping * (self.model.elasticity.stiffness @ (there.bore.coordinates - here.bore.coordinates))
         left = np.linalg.norm(self._residual(there) - resisted)

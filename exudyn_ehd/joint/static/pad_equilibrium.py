@@ -33,8 +33,8 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import ROUNDING, FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
-# Places after which a search gives up, and force on a pad, over the load, from which on it carries.
-MOST_PLACES, CARRIES = 400, 0.01
+# Force on a pad, over the load, from which on it carries.
+CARRIES = 0.01
 # Places between the tilts at which an edge touches, where the moment is looked at first.
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
 # Shifts of such places for a second look around the largest moment.
@@ -110,8 +110,9 @@ def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, flo
     finest = TOLERANCE * pad.model.bearing.radial_clearance / pad.arm
     while True:
         here = pad.at(journal, shift, tilt)
-        moment = -math.inf if here is None else sense * float(here.forces[2])
-        lower, upper = (tilt, upper) if sense * moment > 0.0 else (lower, tilt)
+        # a pad without a film has touched, beyond the larger tilt in the sense of rotation
+        moment = -sense if here is None else float(here.forces[2])
+        lower, upper = (tilt, upper) if moment > 0.0 else (lower, tilt)
         stiff = 0.0 if here is None else here.stiffness[2, 2]
         step = here.forces[2] / stiff if here is not None and stiff > 0.0 else math.inf
         if abs(step) <= finest or upper - lower <= finest:
@@ -187,8 +188,6 @@ class PadSearch(DampedNewton[Balanced]):
         along = complex(*self.load) / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
         unmoved, found = np.zeros(self.bearing.pads if self.moves else 0), []
         for k in range(self.bearing.pads + 1 if np.any(along) else 1):
-            if self.count > MOST_PLACES:
-                break
             places = np.outer(TURNS if k == 1 else TURNS[:1], STARTS if np.any(along) else STARTS[:1]).ravel() * along
             tried = [self.at(np.array([place.real, place.imag, *unmoved])) for place in places]
             # beside the load's line, places at which two pads or more carry

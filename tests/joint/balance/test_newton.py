@@ -72,7 +72,7 @@ def test_steps_of_a_continuation_are_halved_where_one_is_not_reached():
         tried.append((share, here, final))
         return share if share < 0.7 else None
 
-    assert continued(reach, 0.5, 0.1) == (0.625, 0.625)
+    assert continued(reach, 0.5, 0.1) == (0.6875, 0.6875)
     assert tried[0] == (0.5, None, False)
     assert [final for _, _, final in tried][-1]
     assert continued(lambda share, here, final: None, 1.0, 1.0) == (0.0, None)
