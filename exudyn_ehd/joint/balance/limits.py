@@ -15,7 +15,7 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
+from exudyn_ehd.status import ROUNDING, FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
 
 # Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
 HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
@@ -25,8 +25,6 @@ PRESSED_THROUGH = "the journal was pressed through its contact by more than the 
 # K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
 # beyond any oil, so that a film of one is a wrong answer.
 HOT, HOTTEST = 423.15, 700.0
-# K, round-off of temperatures.
-ROUNDING = 1e-6
 COOLER = (
     "let more oil flow through (end pressures, supply, clearance), give the thermal effect heat transfer to the "
     "surfaces (housing_conductance, bush_coefficient, journal_coefficient), or take a thinner oil, less load or speed."
@@ -133,7 +131,7 @@ def outside_table(film: object) -> str:
         return ""
     T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
     low, high = float(np.min(T)), float(np.max(T))
-    if limits[0] - ROUNDING <= low and high <= limits[1] + ROUNDING:
+    if limits[0] * (1.0 - ROUNDING) <= low and high <= limits[1] * (1.0 + ROUNDING):
         return ""
     return (
         f"the film's temperatures reach from {low:.4g} to {high:.4g} K, but the oil's {type(law).__name__} from "
