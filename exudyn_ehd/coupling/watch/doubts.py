@@ -57,7 +57,7 @@ sinks.
 
 Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
 
-Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.resolution`), at the highest pressure.
+Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.limits`), at the highest pressure.
 
 Films that carry so little that Newton's absolute tolerance is a share of it.
 """
@@ -88,7 +88,7 @@ from exudyn_ehd.joint.audit.switches import (
     TYPICAL_SHEAR_ONSET,
     TYPICAL_TEMPERATURE_COEFFICIENT,
 )
-from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
+from exudyn_ehd.joint.balance.limits import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
 from exudyn_ehd.joint.step_error import enough_steps

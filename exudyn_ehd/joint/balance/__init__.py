@@ -2,8 +2,7 @@
 
 Module map
 ----------
-newton      one damped Newton's method for position and temperature; film at a motion
+newton      position and temperature together in balance; film at a motion
 position    journal's position under a load
-limits      temperatures and pressures that no oil or steel bears; what to do about films without a solution
-resolution  whether the grid resolves the pressure peak
+limits      temperatures, pressures and grids beyond which a film is told of; advice for films without a solution
 """
