@@ -13,11 +13,8 @@ from matplotlib.figure import Figure
 from exudyn_ehd.pictures.histories import draw_clearance
 from exudyn_ehd.pictures.maps import PRESSURE, draw_map, draw_rupture, field_values, on_picture
 from exudyn_ehd.pictures.records import HistoryRecord, JointFilm, label, unit_for
-from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, style_ticks, styled
+from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, WIDE, style_ticks, styled
 from exudyn_ehd.status import InputError, require_integer
-
-SIZE = (PAGE, 0.42 * PAGE)
-RESOLUTION = 110
 
 
 class Frames:
@@ -38,7 +35,7 @@ class Frames:
         self.time = unit_for("time", history.time)
         limits = float(self.unit(lowest)), float(self.unit(max(largest, lowest + 1.0)))
         with styled():
-            self.figure = Figure(figsize=SIZE, layout="constrained")
+            self.figure = Figure(figsize=(PAGE, WIDE[1]), layout="constrained")
             self.left, self.right = self.figure.subplots(1, 2, width_ratios=(1.0, 1.75))
             draw_clearance(self.left, history.radial_clearance, self.length)
             (self.trail,) = self.left.plot([], [], color=BLUE, lw=0.8)
@@ -98,7 +95,7 @@ def animate(
     target.parent.mkdir(parents=True, exist_ok=True)
     chosen = np.unique(np.linspace(0, len(films) - 1, min(count, len(films))).round().astype(int))
     picture = Frames(films, history)
-    with writer.saving(picture.figure, str(target), RESOLUTION):
+    with writer.saving(picture.figure, str(target), picture.figure.dpi):
         for k in chosen:
             picture.show(films[k])
             writer.grab_frame()

@@ -108,7 +108,7 @@ def plot_response(
 ) -> Figure:
     """Draw named amplitudes (k,) in m and phases (k,) in rad over the speeds (k,), dotted where not stable."""
     with styled():
-        figure = new_figure((WIDE[0], 1.3 * WIDE[1]), path)
+        figure = new_figure(TALL, path)
         upper, lower = figure.subplots(2, 1, sharex=True)
         unit = unit_for("length", np.concatenate([amplitude for _, amplitude, _ in curves]))
         x = RPM(np.abs(speeds))

@@ -34,7 +34,7 @@ BITS_OF_ONE, BITS_OF_PART = np.float64(1.0).view(np.uint64), np.uint64(47)
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
 # Share of the stress at which Newton's step is the last one: on the way, where what it leaves of stress and flow is its
-# square, and for exact derivatives, of which it leaves itself. Changes up to `EXACT` keep the last profile's derivatives.
+# square, and for exact derivatives, of which it leaves itself. A change below the latter keeps the last derivatives.
 LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-12, 200, 30
 # Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives, share of the last step, gap if
 # it is the one of the links' ratios, F (2), its five derivatives.
@@ -235,7 +235,7 @@ def _scale(T_x, T_z, G_x, G_z):
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
 def _follow(S, G_x, G_z, oil, points, last_step, last):
-    """`Profile` from the last one, ``last`` (`LAST`,): along its derivatives if it is near, else from where they lead."""
+    """`Profile` from the last one, ``last`` (`LAST`,), or from where its derivatives lead."""
     dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
     T_x, T_z = last[3], last[4]
     by_x = last[5] * dS + last[6] * d_x + last[7] * d_z
