@@ -173,7 +173,6 @@ SHARED = {
     "surfaces.elastic_liner",
     "reynolds.balance",
     "banded.assemble",
-    "lubricant.density_field",
     # a bearing of its own
     "thrust.tilting",
 }

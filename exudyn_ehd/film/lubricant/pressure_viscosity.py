@@ -30,8 +30,6 @@ LARGEST_PRESSURE = 5e9
 # Slope dp/dq of the line behind a law's end: steep enough for Newton's method to come back with its next step to where
 # the law is steep, and no steeper.
 BEYOND = 1e3
-_unsigned = np.uint64
-_ONE = _unsigned(1)
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 
 
@@ -307,11 +305,10 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
 @njit(cache=True, inline="always")
 def interval_at(x, q_table, table, bucket, bucket_scale):
     """Interval of one x > 0 below the end of the table of `hermite_inverse`, and t there."""
-    at = min(_unsigned(x * bucket_scale), _unsigned(bucket.size - 2))
-    low = _unsigned(bucket[at])
-    high = _unsigned(bucket[at + _ONE]) + _ONE
-    while high - low > _ONE:
-        middle = (low + high) >> _ONE
+    at = min(int(x * bucket_scale), bucket.size - 2)
+    low, high = bucket[at], bucket[at + 1] + 1
+    while high - low > 1:
+        middle = (low + high) // 2
         if q_table[middle] <= x:
             low = middle
         else:
