@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from exudyn_ehd.pictures.curves import REACH, RPM
 from exudyn_ehd.pictures.records import QUANTITIES, HistoryRecord, Target, Unit, label, unit_for
-from exudyn_ehd.pictures.rotors import REACH, RPM
 from exudyn_ehd.pictures.style import (
     BLUE,
     GREY,

@@ -36,11 +36,9 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
     interval_at,
     quintic,
 )
-from exudyn_ehd.status import POSITIVE, Checked
+from exudyn_ehd.status import POSITIVE, ROUNDING, Checked
 
 COEFFICIENT = partial(POSITIVE, at_most=1e-6, hint="mineral oils have 0.6e-9 (coefficient) and 1.7e-9 (saturation).")
-# Share of the law's range in which a film presses against its end.
-AT_THE_END = 1.0 - 1e-9
 # Stands for an exponent k = 0, for which q = p: far below what rounding could show.
 SMALLEST_EXPONENT = 1e-30
 
@@ -174,7 +172,7 @@ class DensityField:
 
     def is_exhausted(self, P: np.ndarray) -> bool:
         """Return whether scaled transformed pressures (n, m) reach the end of the law's range."""
-        return bool(P.max() * self.scale >= AT_THE_END * self.law.kernel_table.highest)
+        return bool(P.max() * self.scale >= (1.0 - ROUNDING) * self.law.kernel_table.highest)
 
     def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray, bool]:
         """All of it as kernels take it; ``floor``: scaled pressure below which the density stays."""

@@ -25,7 +25,7 @@ from exudyn_ehd.joint.audit.audit import ROWS, Audit, AuditRow, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
 from exudyn_ehd.joint.audit.samples import TENSION, FilmState, RecordedSteps, Sources, squeeze_share
-from exudyn_ehd.joint.audit.switches import STEEL, TYPICAL_ROUGHNESS
+from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL
 from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
@@ -150,7 +150,7 @@ class BallCase(Case):
 def _contact(case: Case) -> Finding:
     if case.bearing.contact is not None:
         return effects.contact(case)
-    wall = RegularisedWall(onset=min(TOUCHING * TYPICAL_ROUGHNESS, THIN * case.bearing.radial_clearance))
+    wall = RegularisedWall(onset=min(TOUCHING * ROUGH_STEEL.composite_roughness, THIN * case.bearing.radial_clearance))
     switch, advice = partial(replace, contact=wall), "surfaces touch: contact=RegularisedWall(...)."
     limit = LIMITS["asperities"]._replace(nothing=None)
     return judged(case, "contact", *effects.thinnest(case), False, switch, limit=limit, mattering=advice)
