@@ -10,7 +10,7 @@ that the gap of the film sees the residual only, ``delta = e_r (S Psi - P - Thet
 clearances without error. Loads are carried back by the transposes.
 
 Source of the modes: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59, here for pressures on a bore
-as in `exudyn_ehd.solid.bush_modes`.
+as in `exudyn_ehd.solid.bush`.
 
 Faces of the surface under the film are unrolled with their shape functions. They are those of hexahedra, or triangles
 of three or six nodes.

@@ -93,7 +93,8 @@ EFFECTS = {
             "joint.model.flexible",
             "joint.tangent.bore",
             "joint.bore.equilibrium",
-            "solid.bush_modes",
+            "solid.bush:bore_modes",
+            "solid.bush:BoreModes",
         ),
         {
             "bush": ehd.ModalBush(
