@@ -24,7 +24,8 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
-from exudyn_ehd.pictures.records import FilmPictures, HistoryPictures, shown
+from exudyn_ehd.pictures.mixins import FilmPictures, HistoryPictures
+from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type
 
 

@@ -2,8 +2,8 @@
 
 Module map
 ----------
-records    what pictures look at: a film, the film of a joint, a history; in which unit a quantity is shown;
-           ``plot_...`` methods of what is or has a film or a history
+records    what pictures look at: a film, the film of a joint, a history; in which unit a quantity is shown
+mixins     ``plot_...`` methods of what is or has a film or a history; draws nothing itself
 style      sizes, colours, fonts; opening and writing a figure
 maps       unrolled maps of pressure, gap, fill and temperature; a ball's socket
 histories  orbit in the clearance circle, polar diagram of the load, quantities over time or angle, waterfall

@@ -15,7 +15,8 @@ import numpy as np
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.joint.audit.samples import RecordedSteps
 from exudyn_ehd.joint.step_error import BLOCKS, LOADS
-from exudyn_ehd.pictures.records import HistoryPictures, HistoryRecord, shown
+from exudyn_ehd.pictures.mixins import HistoryPictures
+from exudyn_ehd.pictures.records import HistoryRecord, shown
 from exudyn_ehd.status import ROUNDING, InputError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv

@@ -6,7 +6,8 @@ import numpy as np
 
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.pictures.records import FilmPictures, FilmRecord, JointFilm, shown
+from exudyn_ehd.pictures.mixins import FilmPictures
+from exudyn_ehd.pictures.records import FilmRecord, JointFilm, shown
 
 
 class FilmFields(JointFilm, FilmPictures):

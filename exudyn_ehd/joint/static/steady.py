@@ -24,7 +24,8 @@ from exudyn_ehd.joint.model.quantities import passing_flows, pocket_pressures, r
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
-from exudyn_ehd.pictures.records import FilmPictures, FilmRecord, shown
+from exudyn_ehd.pictures.mixins import FilmPictures
+from exudyn_ehd.pictures.records import FilmRecord, shown
 from exudyn_ehd.solid.bush import BoreModes
 from exudyn_ehd.status import (
     InputError,
