@@ -84,9 +84,8 @@ class BushMesh:
 
     def line(self, nodes: np.ndarray) -> Line:
         """Return the element edges all of whose nodes are in ``nodes`` (mesh node numbers)."""
-        edges = np.unique(self.elements[:, self.element.edges].reshape(-1, 3), axis=0)
-        swapped = edges[:, 0] > edges[:, 1]
-        edges[swapped] = edges[swapped][:, [1, 0, 2]]
+        edges = self.elements[:, self.element.edges].reshape(-1, 3)
+        edges[:, :2] = np.sort(edges[:, :2])
         edges = np.unique(edges, axis=0)
         edges = edges[np.isin(edges, nodes).all(axis=1)]
         if len(edges) == 0:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -50,7 +50,8 @@ MARGIN = 1.5
 DIRECTIONS, UNEVEN_DIRECTIONS = 12, 24
 # Largest distance of eccentricity ratios at which errors are measured.
 SPACING = 0.1
-ECCENTRICITY, TILT, RATIO = (0.1, 0.95), (0.0, 0.7), (0.25, 2.0)
+# Ranges in which the recommendation was tried.
+TRIED = {"L/D": (0.25, 2.0), "tilt_ratio": (0.0, 0.7), "eccentricity_ratio": (0.1, 0.95)}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -160,7 +161,8 @@ def recommend(
     speed = _speed(bearing, speed)
     ratio = bearing.length / (2.0 * bearing.journal_radius)
     place = f"L/D {ratio:.3g}, eps {low:g} to {high:g}, tilt {tilt_ratio:g}"
-    unknown = _unknown(bearing, quantity, {"L/D": (ratio, RATIO), "tilt_ratio": (tilt_ratio, TILT)}, (low, high))
+    asked = ("L/D", ratio), ("tilt_ratio", tilt_ratio), ("eccentricity_ratio", low), ("eccentricity_ratio", high)
+    unknown = _unknown(bearing, quantity, asked)
     if unknown:
         return Recommendation(found=False, reason=f"nothing is known of this bearing: {unknown}.")
     count = 1 + math.ceil((high - low) / SPACING - 1e-9)
@@ -243,12 +245,7 @@ def _speed(bearing: JournalBearing, speed: float | None) -> float:
     return 100.0
 
 
-def _unknown(
-    bearing: JournalBearing,
-    quantity: str,
-    numbers: Mapping[str, tuple[float, tuple[float, float]]],
-    eccentricity: tuple[float, float],
-) -> str:
+def _unknown(bearing: JournalBearing, quantity: str, asked: Sequence[tuple[str, float]]) -> str:
     """Return the reason why nothing is known of such a bearing; empty if something is."""
     if isinstance(bearing.bush, ANCFBush):
         return "an ANCFBush takes minutes a film; ask for the ModalBush of the same mesh, or compare a finer film"
@@ -258,14 +255,10 @@ def _unknown(
         return "an arc carries loads of some directions only; compare a finer film"
     if quantity == "critical mass" and any(area.rotating for area in bearing.supply):
         return "supply areas turn with the journal (rotating=True), so that it has no equilibrium and no critical mass"
-    for name, (value, (lowest, highest)) in numbers.items():
+    for name, value in asked:
+        lowest, highest = TRIED[name]
         if not lowest <= value <= highest:
             return f"{name} is {value:g}, and this was tried from {lowest:g} to {highest:g}"
-    if not ECCENTRICITY[0] <= eccentricity[0] <= eccentricity[1] <= ECCENTRICITY[1]:
-        return (
-            f"eccentricity_ratio is {eccentricity[0]:g} to {eccentricity[1]:g}, and this was tried from "
-            f"{ECCENTRICITY[0]:g} to {ECCENTRICITY[1]:g}"
-        )
     return ""
 
 

@@ -30,7 +30,6 @@ LARGEST_PRESSURE = 5e9
 # Slope dp/dq of the line behind a law's end: steep enough for Newton's method to come back with its next step to where
 # the law is steep, and no steeper.
 BEYOND = 1e3
-_GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 
 
 class PressureLaw(Protocol):
@@ -238,9 +237,10 @@ class PressureTransform:
         return self.viscosity.ratio(p), self.viscosity.ratio_slope(p)
 
     def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-        lower, half = np.asarray(lower), np.asarray(0.5 * (upper - lower))
-        points = lower[..., None] + half[..., None] * (1.0 + _GAUSS_X)
-        return half * np.sum(_GAUSS_W / self.slopes(points)[0], axis=-1)
+        place, weight = np.polynomial.legendre.leggauss(8)
+        half = np.asarray(0.5 * (upper - lower))
+        points = np.asarray(lower)[..., None] + half[..., None] * (1.0 + place)
+        return half * np.sum(weight / self.slopes(points)[0], axis=-1)
 
     def transform(self, p: np.ndarray) -> np.ndarray:
         """q(p), Pa."""

@@ -9,8 +9,8 @@ value: d changes its sign from step to step below some three steps per period on
 
 That alone is no fault: whatever starts suddenly leaves an alternation that generalized alpha damps within some steps.
 A run that rings is thrown again and again: by steps that were halved, by Newton's method that accepts forces next to
-the solution, by impacts within a single step. So *bursts* are counted: zigzags stronger than what an alternation that
-fades slowly would have left of the burst before, once in so many steps.
+the solution, by impacts within a single step. So *bursts* are counted: zigzags stronger than the five steps before,
+and alternations that do not fade, once in so many steps.
 
 What a force does to the masses around it, and what it carries of their loads, is its mean over the steps: under
 Newmark's formulas, and those of generalized alpha, places follow ``F_k - d_k / 2``, the mean of (1, 2, 1) / 4 in equal
@@ -29,15 +29,15 @@ import numpy as np
 
 from exudyn_ehd.status import RingingWarning
 
-# Size of a zigzag, share of the force there and of the largest one before. What was before fades by so much per step:
-# larger, the alternation that a damped time integration leaves would count again.
+# Size of a zigzag, share of the force there and of the largest one before, which fades by so much per step.
 LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
 # Share of a d by which those before and behind it point against it.
 EVEN = 0.3
 # Mean pressure on the projected area below which a force is none: rounding next to an ideal joint, Pa.
 NEGLIGIBLE = 100.0
-# Steps between two bursts.
-APART = 20
+# A burst is so much stronger than the steps before, or has kept such a share of its size over so many zigzags; steps
+# between two bursts.
+STRONGER, KEPT, LASTING, APART = 1.5, 0.75, 20, 5
 # Bursts within so many steps are counted together; a run rings from so many on.
 WINDOW, LIMIT = 100, 4
 # A force is out of all proportion if it is so many times its mean, presses by so many Pa on the projected area, and
@@ -73,13 +73,13 @@ class RingingWatch:
         """Forget all steps."""
         self.most, self.rings = 0, False
         self.first = self.last = math.nan
-        # time and force of the last steps; the last three d
+        # time and force of the last steps; the last three d and five before, with their sizes
         self._states: deque[tuple[float, float, float, float]] = deque(maxlen=4)
-        self._bends: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)] * 3, maxlen=3)
+        self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 8, maxlen=8)
         self._bursts: deque[int] = deque()
         self._throws: deque[int] = deque([-WINDOW] * MOST_THROWS, maxlen=MOST_THROWS)
         self.worst = (0.0, 0.0)
-        self._step = 0
+        self._step = self._zigzags = 0
         self._largest = self._strength = 0.0
 
     def take(self, time: float, x: float, y: float, z: float = 0.0) -> bool:
@@ -109,30 +109,40 @@ class RingingWatch:
         (t_2, x_2, y_2, z_2), (t_1, x_1, y_1, z_1) = states[-3], states[-2]
         share = (t_1 - t_2) / (time - t_2)
         dx, dy, dz = x_1 - x_2 - share * (x - x_2), y_1 - y_2 - share * (y - y_2), z_1 - z_2 - share * (z - z_2)
-        self._bends.append((dx, dy, dz))
+        self._bends.append((dx, dy, dz, math.hypot(dx, dy, dz)))
         force = math.hypot(x_1, y_1, z_1)
         if force > self.heavy and force > STRONG_SHARE * self._largest:
             mean = math.hypot(x_1 - 0.5 * dx, y_1 - 0.5 * dy, z_1 - 0.5 * dz)
             if force > PROPORTION * mean:
                 self._throws.append(self._step)
                 self.worst = max(self.worst, (force, mean))
-        self._strength *= FADING
+        if not self._zigzag():
+            return False
+        self._zigzags += 1
         return self._is_burst() and self._count(t_1)
 
-    def _is_burst(self) -> bool:
-        """Return whether the force zigzags at the step before, and more than what is left of the last burst."""
-        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._bends
-        b = math.hypot(bx, by, bz)
-        if not b > max(self.smallest, LARGEST_SHARE * self._largest, self._strength):
-            return False
-        if max(ax * bx + ay * by + az * bz, bx * cx + by * cy + bz * cz) > -EVEN * b * b:
+    def _zigzag(self) -> bool:
+        (ax, ay, az, _), (bx, by, bz, b), (cx, cy, cz, _) = list(self._bends)[-3:]
+        against = max(ax * bx + ay * by + az * bz, bx * cx + by * cy + bz * cz)
+        if not b > max(self.smallest, LARGEST_SHARE * self._largest) or against > -EVEN * b * b:
             return False
         force = sum(math.hypot(x, y, z) for _, x, y, z in list(self._states)[:3]) / 3.0
-        return b > LOCAL_SHARE * force and not (self._bursts and self._step - self._bursts[-1] < APART)
+        return b > LOCAL_SHARE * force
+
+    def _is_burst(self) -> bool:
+        if self._bursts and self._step - self._bursts[-1] < APART:
+            return False
+        sizes = [bend[3] for bend in self._bends]
+        strength = max(sizes[-3:])
+        lasting = self._zigzags >= LASTING and strength > KEPT * self._strength
+        if not (lasting or strength > STRONGER * max(sizes[:5])):
+            return False
+        self._strength = strength
+        return True
 
     def _count(self, time: float) -> bool:
         bursts = self._bursts
-        self._strength = math.hypot(*self._bends[1])
+        self._zigzags = 0
         bursts.append(self._step)
         while bursts[0] <= self._step - WINDOW:
             bursts.popleft()
