@@ -34,11 +34,10 @@ BITS_OF_ONE, BITS_OF_PART = np.float64(1.0).view(np.uint64), np.uint64(47)
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
 # Share of the stress at which Newton's step is the last one: on the way, where what it leaves of stress and flow is its
-# square, and for exact derivatives, of which it leaves itself. A change below the latter keeps the last derivatives.
+# square, and for exact derivatives, of which it leaves itself.
 LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-12, 200, 30
-# Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives, share of the last step, gap if
-# it is the one of the links' ratios, F (2), its five derivatives.
-LAST = 20
+# Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives.
+LAST = 11
 # Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
 SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
@@ -205,7 +204,7 @@ def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
         i_xx, -m_xx, -m_xz, m_xx, m_xz,
         B[0] - C[0] * m_xx - C[1] * m_zx, B[1] - C[0] * m_xz - C[1] * m_zz, B[2] - C[1] * m_xz - C[2] * m_zz,
     )  # fmt: skip
-    return found, (i_xz, -m_zx, -m_zz), rough
+    return found, (i_xz, -m_zx, -m_zz)
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE)
@@ -235,28 +234,19 @@ def _scale(T_x, T_z, G_x, G_z):
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
 def _follow(S, G_x, G_z, oil, points, last_step, last):
-    """`Profile` from the last one, ``last`` (`LAST`,), or from where its derivatives lead."""
+    """`Profile` from where the derivatives of the last one lead, ``last`` (`LAST`,), which it becomes."""
     dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
     T_x, T_z = last[3], last[4]
     by_x = last[5] * dS + last[6] * d_x + last[7] * d_z
     by_z = last[8] * dS + last[9] * d_x + last[10] * d_z
-    scale, change = _scale(T_x, T_z, G_x, G_z), abs(by_x) + abs(by_z)
     T_x, T_z = T_x + by_x, T_z + by_z
-    if change + abs(d_x) + abs(d_z) <= EXACT * scale and last[11] <= EXACT:
-        last[12] = 0.0
-        F_xs, F_zs, F_xx, F_xz, F_zz = last[15], last[16], last[17], last[18], last[19]
-        F_x = last[13] + F_xs * dS + F_xx * d_x + F_xz * d_z
-        F_z = last[14] + F_zs * dS + F_xz * d_x + F_zz * d_z
-        return Profile(T_x, T_z, F_x, F_z, last[5], last[6], last[7], F_xs, F_zs, F_xx, F_xz, F_zz)
     if G_x == 0.0 and G_z == 0.0:
-        p, others, rough = _slide(S, oil, T_x), (0.0, 0.0, 0.0), 0.0
+        p, others = _slide(S, oil, T_x), (0.0, 0.0, 0.0)
     else:
-        p, others, rough = _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step)
+        p, others = _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step)
     last[0], last[1], last[2], last[3], last[4] = S, G_x, G_z, p.T_x, p.T_z
     last[5], last[6], last[7] = p.T_xs, p.T_xx, p.T_xz
     last[8], last[9], last[10] = others
-    last[11], last[12], last[13], last[14] = rough, 0.0, p.F_x, p.F_z
-    last[15], last[16], last[17], last[18], last[19] = p.F_xs, p.F_zs, p.F_xx, p.F_xz, p.F_zz
     return p
 
 
@@ -278,8 +268,7 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out)
     last : (n, m, LAST) array
         Profiles of the last call, where this one starts; zeros for none.
     out : (5, n, m) array
-        Ratio a; da/dH and da/dvx at fixed gradients; derivative of the flow to ``slope`` over a, and to ``cross``. As
-        the last call left it: places where nothing has changed keep theirs.
+        Ratio a; da/dH and da/dvx at fixed gradients; derivative of the flow to ``slope`` over a, and to ``cross``.
     """
     n, m = gap.shape
     wide = fluid.size > 1
@@ -289,10 +278,7 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out)
             S, per = speed / h, 6.0 * k * h * (fluid[i, j] if wide else fluid[0, 0])
             own, other = per * slope[i, j], per * cross[i, j]
             G_x, G_z = (own, other) if axis == 0 else (other, own)
-            known = last[i, j]
-            if known[12] == h and known[0] == S and known[1] == G_x and known[2] == G_z:
-                continue
-            p = _follow(S, G_x, G_z, oil, points, LAST_STEP, known)
+            p = _follow(S, G_x, G_z, oil, points, LAST_STEP, last[i, j])
             F, by_own, by_s = (p.F_x, p.F_xx, p.F_xs) if axis == 0 else (p.F_z, p.F_zz, p.F_zs)
             if abs(own) <= SLIGHT * (abs(p.T_x) + abs(p.T_z) + 1.0):
                 a = 12.0 * by_own

@@ -161,10 +161,9 @@ class ShearThinning(LinkLaw):
     def place(self, grid: FilmGrid, flow_x: float) -> None:
         """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
         self.slopes, self.cross, self.vertex = np.zeros((3, 2, *grid.shape))
-        # with gradients and without: profiles of links in theta and z, and at vertices; what `thin_links` found
+        # with gradients and without: profiles of links in theta and z, and at vertices
         self.profiles = np.zeros((2, 3, *grid.shape, LAST))
-        self.profiles[..., 11] = 1.0
-        self.ratios = np.zeros((2, 2, 5, *grid.shape))
+        self.found = np.zeros((2, 5, *grid.shape))
         along, across = flow_x * grid.link_x, np.append(grid.link_z, 0.0)
         self.cuts = grid.cuts
         self.links = along, across
@@ -173,8 +172,7 @@ class ShearThinning(LinkLaw):
 
     def see(self, P: np.ndarray) -> None:
         """Take the gradients of the film's unknown P (n, m)."""
-        slides = int(not P.any())
-        self.last, self.found = self.profiles[slides], self.ratios[slides]
+        self.last = self.profiles[int(P.any())]
         gradients(P, self.links, self.weights, self.slopes, self.vertex, self.cross)
         if self.cuts is not None:
             self.slopes *= self.cuts
