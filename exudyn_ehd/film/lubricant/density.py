@@ -38,7 +38,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
 )
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked
 
-COEFFICIENT = partial(POSITIVE, at_most=1e-6, hint="mineral oils have 0.6e-9 (coefficient) and 1.7e-9 (saturation).")
+COEFFICIENT = partial(POSITIVE, hint="mineral oils have 0.6e-9 (coefficient) and 1.7e-9 (saturation).")
 # Stands for an exponent k = 0, for which q = p: far below what rounding could show.
 SMALLEST_EXPONENT = 1e-30
 

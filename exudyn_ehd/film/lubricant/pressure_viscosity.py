@@ -62,8 +62,7 @@ class PressureOption(Protocol):
         """The law for a reference viscosity in Pa s."""
 
 
-LARGEST_COEFFICIENT = 1e-4
-COEFFICIENT = partial(POSITIVE, at_most=LARGEST_COEFFICIENT, hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.")
+COEFFICIENT = partial(POSITIVE, hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.")
 
 
 @dataclass(frozen=True, kw_only=True)

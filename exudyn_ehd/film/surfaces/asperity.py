@@ -46,8 +46,8 @@ from numba import njit
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
 
-# Gap in sigma from which on surfaces do not touch: contact pressure and departure of the average gap are below 1e-16.
-REACH = 8.0
+# Beyond this many sigma the average gap equals the nominal one (to 2e-13 sigma).
+SMOOTH_BEYOND = 7.0
 # Beginning of the hint on a composite roughness that can't be meant.
 ROUGHNESS = "it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with"
 
@@ -66,7 +66,7 @@ class AverageGap(GapLimiter):
     def __init__(self, sigma: float, residual: float) -> None:
         self.sigma = sigma
         self.residual = residual
-        self.limits_below = REACH * sigma
+        self.limits_below = SMOOTH_BEYOND * sigma
 
     def film_gap(self, gaps: np.ndarray, slopes: np.ndarray, bends: np.ndarray) -> None:
         """Average gap with its derivatives; as `GapLimiter`."""
@@ -84,7 +84,7 @@ def average_gap(gaps, sigma, residual, slopes, bends):
     """Average gaps of rough surfaces with their first two derivatives, in place."""
     g, slope, bend = gaps.reshape(-1), slopes.reshape(-1), bends.reshape(-1)
     for k in range(g.size):
-        if g[k] <= REACH * sigma:
+        if g[k] <= SMOOTH_BEYOND * sigma:
             y = g[k] / sigma - residual
             density = math.exp(-0.5 * y * y) / math.sqrt(2.0 * math.pi)
             # erfc keeps its relative accuracy deep below the mean line, where y Phi(y) + phi(y) cancels.
@@ -93,8 +93,8 @@ def average_gap(gaps, sigma, residual, slopes, bends):
             g[k] = sigma * (residual + max(y * slope[k] + density, 0.0))
 
 
-# Gap in sigma at which the table of the contact pressure begins, and its knots per sigma.
-DEEPEST, STEPS_PER_SIGMA = -64.0, 64
+REACH, DEEPEST = 8.0, -64.0
+STEPS_PER_SIGMA = 64
 
 
 @dataclass(frozen=True, kw_only=True)
