@@ -43,8 +43,6 @@ from exudyn_ehd.tables import format_seconds
 Options: TypeAlias = dict[str, Any]
 LADDER = ((32, 4), (48, 6), (64, 8), (96, 10), (128, 12), (192, 16))
 LEVELS = ((64, 6), (128, 12), (256, 24))
-# Time of a film with its line inside the cells over one without.
-LINE_COST = 1.65
 MARGIN = 1.5
 # Of the eccentricity; of bearings with supply or a profile, whose film changes with the place of these in it.
 DIRECTIONS, UNEVEN_DIRECTIONS = 12, 24
@@ -277,27 +275,21 @@ def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
 
 
 def _settings(bearing: JournalBearing) -> Iterator[tuple[FilmOption, Options]]:
-    """Films of the ladder and what they replace, the cheapest first."""
+    """Films of the ladder and what they replace, the cheapest first: with the rupture line on the vertices, and where
+    the bearing may, inside the cells."""
     given: FilmOption = bearing.film
     own = given if isinstance(given, FiniteLength) else FiniteLength()
-    found: list[tuple[float, FilmOption, Options]] = []
-    for n, m in LADDER:
-        film = FiniteLength(n_theta=n, n_z=m, stretch=own.stretch)
-        found += [(cost * n * m, film, {"film": film, **options}) for options, cost in _closures(bearing)]
-    short = ShortBearing(n_theta=64)
-    found.append((0.5 * 64 * 8, short, {"film": short}))
-    yield from (entry[1:] for entry in sorted(found, key=lambda entry: entry[0]))
-
-
-def _closures(bearing: JournalBearing) -> list[tuple[Options, float]]:
-    """The bearing's own closure, and where it may the same with its rupture line elsewhere; what a film costs each."""
     is_inside = bool(dataclasses.replace(bearing, film=FiniteLength()).closure.line_in_cells)
-    costs = {True: LINE_COST, False: 1.0}
-    found: list[tuple[Options, float]] = [({}, costs[is_inside])]
     # a line that was put inside the cells stays there
     stays = is_inside and bearing.cavitation.line_in_cells is not None
     other = None if stays else _with_line(bearing, not is_inside)
-    return found if other is None else [*found, (other, costs[not is_inside])]
+    closures = [options for options in ((other, {}) if is_inside else ({}, other)) if options is not None]
+    for n, m in LADDER:
+        film = FiniteLength(n_theta=n, n_z=m, stretch=own.stretch)
+        yield from ((film, {"film": film, **options}) for options in closures)
+        if (n, m) == LADDER[0]:
+            short = ShortBearing(n_theta=64)
+            yield short, {"film": short}
 
 
 def _with_line(bearing: JournalBearing, in_cells: bool) -> Options | None:
