@@ -20,7 +20,7 @@ from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled, span
 from exudyn_ehd.pictures.records import FilmRecord, Target, label, unit_for
 from exudyn_ehd.pictures.style import (
     BLACK,
-    COLUMN,
+    TALL,
     VERMILION,
     WIDE,
     headed,
@@ -211,7 +211,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Fi
     box = _box(mesh, frames)
     plots = []
     with styled():
-        figure = new_figure((COLUMN * columns, 0.8 * COLUMN * rows))
+        figure = new_figure((TALL[0] * columns, WIDE[1] * rows))
         for i, frame in enumerate(frames):
             axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
             _draw(axes, mesh, frame, norm, colours)
