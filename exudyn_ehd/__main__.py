@@ -17,17 +17,21 @@ import exudyn_ehd as ehd
 from exudyn_ehd.kernels import COMPILATIONS
 from exudyn_ehd.progress import without_lines
 
-BUSH = ehd.ModalBush(
-    mesh=ehd.HollowCylinder(inner_radius=0.01, thickness=0.004, length=0.02, axial=2, radial=1, circumferential=24),
-    material=ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0),
-)
 FILM = ehd.JournalBearing(
     journal_radius=0.01, length=0.02, radial_clearance=20e-6, lubricant=ehd.Lubricant(viscosity=0.02)
 )
 GROUPS = {
     "film": FILM,
     "elrod": replace(FILM, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)),
-    "bush": replace(FILM, bush=BUSH),
+    "bush": replace(
+        FILM,
+        bush=ehd.ModalBush(
+            mesh=ehd.HollowCylinder(
+                inner_radius=0.01, thickness=0.004, length=0.02, axial=2, radial=1, circumferential=24
+            ),
+            material=ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0),
+        ),
+    ),
 }
 """Bearing of every group."""
 

@@ -153,7 +153,7 @@ GROUPS = (
     ),
 )
 # Public for the package itself.
-INNER = {"of_columns", "extremes", "sample_gradients", "restore_state", "state", "in_vain"}
+INNER = {"of_columns", "extremes", "sample_gradients", "restore_state", "state"}
 
 
 class Entry(NamedTuple):

@@ -24,7 +24,7 @@ from matplotlib.text import Text
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import bore_modes
 from tests.sampling import is_long_to_compile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent

@@ -235,7 +235,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         InputError
             Without films, for other endings, or without ffmpeg.
         """
-        from exudyn_ehd.pictures.animation import animate
+        from exudyn_ehd.pictures.files import animate
 
         films = self.films
         if not films:
@@ -249,7 +249,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         """Write the film on the bore, and the bush with its stress, for ParaView; needs the package meshio.
 
         Films kept by `record_films` make a time series; without them the film at the last accepted state is written.
-        See `exudyn_ehd.pictures.vtk.export_films`.
+        See `exudyn_ehd.pictures.files.export_films`.
 
         Parameters
         ----------
@@ -263,7 +263,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         list of Path
             Written files, first the one to open.
         """
-        from exudyn_ehd.pictures.vtk import export_films
+        from exudyn_ehd.pictures.files import export_films
 
         return export_films(self.films or (self.film(),), path, magnification=magnification)
 

@@ -8,8 +8,6 @@ style      sizes, colours, fonts; opening and writing a figure
 maps       unrolled maps of pressure, gap, fill and temperature; a ball's socket
 histories  orbit in the clearance circle, polar diagram of the load, quantities over time or angle, waterfall
 bush       in space: deformed bushes with contours of a nodal field; pressure around the bore, with the journal in it
-rotors     rotors over their speed
-curves     one column of any table over another
-animation  orbit and pressure as gif or mp4
-vtk        film and bush as files for ParaView
+curves     rotors over their speed; one column of any table over another
+files      films of a run: orbit and pressure as gif or mp4, film and bush for ParaView
 """

@@ -13,13 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from exudyn_ehd.pictures.curves import REACH, RPM
 from exudyn_ehd.pictures.records import QUANTITIES, HistoryRecord, Target, Unit, label, unit_for
-from exudyn_ehd.pictures.rotors import REACH, RPM
 from exudyn_ehd.pictures.style import (
     BLUE,
-    COLUMN,
     GREY,
-    PAGE,
     SKY,
     TALL,
     VERMILION,
@@ -33,8 +31,8 @@ from exudyn_ehd.pictures.style import (
 )
 from exudyn_ehd.status import InputError
 
-# Heights of the margin, of one panel and of the title of traces, inch.
-MARGIN, PANEL, TITLE = 0.55, 1.35, 0.2
+# Height of one panel of traces, inch; margins and title have half of it.
+PANEL = 1.35
 # Of a waterfall: duration of one spectrum over that of the history, steps that it takes at least, steps from one
 # spectrum to the next and frequencies, over those of a spectrum; smallest amplitude shown over the largest.
 _SPECTRUM, _LEAST, _SHIFT, _FINER, _FLOOR = 0.05, 16, 0.125, 4, 1e-3
@@ -358,8 +356,7 @@ def plot_waterfall(
 
 def _new_panels(count: int, title: str, path: Target) -> np.ndarray:
     """Axes below each other in a new figure."""
-    width = 0.62 * PAGE if count > 1 else COLUMN
-    figure = new_figure((width, MARGIN + PANEL * count + (TITLE if title else 0.0)), path)
+    figure = new_figure((WIDE[0], PANEL * (count + 0.5)), path)
     figure.suptitle(title)
     panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
     for panel in panels:

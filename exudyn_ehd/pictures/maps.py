@@ -18,10 +18,9 @@ from matplotlib.projections.polar import PolarAxes
 from exudyn_ehd.film.arcs import TOUCHING, columns_of_arcs
 from exudyn_ehd.film.supply.areas import covers, placed
 from exudyn_ehd.pictures.records import FilmRecord, Target, Unit, label, shown, unit_for
-from exudyn_ehd.pictures.style import BLACK, COLUMN, GREY, PAGE, headed, picture, style_ticks
+from exudyn_ehd.pictures.style import BLACK, GREY, TALL, WIDE, headed, picture, style_ticks
 from exudyn_ehd.status import InputError
 
-SIZE = (0.75 * PAGE, 0.36 * PAGE)
 # Points of a picture around and along.
 FINE = (721, 121)
 # Places without a bore, between arcs.
@@ -164,7 +163,7 @@ def plot_map(
     values = field_values(film, field)
     unit = unit_for(field.kind, values)
     own = ax is None
-    with picture(ax, SIZE, path) as (figure, ax):
+    with picture(ax, WIDE, path) as (figure, ax):
         image = draw_map(ax, film, field, unit)
         style_ticks(figure.colorbar(image, ax=ax, label=label(field.text, unit), pad=0.02).ax)
         if own and ax.get_legend_handles_labels()[0]:
@@ -306,7 +305,7 @@ def plot_patch(
         # closed at the pole, half an interval from the first row
         values = np.column_stack([np.full(len(ring), values[:-1, 0].mean()), values])
         chi = np.concatenate([[0.0], chi])
-    with picture(ax, (COLUMN, 0.95 * COLUMN), path, where="plot_pressure", projection="polar") as (figure, ax):
+    with picture(ax, TALL, path, where="plot_pressure", projection="polar") as (figure, ax):
         image = ax.contourf(ring, np.degrees(chi), values.T, levels=24, cmap="viridis")
         ax.set_rlim(0.0, math.degrees(chi[-1]))
         ax.set_rgrids([k for k in range(30, 180, 30) if chi[0] < math.radians(k) < chi[-1]], fmt="%d°", color="white")

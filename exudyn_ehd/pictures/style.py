@@ -32,11 +32,8 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY = (
     "#808080",
 )
 PALETTE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
-# Width of one column and of the page, inch.
-COLUMN, PAGE = 3.5, 7.2
-# Sizes of pictures that are about square, and of curves, inch.
-TALL, WIDE = (COLUMN, 1.12 * COLUMN), (0.62 * PAGE, 0.45 * PAGE)
-RESOLUTION = 200
+# Width of a page, sizes of pictures that are about square, as wide as a column, and of maps and curves, inch.
+PAGE, TALL, WIDE = 7.2, (3.5, 3.9), (4.5, 3.2)
 # Matplotlib's backends that show nothing, in lower case.
 FILES_ONLY = [name.lower() for name in backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)]
 
@@ -57,6 +54,7 @@ RC = {
     "ytick.major.width": 0.6,
     "legend.frameon": False,
     "savefig.facecolor": "white",
+    "savefig.dpi": 200,
     "figure.facecolor": "white",
 }
 TEXT = (
@@ -189,4 +187,4 @@ def write(figure: Figure, path: Target) -> None:
     if path is not None:
         path = pathlib.Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=RESOLUTION)
+        figure.savefig(path)

@@ -2,7 +2,7 @@
 
 Module map
 ----------
-bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
+bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`; static modes of a bore
 mesh                hollow cylinders; surfaces and lines of meshes
 unrolled            faces on a cylinder: where points lie on them, where they meet and end
 mesh_import         users' meshes, from memory and, through meshio, from files
@@ -12,7 +12,6 @@ loads               loads on lines and surfaces, pressures
 stress              Cauchy and von Mises stress at nodes and at any point
 linear              factors of a mesh's matrices
 pressure_modes      pressures of oil films, and the modes that they need
-bush_modes          a bush reduced to static modes of its bore
 journal             elastic journals: cylinders by harmonics, their modes
 fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`;
                     its nodes and faces, and their shape functions

@@ -10,7 +10,7 @@ that the gap of the film sees the residual only, ``delta = e_r (S Psi - P - Thet
 clearances without error. Loads are carried back by the transposes.
 
 Source of the modes: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59, here for pressures on a bore
-as in `exudyn_ehd.solid.bush_modes`.
+as in `exudyn_ehd.solid.bush`.
 
 Faces of the surface under the film are unrolled with their shape functions. They are those of hexahedra, or triangles
 of three or six nodes.
@@ -30,7 +30,7 @@ from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.elements.kinds import boundary_faces
 from exudyn_ehd.solid.linear import held_solution
-from exudyn_ehd.solid.mesh import frame_of
+from exudyn_ehd.solid.mesh import require_frame
 from exudyn_ehd.solid.pressure_modes import ALONG, AROUND, FilmSurface, film_modes, film_points
 from exudyn_ehd.solid.unrolled import Surface, patch
 from exudyn_ehd.status import SMALL, InputError, require_bool, require_number, require_vector
@@ -412,7 +412,7 @@ def add_bore_modes(
     """
     where = "add_bore_modes"
     point = require_vector(f"{where} position", position, 3, "m")
-    rotation = _any_frame(require_vector(f"{where} axis", axis, 3))
+    rotation = require_frame(f"{where} axis", axis)
     radius = require_number(f"{where} radius", radius, "m", above=0.0)
     length = require_number(f"{where} length", length, "m", above=0.0)
     tolerance = require_tolerance(f"{where} tolerance", tolerance)
@@ -449,15 +449,6 @@ def add_bore_modes(
     error_before, error = error_of(old), error_of(basis)
     fem.modeBasis = {"matrix": basis, "type": fem.modeBasis.get("type", "HCBmodes")}
     return BoreModesReport(added=modes.shape[1], total=basis.shape[1], error_before=error_before, error=error)
-
-
-def _any_frame(axis: np.ndarray) -> np.ndarray:
-    """Columns x, y, z = axis."""
-    size = np.linalg.norm(axis)
-    if not size > 0.0:
-        raise InputError("add_bore_modes axis must be a direction, got a zero vector.")
-    z = axis / size
-    return frame_of(z, np.eye(3)[int(np.argmin(np.abs(z)))])
 
 
 def _beyond(K: csr_matrix, old: np.ndarray, new: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ z = -length/2 to length/2.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import ClassVar
@@ -15,7 +16,15 @@ import numpy as np
 from exudyn_ehd.solid.elements.element import Element
 from exudyn_ehd.solid.elements.kinds import HEX_NODES, boundary_faces, element_of
 from exudyn_ehd.solid.unrolled import Surface, patch, wrapped
-from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer, require_number
+from exudyn_ehd.status import (
+    POSITIVE,
+    ROUNDING,
+    Checked,
+    InputError,
+    require_integer,
+    require_number,
+    require_vector,
+)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -84,9 +93,8 @@ class BushMesh:
 
     def line(self, nodes: np.ndarray) -> Line:
         """Return the element edges all of whose nodes are in ``nodes`` (mesh node numbers)."""
-        edges = np.unique(self.elements[:, self.element.edges].reshape(-1, 3), axis=0)
-        swapped = edges[:, 0] > edges[:, 1]
-        edges[swapped] = edges[swapped][:, [1, 0, 2]]
+        edges = self.elements[:, self.element.edges].reshape(-1, 3)
+        edges[:, :2] = np.sort(edges[:, :2])
         edges = np.unique(edges, axis=0)
         edges = edges[np.isin(edges, nodes).all(axis=1)]
         if len(edges) == 0:
@@ -181,6 +189,21 @@ class HollowCylinder(Checked):
         members = (i == 0, i == 2 * self.radial, k == 0, k == 2 * self.axial)
         bore, outer, end_low, end_high = (surface_of(nodes, boundary, member) for member in members)
         return BushMesh(nodes=nodes, elements=elements, bore=bore, outer=outer, end_low=end_low, end_high=end_high)
+
+
+def require_frame(where: str, axis: Sequence[float]) -> np.ndarray:
+    """Columns x, y and z = axis; x is the user's x (else y) projected normal to it.
+
+    Raises
+    ------
+    InputError
+        For an axis without a direction.
+    """
+    z = require_vector(where, axis, 3)
+    if not np.any(z):
+        raise InputError(f"{where} must be a direction, got a zero vector; use (0, 0, 1) for z.")
+    z = z / np.linalg.norm(z)
+    return frame_of(z, np.eye(3)[0 if abs(z[0]) < 1.0 - ROUNDING else 1])
 
 
 def frame_of(z: np.ndarray, towards: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ import numpy as np
 from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.solid.elements.kinds import ELEMENTS, boundary_faces, element_of
 from exudyn_ehd.solid.fe_bore import BodyMesh
-from exudyn_ehd.solid.mesh import BushMesh, frame_of, surface_of
+from exudyn_ehd.solid.mesh import BushMesh, require_frame, surface_of
 from exudyn_ehd.solid.unrolled import patch
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number, require_vector
 
@@ -206,7 +206,7 @@ def mesh_from_arrays(
             f"and {elements.shape}; only 20-node hexahedra and 10-node tetrahedra are supported, one kind in a mesh."
         )
     centre = require_vector("mesh_from_arrays origin", origin, 3, "m")
-    nodes = (nodes - centre) @ _frame(require_vector("mesh_from_arrays axis", axis, 3)).T
+    nodes = (nodes - centre) @ require_frame("mesh_from_arrays axis", axis)
     for number in (elements.min(initial=len(nodes)), elements.max(initial=-1)):
         counts = "subtract 1 from numbers that count from 1, as Abaqus does."
         require_number("mesh_from_arrays elements", number, at_least=0, at_most=len(nodes) - 1, hint=counts)
@@ -280,15 +280,6 @@ def _held_faces(
 def _corners(faces: np.ndarray) -> np.ndarray:
     """Corners (f, c) of faces (f, a)."""
     return faces[:, : face_of(faces).corners]
-
-
-def _frame(axis: np.ndarray) -> np.ndarray:
-    """Rotation matrix whose rows are the bush axes; z = axis, x = the user's x (else y) projected normal to it."""
-    length = np.linalg.norm(axis)
-    if length == 0:
-        raise InputError("mesh_from_arrays axis must be a direction, got a zero vector; use (0, 0, 1) for z.")
-    z = axis / length
-    return frame_of(z, np.eye(3)[0 if abs(z[0]) < 1 - 1e-9 else 1]).T
 
 
 def _check_volume(nodes: np.ndarray, elements: np.ndarray) -> None:

@@ -16,7 +16,7 @@ from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, kron
 
 from exudyn_ehd.solid.elements import blocks, kernels
 from exudyn_ehd.solid.elements.element import Element, Quadrature
@@ -250,11 +250,7 @@ class TotalLagrange:
     @cached_property
     def mass(self) -> csr_matrix:
         """Constant consistent mass, shape (3 n, 3 n) [kg], coordinates ordered node by node as x, y, z."""
-        block = self.scalar_mass.tocoo()
-        rows = (3 * block.row[:, None] + np.arange(3)).ravel()
-        columns = (3 * block.col[:, None] + np.arange(3)).ravel()
-        size = 3 * len(self.mesh.nodes)
-        return csr_matrix((np.repeat(block.data, 3), (rows, columns)), shape=(size, size))
+        return csr_matrix(kron(self.scalar_mass, np.eye(3), format="csr"))
 
     def _state(self, u: np.ndarray, v: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, kernels.Law]:
         shape = self.mesh.nodes.shape

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 import time
+import timeit
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -55,8 +56,6 @@ _FROM_MODEL = {
     "leakage": "leakage",
     "minimum film thickness": "minimum_gap",
 }
-# Shortest measured stretch, s.
-SHORTEST = 5e-3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -154,14 +153,13 @@ def measure_motions(model: Model, motions: Motions) -> dict[str, np.ndarray]:
 
 def time_of_sweep(model: Model, motions: Motions) -> float:
     """Processor time in s per motion, with tangent and warm starts, over as many sweeps as can be measured."""
-    rounds, start = 0, time.process_time()
-    while True:
+
+    def sweep() -> None:
         for motion in motions:
             _tangent(evaluate_at(model, motion))
-        rounds += 1
-        spent = time.process_time() - start
-        if spent > SHORTEST:
-            return spent / (rounds * len(motions))
+
+    rounds, spent = timeit.Timer(sweep, timer=time.process_time).autorange()
+    return spent / (rounds * len(motions))
 
 
 def _quantities(model: Model, evaluation: Evaluated, motion: np.ndarray) -> QuantityValues:

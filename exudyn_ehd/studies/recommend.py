@@ -16,7 +16,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -43,14 +43,13 @@ from exudyn_ehd.tables import format_seconds
 Options: TypeAlias = dict[str, Any]
 LADDER = ((32, 4), (48, 6), (64, 8), (96, 10), (128, 12), (192, 16))
 LEVELS = ((64, 6), (128, 12), (256, 24))
-# Time of a film with its line inside the cells over one without.
-LINE_COST = 1.65
 MARGIN = 1.5
 # Of the eccentricity; of bearings with supply or a profile, whose film changes with the place of these in it.
 DIRECTIONS, UNEVEN_DIRECTIONS = 12, 24
 # Largest distance of eccentricity ratios at which errors are measured.
 SPACING = 0.1
-ECCENTRICITY, TILT, RATIO = (0.1, 0.95), (0.0, 0.7), (0.25, 2.0)
+# Ranges in which the recommendation was tried.
+TRIED = {"L/D": (0.25, 2.0), "tilt_ratio": (0.0, 0.7), "eccentricity_ratio": (0.1, 0.95)}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -160,7 +159,8 @@ def recommend(
     speed = _speed(bearing, speed)
     ratio = bearing.length / (2.0 * bearing.journal_radius)
     place = f"L/D {ratio:.3g}, eps {low:g} to {high:g}, tilt {tilt_ratio:g}"
-    unknown = _unknown(bearing, quantity, {"L/D": (ratio, RATIO), "tilt_ratio": (tilt_ratio, TILT)}, (low, high))
+    asked = ("L/D", ratio), ("tilt_ratio", tilt_ratio), ("eccentricity_ratio", low), ("eccentricity_ratio", high)
+    unknown = _unknown(bearing, quantity, asked)
     if unknown:
         return Recommendation(found=False, reason=f"nothing is known of this bearing: {unknown}.")
     count = 1 + math.ceil((high - low) / SPACING - 1e-9)
@@ -243,12 +243,7 @@ def _speed(bearing: JournalBearing, speed: float | None) -> float:
     return 100.0
 
 
-def _unknown(
-    bearing: JournalBearing,
-    quantity: str,
-    numbers: Mapping[str, tuple[float, tuple[float, float]]],
-    eccentricity: tuple[float, float],
-) -> str:
+def _unknown(bearing: JournalBearing, quantity: str, asked: Sequence[tuple[str, float]]) -> str:
     """Return the reason why nothing is known of such a bearing; empty if something is."""
     if isinstance(bearing.bush, ANCFBush):
         return "an ANCFBush takes minutes a film; ask for the ModalBush of the same mesh, or compare a finer film"
@@ -258,14 +253,10 @@ def _unknown(
         return "an arc carries loads of some directions only; compare a finer film"
     if quantity == "critical mass" and any(area.rotating for area in bearing.supply):
         return "supply areas turn with the journal (rotating=True), so that it has no equilibrium and no critical mass"
-    for name, (value, (lowest, highest)) in numbers.items():
+    for name, value in asked:
+        lowest, highest = TRIED[name]
         if not lowest <= value <= highest:
             return f"{name} is {value:g}, and this was tried from {lowest:g} to {highest:g}"
-    if not ECCENTRICITY[0] <= eccentricity[0] <= eccentricity[1] <= ECCENTRICITY[1]:
-        return (
-            f"eccentricity_ratio is {eccentricity[0]:g} to {eccentricity[1]:g}, and this was tried from "
-            f"{ECCENTRICITY[0]:g} to {ECCENTRICITY[1]:g}"
-        )
     return ""
 
 
@@ -284,27 +275,21 @@ def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
 
 
 def _settings(bearing: JournalBearing) -> Iterator[tuple[FilmOption, Options]]:
-    """Films of the ladder and what they replace, the cheapest first."""
+    """Films of the ladder and what they replace, the cheapest first: with the rupture line on the vertices, and where
+    the bearing may, inside the cells."""
     given: FilmOption = bearing.film
     own = given if isinstance(given, FiniteLength) else FiniteLength()
-    found: list[tuple[float, FilmOption, Options]] = []
-    for n, m in LADDER:
-        film = FiniteLength(n_theta=n, n_z=m, stretch=own.stretch)
-        found += [(cost * n * m, film, {"film": film, **options}) for options, cost in _closures(bearing)]
-    short = ShortBearing(n_theta=64)
-    found.append((0.5 * 64 * 8, short, {"film": short}))
-    yield from (entry[1:] for entry in sorted(found, key=lambda entry: entry[0]))
-
-
-def _closures(bearing: JournalBearing) -> list[tuple[Options, float]]:
-    """The bearing's own closure, and where it may the same with its rupture line elsewhere; what a film costs each."""
     is_inside = bool(dataclasses.replace(bearing, film=FiniteLength()).closure.line_in_cells)
-    costs = {True: LINE_COST, False: 1.0}
-    found: list[tuple[Options, float]] = [({}, costs[is_inside])]
     # a line that was put inside the cells stays there
     stays = is_inside and bearing.cavitation.line_in_cells is not None
     other = None if stays else _with_line(bearing, not is_inside)
-    return found if other is None else [*found, (other, costs[not is_inside])]
+    closures = [options for options in ((other, {}) if is_inside else ({}, other)) if options is not None]
+    for n, m in LADDER:
+        film = FiniteLength(n_theta=n, n_z=m, stretch=own.stretch)
+        yield from ((film, {"film": film, **options}) for options in closures)
+        if (n, m) == LADDER[0]:
+            short = ShortBearing(n_theta=64)
+            yield short, {"film": short}
 
 
 def _with_line(bearing: JournalBearing, in_cells: bool) -> Options | None:

@@ -93,7 +93,8 @@ EFFECTS = {
             "joint.model.flexible",
             "joint.tangent.bore",
             "joint.bore.equilibrium",
-            "solid.bush_modes",
+            "solid.bush:bore_modes",
+            "solid.bush:BoreModes",
         ),
         {
             "bush": ehd.ModalBush(
@@ -173,7 +174,6 @@ SHARED = {
     "surfaces.elastic_liner",
     "reynolds.balance",
     "banded.assemble",
-    "lubricant.density_field",
     # a bearing of its own
     "thrust.tilting",
 }

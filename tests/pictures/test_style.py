@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from exudyn_ehd.pictures.animation import Frames
 from exudyn_ehd.pictures.bush import Frame, contour_figure, plot_bearing
+from exudyn_ehd.pictures.files import Frames
 from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.maps import PRESSURE, plot_map
 from exudyn_ehd.pictures.style import TYPE_SIZE, styled

@@ -5,9 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid import bush_modes
-from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid import bush as own
+from exudyn_ehd.solid.bush import ModalBush, bore_modes
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
@@ -150,8 +149,8 @@ def test_modes_are_kept_on_disk_by_content(monkeypatch, tmp_path):
     (path,) = tmp_path.iterdir()
     raw = path.read_bytes()
     built = []
-    exact = bush_modes.compute_modes
-    monkeypatch.setattr(bush_modes, "compute_modes", lambda *a: built.append(a) or exact(*a))
+    exact = own.compute_modes
+    monkeypatch.setattr(own, "compute_modes", lambda *a: built.append(a) or exact(*a))
     again = bore_modes(bush)
     assert not built and again.error == first.error
     assert np.array_equal(again.displacements, first.displacements) and np.array_equal(again.stiffness, first.stiffness)
@@ -183,7 +182,7 @@ def test_modes_of_a_coarse_mesh_are_those_of_a_larger_one(size):
         inner_radius=0.02002 * size, thickness=0.006 * size, length=0.02 * size, axial=2, radial=1, circumferential=16
     )
     bush = ModalBush(mesh=mesh, material=STEEL, tolerance=0.1)
-    modes = bush_modes.compute_modes(bush, bush.build_mesh(), mesh.length)
+    modes = own.compute_modes(bush, bush.build_mesh(), mesh.length)
     assert modes.count == 77
     # those of rounding would have its inverse
     assert modes.stiffness.max() < 1e4 * modes.stiffness.min()

@@ -306,19 +306,19 @@ class RotorResult:
 
     def plot_campbell(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Campbell diagram: frequencies over the speed, coloured by the sense of whirl; crosses mark growth."""
-        from exudyn_ehd.pictures.rotors import plot_campbell
+        from exudyn_ehd.pictures.curves import plot_campbell
 
         return plot_campbell(self.campbell(), ax=ax, path=path)
 
     def plot_stability(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Plot the logarithmic decrements of the vibrations over the speed; below zero the rotor is unstable."""
-        from exudyn_ehd.pictures.rotors import plot_stability
+        from exudyn_ehd.pictures.curves import plot_stability
 
         return plot_stability(self.campbell(), ax=ax, path=path)
 
     def plot_positions(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Plot the journals' positions over the speed in the circle of the clearance, each over its own clearance."""
-        from exudyn_ehd.pictures.rotors import plot_positions
+        from exudyn_ehd.pictures.curves import plot_positions
 
         places = self.motion[:, :, :2] / self.clearances[:, None]
         return plot_positions(self.speeds, places, self.joints, ax=ax, path=path)
@@ -395,7 +395,7 @@ class UnbalanceResponse:
 
         Dotted where the rotor is unstable.
         """
-        from exudyn_ehd.pictures.rotors import plot_response
+        from exudyn_ehd.pictures.curves import plot_response
 
         chosen = self.joints if items is None else items
         named = chosen if isinstance(chosen, Mapping) else {str(item): item for item in chosen}
@@ -435,7 +435,7 @@ class StabilityMap:
         self, text: str, *, unit: str = "-", factor: float = 1.0, ax: Axes | None = None, path: Target = None
     ) -> Figure:
         """Stable and unstable speeds over the parameter, called ``text`` and shown as ``factor`` times its values."""
+        from exudyn_ehd.pictures.curves import plot_map
         from exudyn_ehd.pictures.records import Unit
-        from exudyn_ehd.pictures.rotors import plot_map
 
         return plot_map(self.values, self.thresholds, self.limits, (text, Unit(unit, factor)), ax=ax, path=path)

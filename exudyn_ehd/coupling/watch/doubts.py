@@ -82,11 +82,11 @@ from exudyn_ehd.joint.audit.findings import LIMITS
 from exudyn_ehd.joint.audit.ringing import FADING
 from exudyn_ehd.joint.audit.samples import RING_COMPLIANCE, adiabatic_rise, time_mean
 from exudyn_ehd.joint.audit.switches import (
+    MULTIGRADE,
+    PIEZOVISCOSITY,
+    ROUGH_STEEL,
     STEEL,
-    TYPICAL_PRESSURE_COEFFICIENT,
-    TYPICAL_ROUGHNESS,
-    TYPICAL_SHEAR_ONSET,
-    TYPICAL_TEMPERATURE_COEFFICIENT,
+    TEMPERATURE_COEFFICIENT,
 )
 from exudyn_ehd.joint.balance.limits import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
@@ -314,7 +314,7 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
     means = (np.array(time_mean(h.time, x)) for x in (h.power_loss, h.leakage, spin * b.journal_radius))
     rise = float(adiabatic_rise(b, *means))
     deflection = RING_COMPLIANCE * b.journal_radius * highest / STEEL["youngs_modulus"]
-    thickening = TYPICAL_PRESSURE_COEFFICIENT * highest
+    thickening = PIEZOVISCOSITY.coefficient * highest
     reynolds = b.lubricant.density * speed * b.radial_clearance / b.lubricant.viscosity
     # a gap that has closed has no shear rate
     rate = speed / thinnest if thinnest > 0.0 else math.inf
@@ -324,12 +324,12 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
         f"piezoviscosity: viscosity x {math.exp(min(thickening, 99.0)):.3g}": b.lubricant.pressure_law is None
         and thickening > LIMITS["piezoviscosity"].value,
         f"heating: {rise:+.3g} K" if rise < HOTTEST else f"heating: above +{HOTTEST:g} K": b.thermal is None
-        and TYPICAL_TEMPERATURE_COEFFICIENT * rise > LIMITS["heating"].value,
+        and TEMPERATURE_COEFFICIENT * rise > LIMITS["heating"].value,
         f"shear thinning: {rate:.3g} 1/s": b.lubricant.shear_law is None
-        and rate > LIMITS["shear thinning"].value * TYPICAL_SHEAR_ONSET,
+        and rate > LIMITS["shear thinning"].value * MULTIGRADE.onset,
         f"turbulence: Re = {reynolds:.3g}": b.turbulence is None and reynolds > LIMITS["turbulence"].value,
         f"roughness: film of {1e6 * thinnest:.3g} um": b.asperity is b.contact is b.roughness is None
-        and thinnest < LIMITS["roughness"].value * TYPICAL_ROUGHNESS,
+        and thinnest < LIMITS["roughness"].value * ROUGH_STEEL.composite_roughness,
     }
     return [text for text, matters in found.items() if matters]
 

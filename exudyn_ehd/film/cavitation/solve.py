@@ -40,7 +40,7 @@ from exudyn_ehd.film.cavitation.states import (
 )
 from exudyn_ehd.film.cavitation.system import FilmSystem, imbalance
 from exudyn_ehd.film.kernels import NO
-from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, know_at
+from exudyn_ehd.film.lubricant.density import density_at, density_slope_at, know_at
 from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, oil_links, terms_of
 from exudyn_ehd.film.reynolds.links import hold_back
 
@@ -239,7 +239,7 @@ def solve_film(film, pc, kind, oil, start, factor, x, full, state):
     kind : int
         FULL, CLIPPED, RUPTURE or OIL of `states`.
     oil : (scale, floor, law, known, rho, rho_P, crosses) or None
-        Density of `exudyn_ehd.film.lubricant.density_field`; None: it does not follow the pressure.
+        Density of `exudyn_ehd.film.lubricant.density`; None: it does not follow the pressure.
     start : (whether P and fill are a warm start, else ``full`` alone is used; whether ``factor`` serves; count; width)
     factor : (order, number, lower, upper, inv_diag, slopes)
     x : (n m,) array

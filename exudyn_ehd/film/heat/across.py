@@ -28,6 +28,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numba import njit
 from numpy.polynomial import Polynomial
 
@@ -39,8 +40,8 @@ from exudyn_ehd.film.reynolds.links import LinkFlux
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
 _MOMENTS = (np.array([1.0, 5.0, 5.0, 1.0]) / 12.0)[:, None] * LOBATTO[:, None] ** np.arange(3)
 # five heights, exact for the degrees of a flow (5), a temperature (3) and a weight (1)
-_X, _W = np.polynomial.legendre.leggauss(5)
-HEIGHTS, _WEIGHTS = 0.5 * (1.0 + _X), np.array([0.5 * _W, 0.5 * _W * _X])
+HEIGHTS, _SHARES = scipy.special.roots_sh_legendre(5)
+_WEIGHTS = np.array([_SHARES, _SHARES * (2.0 * HEIGHTS - 1.0)])
 
 
 def _of_points(moment: int, times: int) -> np.ndarray:

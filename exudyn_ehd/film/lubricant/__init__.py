@@ -7,6 +7,5 @@ pressure_viscosity     Barus, Roelands and the Kirchhoff transform
 temperature_viscosity  Reynolds, Vogel, Walther
 shear_thinning         Carreau
 shear_profile          its profile across the film
-density                Dowson-Higginson, and what any density law offers
-density_field          density at the vertices of a film
+density                Dowson-Higginson, and what any density law offers; density at the vertices of a film
 """

@@ -21,40 +21,28 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Hashable
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
 
-# Intervals of the fluidity's table for every factor of two in 1 + |T|^2, a power of two; most factors of two; scaled
-# shear rate that the table need not pass.
-PARTS, OCTAVES, FASTEST = 32, 48, 1e12
-_unsigned: Any = np.uint64
-_1, _2, _3, _4 = (_unsigned(k) for k in range(1, 5))
-# Bits of a number: its power of two, and the interval within.
-_MANTISSA, _SHIFT, _PARTS_SHIFT = (_unsigned(k) for k in (52, 47, 5))
-_FIRST, _TURNED, _PLACE, _ONE = (_unsigned(k) for k in (1023 << 5, 2046, (1 << 52) - 1, 1023 << 52))
+# Intervals of the fluidity's table for every factor of two in 1 + |T|^2, a power of two; scaled shear rate at its end.
+PARTS, FASTEST = 32, 1e12
+# Numbers in one interval differ in the last 47 of the 52 bits of their mantissa, which follow the 5 of PARTS.
+BITS_OF_ONE, BITS_OF_PART = np.float64(1.0).view(np.uint64), np.uint64(47)
 # Gauss points across the film, of the pressure flow and of the mean stress. Largest error of a flow for exponents from
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
 # Share of the stress at which Newton's step is the last one: on the way, where what it leaves of stress and flow is its
 # square, and for exact derivatives, of which it leaves itself.
 LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-12, 200, 30
-# Change of the stress, as a share, up to which the last profile's derivatives are those of the next: what tangents are
-# exact to. Smaller values ask the law more often.
-SAME = 1e-12
-# Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives, share of the last step, gap if
-# it is the one of the links' ratios, F (2), its five derivatives.
-LAST = 20
-# Share of the stress up to which the derivatives lead to the next profile.
-FAR = 0.3
-# Newton steps for the stress of sliding alone at most, and the one behind which its table is asked.
-MOST_TRIALS, ASKS = 8, 2
+# Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives.
+LAST = 11
 # Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
 SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
 STILL = 1e-3
-_BISECTIONS, _FUSE = 90, {"contract", "arcp", "nsz"}
+_FUSE = {"contract", "arcp", "nsz"}
 
 
 class Profile(NamedTuple):
@@ -72,13 +60,6 @@ class Profile(NamedTuple):
     F_xx: float
     F_xz: float
     F_zz: float
-
-
-class Oil(NamedTuple):
-    """The law as kernels take it: coefficients of the fluidity's cubics, four each; scaled rates at their ends."""
-
-    table: np.ndarray
-    rates: np.ndarray
 
 
 class RateLaw(Hashable, Protocol):
@@ -103,31 +84,31 @@ class RateLaw(Hashable, Protocol):
 
 
 @functools.lru_cache(maxsize=16)
-def fluidity_table(law: RateLaw) -> Oil:
+def fluidity_table(law: RateLaw) -> np.ndarray:
     """Fluidity ``f(s)``, s = |T|^2, of ``T = Gamma ratio(Gamma)`` as cubics in s; of Carreau's law within 1e-8.
 
-    Value and slope are exact at the ends of 32 equal parts of every factor of two in 1 + s. Behind the last one, at
-    `FASTEST` or 2^48, the fluidity stays.
+    Value and slope are exact at the ends of 32 equal parts of every factor of two in 1 + s. Rows: 1 + s where a part
+    begins, 1 over its width, four coefficients. Behind the last part, at `FASTEST`, the fluidity stays.
     """
     unit = 1.0 / law.relaxation_time
     highest = FASTEST * float(law.ratio(np.array(FASTEST * unit)))
-    octaves = min(OCTAVES, int(np.log2(1.0 + highest**2)) + 1)
+    octaves = int(np.log2(1.0 + highest**2)) + 1
     edges = (1.0 + np.arange(PARTS) / PARTS) * 2.0 ** np.arange(octaves)[:, None]
     s = np.append(edges.ravel(), 2.0**octaves) - 1.0
     t = np.sqrt(s[1:])
     low, high = np.log(t), np.full(t.size, 3.0 * np.log(FASTEST))
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
+    # bisection to the last bit
+    while np.any((low < (middle := 0.5 * (low + high))) & (middle < high)):
         above = middle + np.log(law.ratio(np.exp(middle) * unit)) > np.log(t)
         low, high = np.where(above, low, middle), np.where(above, middle, high)
-    rate = np.exp(0.5 * (low + high))
+    rate = np.exp(middle)
     steep = law.ratio(rate * unit) + rate * unit * law.ratio_slope(rate * unit)
     f = np.append(1.0, rate / t)
     f_s = np.append(-0.5 * unit**2 * law.ratio_bend(np.zeros(1)), (1.0 / steep - f[1:]) / (2.0 * s[1:]))
     h = np.diff(s)
     d0, d1, rise = f_s[:-1] * h, f_s[1:] * h, np.diff(f)
-    table = np.array([f[:-1], d0, 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise]).T
-    return Oil(np.append(table, [f[-1], 0.0, 0.0, 0.0]), np.append(0.0, rate))
+    table = np.array([1.0 + s[:-1], 1.0 / h, f[:-1], d0, 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise]).T
+    return np.vstack([table, [0.0, 0.0, f[-1], 0.0, 0.0, 0.0]])
 
 
 @functools.lru_cache(maxsize=16)
@@ -140,13 +121,12 @@ def gauss_points(count: int) -> np.ndarray:
 @njit(cache=True, inline="always")
 def _fluidity(s, table):
     """f(s) and its derivative."""
-    bits = np.float64(1.0 + s).view(np.uint64)
-    at = min(((bits >> _SHIFT) - _FIRST) << _2, _unsigned(table.size) - _4)
-    # 1 over the width of the interval: the power of two turned round
-    per = PARTS * _unsigned((_TURNED - (bits >> _MANTISSA)) << _MANTISSA).view(np.float64)
-    # place in it: 1 .. 2 by its bits
-    t = _unsigned((bits << _PARTS_SHIFT & _PLACE) | _ONE).view(np.float64) - 1.0
-    a, b, c, d = table[at], table[at + _1], table[at + _2], table[at + _3]
+    x = 1.0 + s
+    at = min((np.float64(x).view(np.uint64) - BITS_OF_ONE) >> BITS_OF_PART, np.uint64(len(table) - 1))
+    row = table[at]
+    per = row[1]
+    t = (x - row[0]) * per
+    a, b, c, d = row[2], row[3], row[4], row[5]
     return a + t * (b + t * (c + t * d)), (b + t * (2.0 * c + t * 3.0 * d)) * per
 
 
@@ -160,7 +140,7 @@ def _moments(T_x, T_z, S, G_x, G_z, oil, points):
     for k in range(points.shape[1]):
         zeta = points[0, k]
         t_x, t_z = T_x + zeta * G_x, T_z + zeta * G_z
-        f, f_s = _fluidity(t_x * t_x + t_z * t_z, oil.table)
+        f, f_s = _fluidity(t_x * t_x + t_z * t_z, oil)
         w0, w1, w2 = points[1, k], points[2, k], points[3, k]
         a0, a1, a2 = a0 + w0 * f, a1 + w1 * f, a2 + w2 * f
         b0, b1, b2 = b0 + w0 * f_s, b1 + w1 * f_s, b2 + w2 * f_s
@@ -187,13 +167,6 @@ def _moments(T_x, T_z, S, G_x, G_z, oil, points):
             a2 + b2 * own_zz + b3 * mix_zz + b4 * far_zz,
         ),
     )
-
-
-@njit(cache=True, error_model="numpy")
-def couette_stress(S, oil):
-    """Stress of a shear rate, rounded down to the nearest end of the table's intervals."""
-    low = max(np.searchsorted(oil.rates, abs(S)) - 1, 0)
-    return np.sign(S) * oil.rates[low] / oil.table[4 * low]
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE)
@@ -231,7 +204,26 @@ def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
         i_xx, -m_xx, -m_xz, m_xx, m_xz,
         B[0] - C[0] * m_xx - C[1] * m_zx, B[1] - C[0] * m_xz - C[1] * m_zz, B[2] - C[1] * m_xz - C[2] * m_zz,
     )  # fmt: skip
-    return found, (i_xz, -m_zx, -m_zz), rough
+    return found, (i_xz, -m_zx, -m_zz)
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+def _slide(S, oil, T):
+    """`Profile` of sliding alone, whose stress is the same at every height, from a stress T as `profile`."""
+    f, f_s = _fluidity(T * T, oil)
+    for _ in range(MOST_STEPS):
+        steep = f + 2.0 * f_s * T * T
+        share, rest, step = 1.0, abs(S - f * T), (S - f * T) / steep
+        if abs(step) <= EXACT * abs(T):
+            break
+        for _ in range(MOST_HALVINGS):
+            t = T + share * step
+            f, f_s = _fluidity(t * t, oil)
+            if abs(S - f * t) < rest:
+                break
+            share *= 0.5
+        T = t
+    return Profile(T + step, 0.0, 0.0, 0.0, 1.0 / steep, 0.0, 0.0, 0.0, 0.0, steep / 12.0, 0.0, f / 12.0)
 
 
 @njit(cache=True, inline="always")
@@ -242,43 +234,20 @@ def _scale(T_x, T_z, G_x, G_z):
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
 def _follow(S, G_x, G_z, oil, points, last_step, last):
-    """`Profile` from the last one, ``last`` (`LAST`,): along its derivatives if it is near, else where they lead to."""
+    """`Profile` from where the derivatives of the last one lead, ``last`` (`LAST`,), which it becomes."""
     dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
     T_x, T_z = last[3], last[4]
     by_x = last[5] * dS + last[6] * d_x + last[7] * d_z
     by_z = last[8] * dS + last[9] * d_x + last[10] * d_z
-    scale, change = _scale(T_x, T_z, G_x, G_z), abs(by_x) + abs(by_z)
-    if change <= FAR * scale:
-        T_x, T_z = T_x + by_x, T_z + by_z
-    if change + abs(d_x) + abs(d_z) <= SAME * scale and last[11] <= SAME:
-        last[12] = 0.0
-        F_xs, F_zs, F_xx, F_xz, F_zz = last[15], last[16], last[17], last[18], last[19]
-        F_x = last[13] + F_xs * dS + F_xx * d_x + F_xz * d_z
-        F_z = last[14] + F_zs * dS + F_xz * d_x + F_zz * d_z
-        return Profile(T_x, T_z, F_x, F_z, last[5], last[6], last[7], F_xs, F_zs, F_xx, F_xz, F_zz)
-    p, others, rough = _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step)
+    T_x, T_z = T_x + by_x, T_z + by_z
+    if G_x == 0.0 and G_z == 0.0:
+        p, others = _slide(S, oil, T_x), (0.0, 0.0, 0.0)
+    else:
+        p, others = _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step)
     last[0], last[1], last[2], last[3], last[4] = S, G_x, G_z, p.T_x, p.T_z
     last[5], last[6], last[7] = p.T_xs, p.T_xx, p.T_xz
     last[8], last[9], last[10] = others
-    last[11], last[12], last[13], last[14] = rough, 0.0, p.F_x, p.F_z
-    last[15], last[16], last[17], last[18], last[19] = p.F_xs, p.F_zs, p.F_xx, p.F_xz, p.F_zz
     return p
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FUSE)
-def _slide(S, oil, last):
-    """Stress T of sliding alone, fluidity f and 2 f' T^2, from the last profile, which it becomes."""
-    t = last[3] + last[5] * (S - last[0])
-    for k in range(MOST_TRIALS):
-        f, f_s = _fluidity(t * t, oil.table)
-        f_s *= 2.0 * t * t
-        step = (S - f * t) / (f + f_s)
-        if abs(step) <= SAME * abs(t):
-            break
-        t = couette_stress(S, oil) if k == ASKS else t + step
-    last[:] = 0.0
-    last[0], last[3], last[5], last[11] = S, t + step, 1.0 / (f + f_s), 1.0
-    return t + step, f, f_s
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FUSE)
@@ -299,8 +268,7 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out)
     last : (n, m, LAST) array
         Profiles of the last call, where this one starts; zeros for none.
     out : (5, n, m) array
-        Ratio a; da/dH and da/dvx at fixed gradients; derivative of the flow to ``slope`` over a, and to ``cross``. As
-        the last call left it: places where nothing has changed keep theirs.
+        Ratio a; da/dH and da/dvx at fixed gradients; derivative of the flow to ``slope`` over a, and to ``cross``.
     """
     n, m = gap.shape
     wide = fluid.size > 1
@@ -310,18 +278,7 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out)
             S, per = speed / h, 6.0 * k * h * (fluid[i, j] if wide else fluid[0, 0])
             own, other = per * slope[i, j], per * cross[i, j]
             G_x, G_z = (own, other) if axis == 0 else (other, own)
-            known = last[i, j]
-            if known[12] == h and known[0] == S and known[1] == G_x and known[2] == G_z:
-                continue
-            if own == 0.0 and other == 0.0:
-                # sliding alone: the same at every height
-                _, f, more = _slide(S, oil, known)
-                known[12] = h
-                out[0, i, j] = f + more if axis == 0 else f
-                out[1, i, j] = out[2, i, j] = out[4, i, j] = 0.0
-                out[3, i, j] = 1.0
-                continue
-            p = _follow(S, G_x, G_z, oil, points, LAST_STEP, known)
+            p = _follow(S, G_x, G_z, oil, points, LAST_STEP, last[i, j])
             F, by_own, by_s = (p.F_x, p.F_xx, p.F_xs) if axis == 0 else (p.F_z, p.F_zz, p.F_zs)
             if abs(own) <= SLIGHT * (abs(p.T_x) + abs(p.T_z) + 1.0):
                 a = 12.0 * by_own
@@ -353,18 +310,13 @@ def thin_shear(H, slopes, fluid, speed, k, oil, points, last, out):
             least = STILL * (1.0 + abs(G_x) + abs(G_z))
             turns = abs(S) > least
             at = S if turns else least
-            if G_x == 0.0 and G_z == 0.0:
-                a = _slide(at, oil, last[i, j])[0] / at
-                by_s = last[i, j, 5]
-                out[1, i, j] = out[3, i, j] = out[4, i, j] = 0.0
-            else:
-                p = _follow(at, G_x, G_z, oil, points, EXACT, last[i, j])
-                a, by_s = p.T_x / at, p.T_xs
-                out[1, i, j] = (p.T_xx * G_x + p.T_xz * G_z) / at / h
-                out[3, i, j] = p.T_xx / at * per
-                out[4, i, j] = p.T_xz / at * per
+            p = _follow(at, G_x, G_z, oil, points, EXACT, last[i, j])
+            a, by_s = p.T_x / at, p.T_xs
             out[0, i, j] = a
+            out[1, i, j] = (p.T_xx * G_x + p.T_xz * G_z) / at / h
             out[2, i, j] = 0.0
+            out[3, i, j] = p.T_xx / at * per
+            out[4, i, j] = p.T_xz / at * per
             if turns:
                 out[1, i, j] += (a - by_s) / h
                 out[2, i, j] = (by_s - a) / S * k / h

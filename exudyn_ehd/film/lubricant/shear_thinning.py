@@ -161,8 +161,8 @@ class ShearThinning(LinkLaw):
     def place(self, grid: FilmGrid, flow_x: float) -> None:
         """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
         self.slopes, self.cross, self.vertex = np.zeros((3, 2, *grid.shape))
-        # profiles of links in theta and z, and at vertices
-        self.last = np.zeros((3, *grid.shape, LAST))
+        # with gradients and without: profiles of links in theta and z, and at vertices
+        self.profiles = np.zeros((2, 3, *grid.shape, LAST))
         self.found = np.zeros((2, 5, *grid.shape))
         along, across = flow_x * grid.link_x, np.append(grid.link_z, 0.0)
         self.cuts = grid.cuts
@@ -172,6 +172,7 @@ class ShearThinning(LinkLaw):
 
     def see(self, P: np.ndarray) -> None:
         """Take the gradients of the film's unknown P (n, m)."""
+        self.last = self.profiles[int(P.any())]
         gradients(P, self.links, self.weights, self.slopes, self.vertex, self.cross)
         if self.cuts is not None:
             self.slopes *= self.cuts

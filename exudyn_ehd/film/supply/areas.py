@@ -30,10 +30,8 @@ from typing import ClassVar
 import numpy as np
 
 from exudyn_ehd.film.supply.restrictors import Restrictor
-from exudyn_ehd.status import POSITIVE, Checked, InputError, require_bool, require_number
+from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, require_bool, require_number
 
-# Vertices on an edge count as inside: share of the area's width, far above rounding and far below a cell.
-EDGE = 1e-9
 # Length of an axial groove without one, over the bearing's.
 WHOLE_GROOVE = 0.875
 
@@ -278,9 +276,10 @@ def covers(area: SupplyArea, theta: np.ndarray, z: np.ndarray, radius: float) ->
     """Vertices inside an area, (n, m) bool; theta (n,) in rad, z (m,) in m."""
     angle, middle, half_x, half_z, reach = outline(area, radius)
     turned = (theta - angle + math.pi) % (2.0 * math.pi) - math.pi
-    x = np.maximum(radius * np.abs(turned) - half_x * (1.0 + EDGE), 0.0)
-    along = np.maximum(np.abs(z - middle) - half_z * (1.0 + EDGE), 0.0)
-    return np.hypot.outer(x, along) <= reach * (1.0 + EDGE)
+    # vertices on an edge count as inside
+    x = np.maximum(radius * np.abs(turned) - half_x * (1.0 + ROUNDING), 0.0)
+    along = np.maximum(np.abs(z - middle) - half_z * (1.0 + ROUNDING), 0.0)
+    return np.hypot.outer(x, along) <= reach * (1.0 + ROUNDING)
 
 
 def axial_span(area: SupplyArea) -> tuple[float, float]:

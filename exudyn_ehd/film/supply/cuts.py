@@ -55,7 +55,6 @@ import numpy as np
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.turbulence import Hirs
 from exudyn_ehd.film.supply.areas import (
-    EDGE,
     AxialGroove,
     CircumferentialGroove,
     Hole,
@@ -65,6 +64,7 @@ from exudyn_ehd.film.supply.areas import (
     placed,
 )
 from exudyn_ehd.film.supply.holes import SHORTEST, Circle, circle, strength, strengths
+from exudyn_ehd.status import ROUNDING
 
 # Chords that a round hole is integrated over, by the rule of Gauss and Chebyshev: the area is exact with any number;
 # with 128 the shares of control volumes inside a hole over ten rows are within 1 % of one.
@@ -98,12 +98,12 @@ def row_parts(area: SupplyArea, grid: FilmGrid) -> tuple[np.ndarray, np.ndarray]
     """
     (low, high), z, width = axial_span(area), grid.z * grid.reference_length, grid.width_z
     if not grid.flows_along_z:  # slices of their own
-        slack = EDGE * (z[-1] - z[0])
+        slack = ROUNDING * (z[-1] - z[0])
         inside = (z >= low - slack) & (z <= high + slack)
         return inside.astype(float), inside * width
     parts = vertex_parts(z, low, high) / grid.reference_length
-    parts[parts < EDGE * width] = 0.0  # rows beside one on the edge
-    inside, weight = parts >= width * (1.0 - EDGE), parts.copy()
+    parts[parts < ROUNDING * width] = 0.0  # rows beside one on the edge
+    inside, weight = parts >= width * (1.0 - ROUNDING), parts.copy()
     reached = np.flatnonzero(parts)
     inside[reached[[0, -1]]] = False
     weight[inside] = grid.weight_z[inside]
@@ -292,13 +292,13 @@ def cover(
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     rows = np.ones(grid.z.size, dtype=np.bool_)
     if math.isfinite(half):
-        rows = np.abs(grid.z * grid.reference_length - middle) <= half * (1.0 + EDGE)
+        rows = np.abs(grid.z * grid.reference_length - middle) <= half * (1.0 + ROUNDING)
     if isinstance(area, CircumferentialGroove):
         mask[:, rows] = True
         return
     n, (center, step) = grid.x.size, column_of(grid, area.angle + spin)
     half = 0.5 * area.width_angle / step
-    first, last = math.ceil(center - half - EDGE), math.floor(center + half + EDGE)
+    first, last = math.ceil(center - half - ROUNDING), math.floor(center + half + ROUNDING)
     inside = np.arange(first, last + 1) % n
     mask[inside[:, None], rows] = True
     if inside.size:
@@ -313,7 +313,7 @@ def cover(
     z, top = grid.z * grid.reference_length, covered[-1]
     for at, edge, free in ((covered[0] - 1, low, covered[0] - 1), (top, high, top + 1)):
         film = abs(z[free] - edge) / (z[at + 1] - z[at]) if 0 <= at < z.size - 1 else 1.0
-        if film < 1.0 - EDGE:
+        if film < 1.0 - ROUNDING:
             part = 1.0 / (1.0 + within * (1.0 / film - 1.0))
             np.minimum.at(share[1, :, at], columns % n, part)
 

@@ -26,11 +26,11 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import laplacian
 from scipy.sparse.linalg import splu
 
+from exudyn_ehd.status import ROUNDING
+
 # Shortest link over its spacing (rounding of its flow stays below 1e-11), largest factor, intervals of film around a
 # hole on which the factor is found.
 SHORTEST, LARGEST, AROUND = 1e-4, 4.0, 3
-# Vertices within this share of a column from the circle are on it.
-EDGE = 1e-9
 
 
 class Circle(NamedTuple):
@@ -68,7 +68,7 @@ def circle(rows: tuple[float, ...], radius: float, offset: float) -> Circle:
         if abs(z) > radius and z != 0.0:
             continue
         half = math.sqrt(max(radius * radius - z * z, 0.0))
-        first, last = math.ceil(offset - half - EDGE), math.floor(offset + half + EDGE)
+        first, last = math.ceil(offset - half - ROUNDING), math.floor(offset + half + ROUNDING)
         if z == 0.0 and first > last:
             first = last = 0
         if first <= last:
@@ -86,7 +86,7 @@ def circle(rows: tuple[float, ...], radius: float, offset: float) -> Circle:
                 lengths.append((abs(rows[j + side]) - edge) / abs(rows[j + side] - rows[j]))
                 depths.append(math.sqrt(max(radius * radius - rows[j] ** 2, 0.0)) - abs(i - offset))
     inner = max(depths)
-    depth = np.clip(np.array(depths) / inner, 0.0, 1.0) if inner > EDGE else np.ones(len(depths))
+    depth = np.clip(np.array(depths) / inner, 0.0, 1.0) if inner > ROUNDING else np.ones(len(depths))
     return Circle(np.array(covered), np.array(links), np.maximum(lengths, SHORTEST), depth)
 
 

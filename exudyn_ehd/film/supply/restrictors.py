@@ -47,7 +47,7 @@ from numba import njit
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, InputError, require_number
 
 
 class _Feed(Checked):
@@ -212,11 +212,6 @@ def require_seals(seals: object) -> None:
         )
 
 
-# Distance of the rows outside of seals from the film's ends, over its length: above the rounding of slopes, and without
-# area.
-OUTSIDE = 1e-9
-
-
 def sealed_grid(grid: FilmGrid, seals: tuple[float | None, float | None]) -> FilmGrid:
     """Film grid whose ends are sealed: the pressure at an end is unknown, that of a row outside of it prescribed.
 
@@ -231,7 +226,8 @@ def sealed_grid(grid: FilmGrid, seals: tuple[float | None, float | None]) -> Fil
         C over clearance and R of the lower and the upper end, 1/(Pa s); None: an open end.
     """
     added = tuple(int(seal is not None) for seal in seals)
-    step = OUTSIDE * (grid.z[-1] - grid.z[0])
+    # above the rounding of slopes, and without area
+    step = ROUNDING * (grid.z[-1] - grid.z[0])
     z = np.concatenate((grid.z[:1] - step, grid.z, grid.z[-1:] + step))[1 - added[0] : grid.z.size + 1 + added[1]]
     widths, fixed = np.diff(z), np.pad(grid.fixed, ((0, 0), added), constant_values=True)
     for row, sealed in zip((1, -2), added, strict=True):

@@ -19,7 +19,6 @@ import numpy as np
 
 from exudyn_ehd.film.grid import exact_weights, rows_between
 from exudyn_ehd.film.supply.areas import (
-    EDGE,
     CircumferentialGroove,
     Hole,
     SupplyArea,
@@ -28,14 +27,12 @@ from exudyn_ehd.film.supply.areas import (
     placed,
 )
 from exudyn_ehd.film.supply.cuts import RECIRCULATION
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import ROUNDING, InputError
 
 # Intervals of a land, and of a part of one without an area.
 LEAST = 4
 # What parts need more is taken from a land's longest part, down to so many.
 KEPT = 6
-# Edges closer than this share of the length are one; and layouts are mirrored to this share.
-SAME, MIRRORED = 1e-13, 1e-12
 
 
 def supply_rows(
@@ -55,11 +52,11 @@ def supply_rows(
         share = (n_z + 2 * len(grooves)) * (high - low) / total
         cuts = _edges_on(supply, low, high, length)
         edges += cuts[1:]
-        counts += [max(LEAST, math.ceil(share - SAME))] if len(cuts) == 2 else _parts(supply, cuts, share, stretch)
+        counts += [max(LEAST, math.ceil(share - ROUNDING))] if len(cuts) == 2 else _parts(supply, cuts, share, stretch)
     # of a film parted by grooves alone, in a groove
     alone = grooves and len(counts) == 2 * len(grooves) + 1
     middle = 1 + 2 * int(np.argmin([abs(sum(span)) for span in grooves])) if alone else _largest(counts, edges)
-    if np.allclose(edges, -np.array(edges[::-1]), rtol=0.0, atol=MIRRORED * length):
+    if np.allclose(edges, -np.array(edges[::-1]), rtol=0.0, atol=ROUNDING * length):
         # parts of one size may have been given different numbers: halves that are alike get rows that are
         counts, middle = [max(pair) for pair in zip(counts, counts[::-1], strict=True)], len(counts) // 2
     # an even number: films that are their own mirror image have a row in the middle
@@ -75,7 +72,7 @@ def meeting_rows(
     found = supply_rows(supply, radius, length, n_z, stretch)
     if found is None or all(isinstance(area, CircumferentialGroove) for area in supply):
         return found
-    z, same = radius * found[0], SAME * length
+    z, same = radius * found[0], ROUNDING * length
     near = np.minimum(np.diff(z, prepend=-math.inf), np.diff(z, append=math.inf))
     lasting = [-0.5 * length, 0.5 * length, *(edge for span in groove_spans(supply) for edge in span)]
     edges = {x for a in supply if not isinstance(a, (CircumferentialGroove, Hole)) for x in axial_span(a)}
@@ -147,7 +144,7 @@ def _edges_on(supply: Sequence[SupplyArea], low: float, high: float, length: flo
         found.update(z for z in places if low < z < high)
     edges: list[float] = []
     for z in sorted(found):
-        if not edges or z - edges[-1] > SAME * length:
+        if not edges or z - edges[-1] > ROUNDING * length:
             edges.append(z)
     edges[-1] = high
     return edges
@@ -165,7 +162,7 @@ def _parts(supply: Sequence[SupplyArea], edges: list[float], share: float, stret
         z = 0.5 * (edges[k] + edges[k + 1])
         # of two intervals the pressure beside the area is integrated to third order
         least = (2 if part > 0.3 else 1) if any(low < z < high for low, high in spans) else LEAST
-        counts.append(max(least, math.ceil(part - 1e-9)))
+        counts.append(max(least, math.ceil(part - ROUNDING)))
     while sum(counts) > share + 2.0:
         k = _largest(counts, edges)
         if counts[k] <= KEPT:
@@ -275,7 +272,7 @@ def _check_columns(k: int, area: SupplyArea, radius: float, step: float, around:
     low, high = (area.angle - 0.5 * width) / step, (area.angle + 0.5 * width) / step
     if isinstance(area, Hole) and around and not area.rotating:
         return  # holes of any size feed the nearest vertex
-    between = width < step if area.rotating else math.floor(high + EDGE) < math.ceil(low - EDGE)
+    between = width < step if area.rotating else math.floor(high + ROUNDING) < math.ceil(low - ROUNDING)
     if between:
         lies = "is narrower than the step between" if area.rotating else "lies between"
         raise InputError(
@@ -286,7 +283,7 @@ def _check_columns(k: int, area: SupplyArea, radius: float, step: float, around:
 
 
 def _require_between(what: str, angle: float, step: float) -> None:
-    if angle < LEAST_BETWEEN * step * (1.0 - EDGE):
+    if angle < LEAST_BETWEEN * step * (1.0 - ROUNDING):
         raise InputError(
             f"{what} spans {angle:.4g} rad, less than {LEAST_BETWEEN} intervals of its grid; "
             f"n_theta={math.ceil(LEAST_BETWEEN * 2.0 * math.pi / angle)} would do, or leave no film there."

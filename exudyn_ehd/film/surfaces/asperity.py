@@ -50,8 +50,6 @@ from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, requi
 SMOOTH_BEYOND = 7.0
 # Beginning of the hint on a composite roughness that can't be meant.
 ROUGHNESS = "it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with"
-_INVERSE_ROOT_2 = 1.0 / math.sqrt(2.0)
-_INVERSE_ROOT_2_PI = 1.0 / math.sqrt(2.0 * math.pi)
 
 
 class AverageGap(GapLimiter):
@@ -78,7 +76,7 @@ class AverageGap(GapLimiter):
 def average_gap_ratio(x: np.ndarray, residual: float) -> np.ndarray:
     """h_T / sigma for x = h / sigma."""
     y = np.asarray(x, dtype=float) - residual
-    return residual + y * scipy.special.ndtr(y) + np.exp(-0.5 * y * y) * _INVERSE_ROOT_2_PI
+    return residual + y * scipy.special.ndtr(y) + np.exp(-0.5 * y * y) / math.sqrt(2.0 * math.pi)
 
 
 @njit(cache=True)
@@ -88,9 +86,9 @@ def average_gap(gaps, sigma, residual, slopes, bends):
     for k in range(g.size):
         if g[k] <= SMOOTH_BEYOND * sigma:
             y = g[k] / sigma - residual
-            density = _INVERSE_ROOT_2_PI * math.exp(-0.5 * y * y)
+            density = math.exp(-0.5 * y * y) / math.sqrt(2.0 * math.pi)
             # erfc keeps its relative accuracy deep below the mean line, where y Phi(y) + phi(y) cancels.
-            slope[k] = 0.5 * math.erfc(-y * _INVERSE_ROOT_2)
+            slope[k] = 0.5 * math.erfc(-y / math.sqrt(2.0))
             bend[k] = density / sigma
             g[k] = sigma * (residual + max(y * slope[k] + density, 0.0))
 

@@ -47,10 +47,8 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.kernels import FAST
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, require_number
 
-# Share of land below which a vertex lies inside an area: far above round-off, far below what an edge leaves.
-INSIDE = 1e-9
 # Of the gap on an elastic element: Newton steps at most, and the last one over the gap at which the contact begins. The
 # slope of the pressure is that before the last step.
 MOST_STEPS, LAST_STEP = 60, 1e-13
@@ -175,7 +173,7 @@ class LandContact(Contact):
     ) -> None:
         """Gap and slope on the land, as of `Contact`, and the land's share of the pressure; no contact in areas."""
         self.contact.solve_gap(X, compliance, scale, G, P_out, slope_out)
-        inside = self.land < INSIDE
+        inside = self.land < ROUNDING
         G[inside], slope_out[inside] = X[inside], 0.0
         P_out *= self.land
 

@@ -240,7 +240,6 @@ def nominal_gap(t: np.ndarray, residual: float) -> np.ndarray:
     return 0.5 * (low + high)
 
 
-_unsigned = np.uint64
 
 
 class RoughFlow(FluxEffect):
@@ -335,13 +334,10 @@ def _table_at(y, scale, table):
     """Value of a flat table at y, and its derivative by the gap."""
     steps = table.size // 4
     u = y * steps
-    k = min(_unsigned(u), _unsigned(steps - 1))
-    u -= float(k)
-    k *= _unsigned(4)
-    b = table[k + _unsigned(1)]
-    c2 = table[k + _unsigned(2)]
-    c3 = table[k + _unsigned(3)]
-    f = table[k] + u * (b + u * (c2 + u * c3))
+    k = min(int(u), steps - 1)
+    u -= k
+    a, b, c2, c3 = table[4 * k], table[4 * k + 1], table[4 * k + 2], table[4 * k + 3]
+    f = a + u * (b + u * (c2 + u * c3))
     return f, (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
 
 

@@ -22,6 +22,7 @@ import scipy
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.status import (
     POSITIVE,
+    ROUNDING,
     Checked,
     InputError,
     PlausibilityWarning,
@@ -31,8 +32,6 @@ from exudyn_ehd.status import (
     warn_user,
 )
 
-# Of given points (m or rad), far beyond any machine's: where slopes between them overflow.
-LARGEST_SIZE, SMALLEST_STEP = 1e6, 1e-12
 # Places between two vertices where a profile is compared with the straight line that a film takes, as shares of their
 # distance, and the difference to warn from, as a share of the clearance.
 BETWEEN, MISSED = (0.21, 0.47, 0.83), 0.02
@@ -211,7 +210,7 @@ class ProfileTable:
         theta = _increasing("ProfileTable.angles", self.angles, 4, "rad")
         z = _increasing("ProfileTable.positions", self.positions, 2, "m")
         d = _finite("ProfileTable.depths", self.depths)
-        if theta[-1] - theta[0] > 2.0 * math.pi - SMALLEST_STEP:
+        if theta[-1] - theta[0] > 2.0 * math.pi - ROUNDING:
             raise InputError(
                 f"ProfileTable.angles must span less than 2 pi rad, got {theta[-1] - theta[0]:g}; leave out the "
                 f"repeated first angle, and give radians."
@@ -344,17 +343,15 @@ def _finite(where: str, values: object) -> np.ndarray:
         raise InputError(f"{where} must be finite numbers in rows of equal length, got {values!r}.") from None
     if not np.all(np.isfinite(array)):
         raise InputError(f"{where} must be finite, got {values!r}; fill the gaps of a measured table first.")
-    if np.any(np.abs(array) > LARGEST_SIZE):
-        raise InputError(f"{where} must not exceed {LARGEST_SIZE:g} in size, got {values!r}; give metres and radians.")
     require_plausible(where, values, array)
     return array
 
 
 def _increasing(where: str, values: object, at_least: int, unit: str) -> np.ndarray:
     array = _finite(where, values)
-    if array.ndim != 1 or array.size < at_least or not np.all(np.diff(array) >= SMALLEST_STEP):
+    if array.ndim != 1 or array.size < at_least or not np.all(np.diff(array) >= ROUNDING):
         raise InputError(
-            f"{where} must be at least {at_least} increasing numbers in {unit}, at least {SMALLEST_STEP:g} {unit} "
+            f"{where} must be at least {at_least} increasing numbers in {unit}, at least {ROUNDING:g} {unit} "
             f"apart, got {values!r}; sort the points."
         )
     return array

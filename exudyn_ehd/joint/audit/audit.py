@@ -97,11 +97,6 @@ class Audit:
         """Effects that take time and do not matter."""
         return tuple(f for f in self.findings if f.unneeded)
 
-    @property
-    def in_vain(self) -> tuple[Finding, ...]:
-        """Another name of `unneeded`."""
-        return self.unneeded
-
     def __getitem__(self, effect: str) -> Finding:
         """The finding about an effect, by its name."""
         for finding in self.findings:

@@ -18,10 +18,10 @@ from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
 from exudyn_ehd.joint.audit.samples import adiabatic_rise, time_mean
 from exudyn_ehd.joint.audit.switches import (
+    MULTIGRADE,
+    PIEZOVISCOSITY,
     STEEL,
-    TYPICAL_PRESSURE_COEFFICIENT,
-    TYPICAL_SHEAR_ONSET,
-    TYPICAL_TEMPERATURE_COEFFICIENT,
+    TEMPERATURE_COEFFICIENT,
     coarse_pin,
     coarse_ring,
     heated,
@@ -189,7 +189,7 @@ def wear(case: Case) -> Finding | None:
 def piezoviscosity(case: Case) -> Finding:
     """Viscosity under pressure."""
     law = case.bearing.lubricant.pressure_law
-    alpha = TYPICAL_PRESSURE_COEFFICIENT if law is None else law.coefficient
+    alpha = PIEZOVISCOSITY.coefficient if law is None else law.coefficient
     return judged(
         case,
         "piezoviscosity",
@@ -215,7 +215,7 @@ def _temperature_rise(case: Case) -> float:
 
 def heating(case: Case) -> Finding:
     """Change of viscosity by the film's own heat."""
-    b, coefficient = case.bearing, TYPICAL_TEMPERATURE_COEFFICIENT
+    b, coefficient = case.bearing, TEMPERATURE_COEFFICIENT
     law, is_warm = b.lubricant.temperature_law, b.thermal is not None
     is_on = is_warm and law is not None
     if law is not None:
@@ -276,7 +276,7 @@ def temperature(case: Case) -> Finding | None:
 def shear_thinning(case: Case) -> Finding:
     """Largest shear rate against the onset of thinning."""
     law = case.bearing.lubricant.shear_law
-    onset = TYPICAL_SHEAR_ONSET if law is None else law.onset
+    onset = MULTIGRADE.onset if law is None else law.onset
     return judged(
         case,
         "shear thinning",
@@ -311,8 +311,8 @@ def faces_heat(case: Case) -> Finding | None:
     return judged(
         case,
         "heat of thrust faces",
-        f"{TYPICAL_TEMPERATURE_COEFFICIENT:.3g} 1/K x rise of {rise:.3g} K in a turn",
-        TYPICAL_TEMPERATURE_COEFFICIENT * rise,
+        f"{TEMPERATURE_COEFFICIENT:.3g} 1/K x rise of {rise:.3g} K in a turn",
+        TEMPERATURE_COEFFICIENT * rise,
         None,
         mattering="films on faces are isothermal here: give the lubricant the viscosity at their temperature.",
     )

@@ -145,11 +145,6 @@ class Finding:
     remedy: Switch | None = field(default=None, repr=False, compare=False)
     time_share: float | None = None
 
-    @property
-    def in_vain(self) -> bool:
-        """Another name of ``unneeded``."""
-        return self.unneeded
-
 
 def judged(
     case: Case,

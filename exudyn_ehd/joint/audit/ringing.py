@@ -31,8 +31,8 @@ from exudyn_ehd.status import RingingWarning
 
 # Size of a zigzag, share of the force there and of the largest one before, which fades by so much per step.
 LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
-# Cosine between the d of steps in succession, and the smaller ones' share of the middle one.
-OPPOSITE, EVEN = -0.5, 0.3
+# Share of a d by which those before and behind it point against it.
+EVEN = 0.3
 # Mean pressure on the projected area below which a force is none: rounding next to an ideal joint, Pa.
 NEGLIGIBLE = 100.0
 # A burst is so much stronger than the steps before, or has kept such a share of its size over so many zigzags; steps
@@ -122,10 +122,9 @@ class RingingWatch:
         return self._is_burst() and self._count(t_1)
 
     def _zigzag(self) -> bool:
-        (ax, ay, az, a), (bx, by, bz, b), (cx, cy, cz, c) = list(self._bends)[-3:]
-        if not (b > max(self.smallest, LARGEST_SHARE * self._largest) and a > EVEN * b and c > EVEN * b):
-            return False
-        if ax * bx + ay * by + az * bz > OPPOSITE * a * b or bx * cx + by * cy + bz * cz > OPPOSITE * b * c:
+        (ax, ay, az, _), (bx, by, bz, b), (cx, cy, cz, _) = list(self._bends)[-3:]
+        against = max(ax * bx + ay * by + az * bz, bx * cx + by * cy + bz * cz)
+        if not b > max(self.smallest, LARGEST_SHARE * self._largest) or against > -EVEN * b * b:
             return False
         force = sum(math.hypot(x, y, z) for _, x, y, z in list(self._states)[:3]) / 3.0
         return b > LOCAL_SHARE * force

@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import known_supply
-from exudyn_ehd.joint.audit.switches import STEEL
+from exudyn_ehd.joint.audit.switches import STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
@@ -22,8 +22,6 @@ REPLAYED, A_TURN, TURNS = 60, 80, (3.0, 1.0)
 # Smallest amplitude that a squeezing journal is taken to have at one instant, over the clearance: with a larger one the
 # frequency of journals that pass the centre is lower, with a smaller one it is higher.
 AMPLITUDE = 0.1
-# Gauge pressure below which oil at ambient pressure would have to carry tension, Pa.
-TENSION = -1e5
 # Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
 RING_COMPLIANCE = 0.7
 
@@ -276,7 +274,7 @@ def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float
         "to_bush": to_bush,
         "to_journal": to_journal,
         "cavitated": float(np.sum(weight[~unbroken])),
-        "tension": float(np.sum(weight[film.oil.P * film.scales.pressure < TENSION])),
+        "tension": float(np.sum(weight[film.oil.P * film.scales.pressure < VAPOUR_PRESSURE])),
         "tilt_loss": float(tilt_loss(b, w.motion[None])[0]),
         "deflection": q.get("bore_displacement", 0.0),
         "compliance": RING_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"],

@@ -21,21 +21,20 @@ from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.joint.balance.newton import is_fed
 
-# Mineral oils: pressure and temperature coefficients of the viscosity; multigrade oils: onset of shear thinning, power
-# and residual viscosity.
-TYPICAL_PRESSURE_COEFFICIENT = 2e-8  # 1/Pa
-TYPICAL_TEMPERATURE_COEFFICIENT = 0.03  # 1/K, ISO VG 46 near 70 degrees Celsius
-TYPICAL_SHEAR_ONSET = 1e6  # 1/s
-TYPICAL_SHEAR_EXPONENT, TYPICAL_SHEAR_RESIDUAL = 0.7, 0.5
-TYPICAL_ROUGHNESS = 0.5e-6  # m, ground journal in a finely turned bore
-TYPICAL_COMPOSITE_MODULUS = 1.15e11  # Pa, steel on steel
-TYPICAL_CAVITY_PRESSURE = -1e5  # Pa (gauge), oil vapour
+# Mineral oils under pressure and by temperature, 1/K (ISO VG 46 near 70 degrees Celsius); multigrade oils.
+PIEZOVISCOSITY = RoelandsPressure(coefficient=2e-8)
+TEMPERATURE_COEFFICIENT = 0.03
+MULTIGRADE = CarreauShear(relaxation_time=1e-6, exponent=0.7, residual=0.5)
+# Ground steel journal in a finely turned steel bore.
+ROUGH_STEEL = GreenwoodTripp(composite_roughness=0.5e-6, composite_modulus=1.15e11)
+# Gauge pressure of oil vapour, Pa; oil at less carries tension.
+VAPOUR_PRESSURE = -1e5
 STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "density": 7800.0}
 RING_THICKNESS = 0.5  # of the bore radius
 
-TYPICAL_OIL_CONDUCTIVITY, TYPICAL_STEEL_EXPANSION = 0.13, 1.15e-5  # W/(m K), 1/K
-# W/(m2 K) from a housing to still air with its radiation, W/(m K) of steel, and shaft lengths, radii, on either side.
-TYPICAL_AIR_COEFFICIENT, TYPICAL_STEEL_CONDUCTIVITY, SHAFT = 15.0, 45.0, 4.0
+OIL_CONDUCTIVITY, STEEL_EXPANSION = 0.13, 1.15e-5  # W/(m K), 1/K
+# W/(m2 K) from a housing to still air with its radiation, and shaft lengths, radii, on either side.
+AIR_COEFFICIENT, SHAFT = 15.0, 4.0
 
 Switch = Callable[[JournalBearing], JournalBearing]
 
@@ -81,7 +80,7 @@ steel_pin, coarse_pin = partial(_pin, 0.02), partial(_pin, 0.08)
 
 def piezoviscous(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing with a mineral oil's Roelands law."""
-    return _oil(bearing, pressure_law=RoelandsPressure(coefficient=TYPICAL_PRESSURE_COEFFICIENT))
+    return _oil(bearing, pressure_law=PIEZOVISCOSITY)
 
 
 def heated(bearing: JournalBearing) -> JournalBearing:
@@ -91,7 +90,7 @@ def heated(bearing: JournalBearing) -> JournalBearing:
     """
     oil = bearing.lubricant
     if oil.temperature_law is None:
-        law = ReynoldsTemperature(point=(oil.temperature, oil.viscosity), coefficient=TYPICAL_TEMPERATURE_COEFFICIENT)
+        law = ReynoldsTemperature(point=(oil.temperature, oil.viscosity), coefficient=TEMPERATURE_COEFFICIENT)
         bearing = _oil(bearing, temperature_law=law)
     return replace(bearing, thermal=bearing.thermal or LumpedThermal(supply_temperature=oil.temperature))
 
@@ -99,12 +98,12 @@ def heated(bearing: JournalBearing) -> JournalBearing:
 def typical_conductance(bearing: JournalBearing) -> float:
     """Conductance from a steel ring half a radius thick to air and along a steel shaft to both sides, W/K."""
     R = bearing.journal_radius
-    outside = 2.0 * math.pi * (1.0 + RING_THICKNESS) * R * bearing.length * TYPICAL_AIR_COEFFICIENT
+    outside = 2.0 * math.pi * (1.0 + RING_THICKNESS) * R * bearing.length * AIR_COEFFICIENT
     return outside + _along_shaft(R)
 
 
 def _along_shaft(radius: float) -> float:
-    return 2.0 * math.pi * radius * TYPICAL_STEEL_CONDUCTIVITY / SHAFT
+    return 2.0 * math.pi * radius * Conduction.conductivity / SHAFT
 
 
 def walled(bearing: JournalBearing) -> JournalBearing:
@@ -115,10 +114,10 @@ def walled(bearing: JournalBearing) -> JournalBearing:
     bush = Conduction(
         thickness=RING_THICKNESS * R,
         conductance=typical_conductance(bearing) - along,
-        expansion=TYPICAL_STEEL_EXPANSION,
+        expansion=STEEL_EXPANSION,
     )
     journal = replace(bush, thickness=R, conductance=along)
-    conductivity = TYPICAL_OIL_CONDUCTIVITY if thermal.conductivity is None else thermal.conductivity
+    conductivity = OIL_CONDUCTIVITY if thermal.conductivity is None else thermal.conductivity
     return replace(bearing, thermal=replace(thermal, bush=bush, journal=journal, conductivity=conductivity))
 
 
@@ -144,9 +143,7 @@ def _thinner(factor: float, bearing: JournalBearing) -> JournalBearing:
 
 def thinning(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing with a multigrade oil's Carreau law."""
-    time, exponent = 1.0 / TYPICAL_SHEAR_ONSET, TYPICAL_SHEAR_EXPONENT
-    law = CarreauShear(relaxation_time=time, exponent=exponent, residual=TYPICAL_SHEAR_RESIDUAL)
-    return _oil(bearing, shear_law=law)
+    return _oil(bearing, shear_law=MULTIGRADE)
 
 
 def untouching(bearing: JournalBearing) -> JournalBearing:
@@ -157,9 +154,7 @@ def untouching(bearing: JournalBearing) -> JournalBearing:
 
 def roughness_height(bearing: JournalBearing) -> float:
     """Composite roughness that a bearing names, m, or a typical one."""
-    if bearing.asperity is not None:
-        return bearing.asperity.composite_roughness
-    return TYPICAL_ROUGHNESS if bearing.roughness is None else bearing.roughness.composite_roughness
+    return (bearing.asperity or bearing.roughness or ROUGH_STEEL).composite_roughness
 
 
 def rough(bearing: JournalBearing) -> JournalBearing:
@@ -169,15 +164,13 @@ def rough(bearing: JournalBearing) -> JournalBearing:
 
 def touching(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing with steel asperities of its roughness, or of a typical one."""
-    height = roughness_height(bearing)
-    asperity = GreenwoodTripp(composite_roughness=height, composite_modulus=TYPICAL_COMPOSITE_MODULUS)
-    return replace(bearing, asperity=asperity)
+    return replace(bearing, asperity=replace(ROUGH_STEEL, composite_roughness=roughness_height(bearing)))
 
 
 def cavity_pressure(bearing: JournalBearing) -> float:
     """Pressure of a bearing's cavities, Pa, or oil vapour's where nothing feeds them at their own."""
-    pressure = max(bearing.cavitation.cavity_pressure, TYPICAL_CAVITY_PRESSURE)
-    return pressure if is_fed(bearing, pressure) else min(pressure, TYPICAL_CAVITY_PRESSURE)
+    pressure = max(bearing.cavitation.cavity_pressure, VAPOUR_PRESSURE)
+    return pressure if is_fed(bearing, pressure) else min(pressure, VAPOUR_PRESSURE)
 
 
 def mass_conserving(bearing: JournalBearing) -> JournalBearing:
@@ -187,7 +180,7 @@ def mass_conserving(bearing: JournalBearing) -> JournalBearing:
 
 def swift_stieber(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing with `SwiftStieber` at its cavity pressure."""
-    pressure = max(bearing.cavitation.cavity_pressure, TYPICAL_CAVITY_PRESSURE)
+    pressure = max(bearing.cavitation.cavity_pressure, VAPOUR_PRESSURE)
     return replace(bearing, cavitation=SwiftStieber(cavity_pressure=pressure))
 
 

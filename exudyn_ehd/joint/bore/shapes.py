@@ -37,7 +37,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.solid.bush_modes import BoreModes
+from exudyn_ehd.solid.bush import BoreModes
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.journal.harmonics import POINTS, WEIGHTS
 from exudyn_ehd.solid.journal.modes import JournalModes

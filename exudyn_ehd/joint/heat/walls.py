@@ -23,11 +23,10 @@ from exudyn_ehd.joint.heat.power import OilFlows, heat_of
 from exudyn_ehd.joint.heat.temperature import BandSolver, HeatBalance, OilTemperature, PassageData
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.linear import solve_by_products
+from exudyn_ehd.status import ROUNDING
 
 # Share of the heat to which what the film gives and what the walls take agree.
 AGREED = 1e-13
-# Rounding of the flow that leaves, as a share of the largest flow over a link.
-NO_FLOW = 1e-11
 
 
 class _Wall:
@@ -154,7 +153,7 @@ class FilmTemperature(OilTemperature):
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """State in balance with the heat of a solved film; not finite without a way out for the heat."""
         flows = OilFlows(film, self.carry_over)
-        stagnant = flows.exchanged <= NO_FLOW * float(np.abs(flows.x).max())
+        stagnant = flows.exchanged <= ROUNDING * float(np.abs(flows.x).max())
         if self.transfer == 0.0 and stagnant and heat_of(film).max() > 0.0:
             return np.full((self.shape[0], self.size), np.inf)
         return self._with_supply(film, 0.0)

@@ -20,8 +20,7 @@ from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluati
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, JournalMotion, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
-from exudyn_ehd.solid.bush import ANCFBush, ModalBush
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import ANCFBush, ModalBush, bore_modes
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.journal.modes import ElasticJournal, journal_modes
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal

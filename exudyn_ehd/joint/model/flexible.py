@@ -5,7 +5,7 @@ The motion (10,) of the rigid surfaces is followed by the bore's coordinates and
     motion = [x, y, ..., omega, w, q_1 .. q_k, dq_1/dt .. dq_k/dt];
 
 the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q, with those of the film's moment
-on a bush that it turns (`exudyn_ehd.solid.bush_modes`). The bush resists q outside of this model; only
+on a bush that it turns (`exudyn_ehd.solid.bush`). The bush resists q outside of this model; only
 `evaluate_steady` knows its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
 
 An elastic journal's coordinates follow the bore's: what its surface recedes by opens the gap alike, S = [S_bore,

@@ -24,8 +24,8 @@ from exudyn_ehd.joint.audit import effects
 from exudyn_ehd.joint.audit.audit import ROWS, Audit, AuditRow, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
-from exudyn_ehd.joint.audit.samples import TENSION, FilmState, RecordedSteps, Sources, squeeze_share
-from exudyn_ehd.joint.audit.switches import STEEL, TYPICAL_ROUGHNESS
+from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, squeeze_share
+from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.balance.limits import (
     Resolution,
     advice,
@@ -139,7 +139,7 @@ class BallCase(Case):
             "flow": float(moved_oil(b, motion[None])[0]),
             "viscosity": b.lubricant.viscosity,
             "cavitated": float(share[~film.unbroken].sum()),
-            "tension": float(share[p < TENSION].sum()),
+            "tension": float(share[p < VAPOUR_PRESSURE].sum()),
             "compliance": 4.0 * (1.0 - STEEL["poisson_ratio"] ** 2) / STEEL["youngs_modulus"] * radius,
         }
         return numbers, Resolution(around, along, narrowing=1.0, growth=1.0, wanted=None)
@@ -155,7 +155,7 @@ class BallCase(Case):
 def _contact(case: Case) -> Finding:
     if case.bearing.contact is not None:
         return effects.contact(case)
-    wall = RegularisedWall(onset=min(TOUCHING * TYPICAL_ROUGHNESS, THIN * case.bearing.radial_clearance))
+    wall = RegularisedWall(onset=min(TOUCHING * ROUGH_STEEL.composite_roughness, THIN * case.bearing.radial_clearance))
     switch, advice = partial(replace, contact=wall), "surfaces touch: contact=RegularisedWall(...)."
     limit = LIMITS["asperities"]._replace(nothing=None)
     return judged(case, "contact", *effects.thinnest(case), False, switch, limit=limit, mattering=advice)

@@ -31,7 +31,7 @@ from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import FilmRecord, shown
-from exudyn_ehd.solid.bush_modes import BoreModes
+from exudyn_ehd.solid.bush import BoreModes
 from exudyn_ehd.status import (
     InputError,
     Status,

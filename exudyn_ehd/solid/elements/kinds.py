@@ -46,18 +46,18 @@ import numpy as np
 
 from exudyn_ehd.solid.elements.element import Element, Quadrature, face_of, linear_simplex, quadratic_simplex
 
-HEX_NODES = np.array(
+
+def _with_middles(corners: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Natural coordinates of the nodes: corners, then the middles of edges."""
+    return np.concatenate([corners, corners[edges[:, :2]].mean(axis=1)])
+
+
+_HEX_CORNERS = np.array(
     [
         *[(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)],
         *[(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],
-        *[(0, -1, -1), (1, 0, -1), (0, 1, -1), (-1, 0, -1)],
-        *[(0, -1, 1), (1, 0, 1), (0, 1, 1), (-1, 0, 1)],
-        *[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)],
-    ],
-    dtype=float,
+    ]
 )
-"""Natural coordinates of the nodes, shape (20, 3)."""
-
 HEX_EDGES = np.array(
     [
         *[(0, 1, 8), (1, 2, 9), (2, 3, 10), (3, 0, 11)],
@@ -66,6 +66,8 @@ HEX_EDGES = np.array(
     ]
 )
 """Edges as (corner, corner, mid-edge node), shape (12, 3)."""
+HEX_NODES = _with_middles(_HEX_CORNERS, HEX_EDGES)
+"""Natural coordinates of the nodes, shape (20, 3)."""
 
 HEX_FACES = np.array(
     [
@@ -169,7 +171,7 @@ TET_EDGES = np.array([(0, 1, 4), (1, 2, 5), (2, 0, 6), (0, 3, 7), (1, 3, 8), (2,
 TET_FACES = np.array([(0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (2, 0, 3, 6, 7, 9)])
 """6-node triangles whose normal x_,r × x_,s points outward, shape (4, 6)."""
 
-_CORNERS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
+_TET_CORNERS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
 tet_shapes = partial(quadratic_simplex, TET_EDGES[:, :2])
 """Shape functions (p, 10) and their gradients (p, 10, 3) at natural coordinates (p, 3)."""
 
@@ -199,7 +201,7 @@ WALKINGTON14 = _orbits(
 """Fourteen points, exact for the mass of a straight-edged element and for a curved patch under constant strain. N. J.
 Walkington, Quadrature on simplices of arbitrary dimension, 2000."""
 
-TET_NODES = np.concatenate([_CORNERS, 0.5 * (_CORNERS[TET_EDGES[:, 0]] + _CORNERS[TET_EDGES[:, 1]])])
+TET_NODES = _with_middles(_TET_CORNERS, TET_EDGES)
 """Natural coordinates of the nodes, shape (10, 3)."""
 
 TET10 = Element(

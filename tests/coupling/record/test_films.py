@@ -13,7 +13,7 @@ from rotor import CLEARANCE, LENGTH, RADIUS, rotor, run, steel_bush
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record.record import FilmRecorder
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.pictures import animation
+from exudyn_ehd.pictures import files
 from exudyn_ehd.status import InputError
 from tests.sampling import sample
 from tests.solid_tetrahedra import tet_mesh
@@ -105,7 +105,7 @@ def test_animation_shows_every_film(recorded, tmp_path):
         assert gif.n_frames == 5
         # Pillow may merge nothing here: every frame differs
         assert gif.info["duration"] == 200
-    frames = animation.Frames(recorded.films, recorded.history)
+    frames = files.Frames(recorded.films, recorded.history)
     film = recorded.films[-1]
     frames.show(film)
     np.testing.assert_allclose(
@@ -118,7 +118,7 @@ def test_animation_shows_every_film(recorded, tmp_path):
 
 
 def test_mp4_needs_ffmpeg(recorded, tmp_path, monkeypatch):
-    monkeypatch.setattr(animation.animation.FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
+    monkeypatch.setattr(files.animation.FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
     with pytest.raises(InputError, match=r"needs the program ffmpeg.*write a \.gif"):
         recorded.animate(tmp_path / "bearing.mp4")
 

@@ -115,7 +115,7 @@ def test_contact_is_counted_over_the_steps():
     mbs, joint = _joint(contact=ehd.RegularisedWall(onset=1e-6))
     _run(mbs)
     finding = joint.audit()["contact"]
-    assert finding.in_vain and "acting in 0% of the steps" in finding.indicator
+    assert finding.unneeded and "acting in 0% of the steps" in finding.indicator
     assert "most at" not in finding.indicator
     mbs, joint = _joint(load=2e5, contact=ehd.RegularisedWall(onset=1e-5))
     _run(mbs)

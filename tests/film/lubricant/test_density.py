@@ -6,8 +6,7 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.density import CompressibleLaw, law_at
-from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at, look_up
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, density_at, density_slope_at, law_at, look_up
 
 PRESSURES = np.array([0.0, 1e6, 1e8, 5e8, 1e9, 3e9])
 VISCOSITIES = {

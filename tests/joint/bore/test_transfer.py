@@ -11,7 +11,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid, long_bearing_grid
 from exudyn_ehd.film.models import film_grid
 from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore, vertex_means
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import bore_modes
 from exudyn_ehd.solid.fe_bore import OUTSIDE
 from exudyn_ehd.solid.linear import held_solution
 from exudyn_ehd.solid.unrolled import patch

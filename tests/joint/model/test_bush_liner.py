@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import bore_modes
 from tests.solid_pressures import pressure_loads
 
 R, L, NU = 0.03, 0.066, 0.3

@@ -14,8 +14,8 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.heat.power import OilFlows
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.pictures.files import film_mesh
 from exudyn_ehd.pictures.maps import on_picture
-from exudyn_ehd.pictures.vtk import film_mesh
 from tests.reference.arc_film import arc_film
 from tests.sampling import sample
 

@@ -11,7 +11,7 @@ from scipy.optimize import root
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import bore_modes
 from tests.sampling import sample
 from tests.solid_pressures import pressure_loads
 

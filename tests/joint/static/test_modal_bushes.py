@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import bore_modes
 from tests.finite_elements import fem_of
 from tests.sampling import sample
 from tests.solid_tetrahedra import tet_mesh

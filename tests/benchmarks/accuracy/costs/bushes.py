@@ -30,8 +30,7 @@ from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.bush import ANCFBush, ModalBush
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import ANCFBush, ModalBush, bore_modes
 from exudyn_ehd.solid.elements.element import Quadrature
 from exudyn_ehd.solid.elements.kinds import GAUSS27, IRONS14
 from exudyn_ehd.solid.mesh import HollowCylinder

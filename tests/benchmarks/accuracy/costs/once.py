@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.bush_modes import bore_modes
+from exudyn_ehd.solid.bush import bore_modes
 from exudyn_ehd.status import EHDError
 from tests.benchmarks.accuracy.costs import bushes, growth
 from tests.benchmarks.accuracy.errors.study import Progress

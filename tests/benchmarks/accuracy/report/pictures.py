@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 from matplotlib.transforms import Bbox
 
-from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RESOLUTION, style_ticks, styled
+from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RC, style_ticks, styled
 from exudyn_ehd.tables import format_seconds
 from tests.benchmarks.accuracy.report.front import cheapest, pareto_front
 from tests.benchmarks.accuracy.table import Row
@@ -302,4 +302,4 @@ def unit_of(notes: Sequence[str]) -> str:
 
 def save(figure: Figure, path: pathlib.Path, **options: Any) -> None:
     """Write a picture."""
-    figure.savefig(path, dpi=RESOLUTION, **options)
+    figure.savefig(path, dpi=RC["savefig.dpi"], **options)
