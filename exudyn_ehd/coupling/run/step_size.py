@@ -30,7 +30,7 @@ from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import NO_BALL_ERROR, NO_ERROR, OFFSET, REFUSED, SMALLEST_GAP_SHARE, next_error
+from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, FilmLoad, next_error, no_error
 from exudyn_ehd.status import SMALL, Status
 
 # First and largest step, in steps of the settings.
@@ -47,7 +47,7 @@ END_OF_STEP = 0.25
 LEAST_OF_ERROR = 0.5
 
 
-_StepState: TypeAlias = tuple[float, np.ndarray, tuple[float, float], np.ndarray, np.ndarray | None]
+_StepState: TypeAlias = tuple[float, np.ndarray, tuple[float, float], FilmLoad, np.ndarray | None]
 
 
 class _JointError:
@@ -60,7 +60,7 @@ class _JointError:
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_StepState] = []
         self.now: _StepState | None = None
-        self.before = list(NO_BALL_ERROR if film.failures.axes == 3 else NO_ERROR)
+        self.before = no_error(film.parts)
         self.after, self.wanted = self.before, math.inf
 
     def used(self, mbs: exu.MainSystem, time: float) -> float | None:
@@ -76,22 +76,22 @@ class _JointError:
         self.now = (time, trial.motion[:10], (w * math.cos(angle), w * math.sin(angle)), load, tangent)
         if len(self.states) < 2 or tangent is None:
             return None
-        times, motions, deflections, loads = map(
-            np.array, zip(*(state[:4] for state in (*self.states, self.now)), strict=True)
-        )
+        states = *self.states, self.now
+        times, motions, deflections = map(np.array, zip(*(state[:3] for state in states), strict=True))
+        loads = FilmLoad(*map(np.stack, zip(*(state[3] for state in states), strict=True)))
         gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
         deflection = deflections if self.lags else None
         allowed = CANCELLED * self.error * gap
         before = self.states[-1][4]
         tangents = (tangent if before is None else before), tangent
         self.after, used, moved = next_error(
-            times, motions, tangents, loads, self.before, bearing.length, allowed, deflection
+            self.film.parts, times, motions, tangents, loads, self.before, bearing.length, allowed, deflection
         )
         start, step, asked = times[-2], times[-1] - times[-2], self.error * gap
         functions, jump = self.film.outer.functions, moved[0]
         if functions is not None:
             share, place = functions.largest_change(mbs, time)
-            jump = jump if math.isfinite(loads[-1, OFFSET]) else share * moved[2]
+            jump = jump if math.isfinite(loads.offset[-1, 0]) else share * moved[2]
             asked = max(asked - moved[3], LEAST_OF_ERROR * asked)
             if jump > asked:
                 most = step * min(1.0 - END_OF_STEP, max(END_OF_STEP, math.sqrt(asked / jump)))
