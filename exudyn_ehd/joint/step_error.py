@@ -244,13 +244,12 @@ def next_error(
 
     Returns
     -------
-    list of arrays, float, ndarray (4,)
+    list of arrays, float, ndarray (3,)
         The last one in m: error by a jump whose place in the step is known, in the step or behind it; displacement by
-        another jump, at an end of the step, and by the whole load in the step, both without inertia; error before the
-        step.
+        another jump, at an end of the step, and by the whole load in the step, both without inertia.
     """
     missed, lag = missed_in_steps(time, motion[:, :4], motion[:, 4:8]), _lag(time, deflection)
-    after, used, moved, n, h = [], 0.0, np.zeros(4), time.size, time[-1] - time[-2]
+    after, used, moved, n, h = [], 0.0, np.zeros(3), time.size, time[-1] - time[-2]
     entries = np.stack([tangents[0]] * (n - 1) + [tangents[1]])
     for part, state, (K, D) in zip(parts, before, _films(parts, entries), strict=True):
         places, k, lever, known = list(part.places), len(part.places), part.lever(length), slice(n - 1, n)
@@ -262,13 +261,12 @@ def next_error(
         impulse = _momenta(part, time, load)
         soft = lever * np.linalg.pinv(D[-2:], rcond=1e-9)
         loads = math.sqrt(3.0) * _spread(part, time, load)[-1], h * load.force[-1, places]
-        moved[1:3] += [float(np.linalg.norm(soft @ p, axis=1).max()) for p in loads]
+        moved[1:] += [float(np.linalg.norm(soft @ p, axis=1).max()) for p in loads]
         memory = np.abs(np.linalg.eigvals(kept[-1])).max()
         # time for which a rate of the error goes on
         m, d, s = (float(np.linalg.norm(matrix)) for matrix in (M, mean, K[-1]))
         lasting = min(m / d if d > 0.0 else math.inf, math.sqrt(m / s) if s > 0.0 else math.inf) if m > 0.0 else 0.0
         size = np.sum(state[0].reshape(2, k) ** 2, axis=1) + np.diag(state[1:]).reshape(2, k).sum(axis=1)
-        moved[3] += lever * math.sqrt(float(size[0]))
         left = largest - lever * math.sqrt(float(size[0] + lasting**2 * size[1]))
         allowed = max((1.0 - memory) * largest, BUDGET * left, SMALLEST_BUDGET * largest)
         # accelerations under constraints alternate: the smaller one of two momenta that agree in sign
