@@ -76,16 +76,13 @@ class LoadFunctions:
             function = data[f"{name}UserFunction"]
             if isinstance(function, dict) and callable(function["function"]):
                 self.calls.append((function["function"], np.asarray(data[name]).tolist()))
-        # times and values of the last four accepted states, and whether the loads have departed in the last step
+        # times and values of the last four accepted states
         self.times, self.values = np.empty(0), np.empty((0, 0))
-        self.departed = False
 
     def accept(self, mbs: exu.MainSystem, time: float) -> None:
         """Go on behind an accepted state."""
         if self.calls:
-            times, values = self._states(mbs, time)
-            self.departed = self._departs(times, values)
-            self.times, self.values = times, values
+            self.times, self.values = self._states(mbs, time)
 
     def offset(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
         """Offset in the step from the last accepted state to a time, and the share of the step in which loads change.
@@ -97,7 +94,7 @@ class LoadFunctions:
         times, values = self._states(mbs, time)
         off = departure(times, values)[-1]
         is_straight = np.abs(off).max() <= SMALL * np.abs(values).max()
-        if is_straight or not (self.departed or self._departs(times, values)):
+        if is_straight or not self._departs(times, values):
             return math.nan, math.nan
         beyond, _, _, lasting = self._impulse(mbs, time)
         return float(beyond @ off / (off @ off)), lasting

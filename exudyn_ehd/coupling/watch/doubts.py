@@ -338,8 +338,6 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
 STARVED, LEAST = 0.6, 0.1
 # Roughness of a good surface, m; surfaces of the smallest bearings are as much finer as these are smaller.
 GOOD_SURFACE, CLEARANCE_SHARE = 0.2e-6, 0.05
-# Pressure over the highest one yet from which on the grid is looked at again. Larger: of a lower peak; smaller: dearer.
-HIGHER = 1.02
 # Tolerance over the mean force of a run from which on it is told.
 LOOSE = 1e-3
 
@@ -392,7 +390,7 @@ class GridWatch:
 
     def take(self, time: float, peak: float, film: object) -> None:
         """Take an accepted step's film of a peak pressure, Pa."""
-        if not (peak > HIGHER * self._peak and isinstance(film, SolvedFilm)):
+        if not (peak > self._peak and isinstance(film, SolvedFilm)):
             return
         if is_judged(film):
             self._peak, found = peak, resolution(film)
