@@ -12,10 +12,11 @@ Accelerations that last are known from the steps before. With a guess g of them,
     q + beta h^2 f g,   dq/dt + gamma h f g,   d2q/dt2 + g,
 
 which satisfies the integrator's formulas like Exudyn's own start, so that the solution is the same. g goes on in a line
-through the last two accelerations. If these differ by more than half of the last one, as in an impact or a vibration of
-a few steps per period, there is no guess. Norms are those of all coordinates together, since what one would gain is
-lost where it meets another; but deformations of bodies, which ring while the body moves smoothly, are judged by
-themselves.
+through the last two accelerations if the last three lie in a line to a tenth of their change, over steps of one
+size (less straight ones prolong the ringing behind a halved step). Else it is the smaller one of the last two where
+they agree in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per
+period, there is no guess. Norms are those of all coordinates together, since what one would gain is lost where it meets
+another; but deformations of bodies, which ring while the body moves smoothly, are judged by themselves.
 
 Constraints are what it must not upset. Newton's first iteration leaves them open by some (h v)^2 / L from Exudyn's
 start and by far less from this one. Forces do not feel what is the same in every step, but a change g from one step to
@@ -87,6 +88,8 @@ from exudyn_ehd.status import SMALL, Status
 _UserFunction: TypeAlias = Callable[..., Any]
 # Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
 LARGEST_CHANGE = 0.5
+# Largest change of their change with which they go on in a line, share of their change.
+LARGEST_BEND = 0.1
 # Largest change of the opening of constraints from step to step, share of beta h^2 times the largest acceleration.
 LARGEST_JUMP = 3e-5
 # Beyond any tolerance of Exudyn's discontinuous iterations: Newton's method takes another pass, or a smaller step.
@@ -111,7 +114,7 @@ class StartGuess:
         self.bushes = {int(node) for film in films for node in getattr(film, "bore_nodes", ())} - bodies
         self.additive = self.groups = np.empty(0)
         self.start, self.attempts = np.nan, 0
-        self.past: list[np.ndarray] = []
+        self.past: list[tuple[float, np.ndarray]] = []
         self.ended: list[np.ndarray] = []
         self.guess: np.ndarray | None = None
         # opening of the constraints at the end of the last step, and of the last pass of Newton's method
@@ -141,8 +144,9 @@ class StartGuess:
             self.additive, self.groups = coordinates_of(mbs, self.bushes)
         if start != self.start:
             now = np.array(data.GetODE2Coordinates_tt(START_OF_STEP), dtype=float)
-            self.past = [*self.past[-1:], now]
-            self.guess = lasting(*self.past, self.groups) * self.additive if len(self.past) == 2 else None
+            self.past = [*self.past[-2:], (start, now)]
+            expected = lasting(self.past, self.groups)
+            self.guess = None if expected is None else expected * self.additive
             self.start, self.attempts, self.accepted = start, 0, self.latest
             self.tolerance.set(mbs, solver)
         self.attempts += 1
@@ -178,17 +182,38 @@ class StartGuess:
         return [REFUSED, -1.0] if np.abs(opening - self.accepted).max() > largest else [error, size]
 
 
-def lasting(before: np.ndarray, now: np.ndarray, groups: np.ndarray) -> np.ndarray:
-    """Predict the accelerations (n,) of the next step from those of the last two; zero where nothing lasts.
+def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:
+    """Predict the accelerations of the next step from those of the last steps.
 
-    ``groups`` (n,): number of the group that a coordinate belongs to; each is judged by itself.
+    Parameters
+    ----------
+    past : sequence of (float, (n,) array)
+        Times and accelerations, oldest first.
+    groups : (n,) array of int
+        Number of the group that a coordinate belongs to; each is judged by itself.
+
+    Returns
+    -------
+    (n,) array or None
+        Zero in groups in which nothing lasts; None where there is but one step.
     """
+    if len(past) < 2:
+        return None
 
     def sizes(values: np.ndarray) -> np.ndarray:
         return np.sqrt(np.bincount(groups, values * values))[groups] if groups.any() else np.sqrt(values @ values)
 
-    lasts = sizes(now - before) <= LARGEST_CHANGE * sizes(now)
-    return np.where(lasts, 2.0 * now - before, 0.0)
+    (t_1, before), (t_0, now) = past[-2:]
+    change = sizes(now - before)
+    lasts = change <= LARGEST_CHANGE * sizes(now)
+    expected = np.where(before * now > 0.0, np.sign(now) * np.minimum(np.abs(before), np.abs(now)), 0.0)
+    if len(past) > 2:
+        t_2, earlier = past[-3]
+        even = abs((t_0 - t_1) - (t_1 - t_2)) < 1e-6 * (t_0 - t_1)
+        if even:
+            straight = sizes(now - 2.0 * before + earlier) < LARGEST_BEND * change
+            expected = np.where(straight, 2.0 * now - before, expected)
+    return np.where(lasts, expected, 0.0)
 
 
 def coordinates_of(mbs: exu.MainSystem, bushes: Collection[int]) -> tuple[np.ndarray, np.ndarray]:

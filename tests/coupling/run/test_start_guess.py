@@ -177,14 +177,22 @@ def test_no_function_is_left_behind():
 def test_what_lasts():
     one = np.zeros(5, dtype=int)
     before, now = np.array([1.0, -2.0, 3.0, 0.1, 0.0]), np.array([1.2, -1.9, 2.5, -0.1, 5e-3])
-    assert np.array_equal(lasting(before, now, one), 2.0 * now - before)
-    assert not np.any(lasting(before, 3.0 * now, one))
-    assert not np.any(lasting(before, np.zeros(5), one))
+    smaller = [1.0, -1.9, 2.5, 0.0, 0.0]
+    assert lasting([(0.0, now)], one) is None
+    assert np.array_equal(lasting([(0.0, before), (0.1, now)], one), smaller)
+    assert not np.any(lasting([(0.0, before), (0.1, 3.0 * now)], one))
+    assert not np.any(lasting([(0.0, before), (0.1, np.zeros(5))], one))
+    # in a line if evenly spaced and nearly straight
+    line = [(0.0, 2.0 * before - now), (0.1, before), (0.2, now)]
+    assert np.allclose(lasting(line, one), 2.0 * now - before)
+    assert np.array_equal(lasting([(0.05, line[0][1]), *line[1:]], one), smaller)
+    assert np.array_equal(lasting([(0.0, before), *line[1:]], one), smaller)
     # a body that rings leaves the others alone
-    ringing = np.array([1.2, -1.9, 2.5, 500.0, -500.0])
-    assert not np.any(lasting(before, ringing, one))
-    expected = np.append((2.0 * ringing - before)[:3], [0.0, 0.0])
-    assert np.array_equal(lasting(before, ringing, np.array([0, 0, 0, 1, 1])), expected)
+    ringing = np.array([1.0, -1.9, 2.5, 500.0, -500.0])
+    assert not np.any(lasting([(0.0, before), (0.1, ringing)], one))
+    assert np.array_equal(
+        lasting([(0.0, before), (0.1, ringing)], np.array([0, 0, 0, 1, 1])), [1.0, -1.9, 2.5, 0.0, 0.0]
+    )
 
 
 @pytest.mark.parametrize("node", ["Rxyz", "EP", "RotVec"])
