@@ -131,8 +131,8 @@ JUMP = 0.9
 SUDDEN = 0.3
 # Error of a step over its allowed error, from which it is repeated.
 REFUSED = 8.0
-# What a step may miss of the error that is left, and of the largest one at least.
-BUDGET, SMALLEST_BUDGET = 0.1, 0.01
+# What a step may miss of the error that is left, which counts as this share of the largest one at least.
+BUDGET = 0.1
 # The error that the number of steps aims at, less than half of the one that is told: the first steps are not known.
 GOAL = 0.02
 
@@ -268,7 +268,7 @@ def next_error(
         lasting = min(m / d if d > 0.0 else math.inf, math.sqrt(m / s) if s > 0.0 else math.inf) if m > 0.0 else 0.0
         size = np.sum(state[0].reshape(2, k) ** 2, axis=1) + np.diag(state[1:]).reshape(2, k).sum(axis=1)
         left = largest - lever * math.sqrt(float(size[0] + lasting**2 * size[1]))
-        allowed = max((1.0 - memory) * largest, BUDGET * left, SMALLEST_BUDGET * largest)
+        allowed = max((1.0 - memory) * largest, BUDGET * max(left, BUDGET * largest))
         # accelerations under constraints alternate: the smaller one of two momenta that agree in sign
         a, b = impulse[-2:]
         steady = np.where(a * b > 0.0, np.sign(b) * np.minimum(np.abs(a), np.abs(b)), 0.0)

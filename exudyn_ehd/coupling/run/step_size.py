@@ -34,10 +34,9 @@ from exudyn_ehd.status import SMALL, Status
 
 # First and largest step, in steps of the settings.
 FIRST, LARGEST = 0.125, 4.0
-# Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
-SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
-# Part of its demand that a step hands on.
-KEPT = 0.94
+# Factors of the size at once: the smallest, and the largest, below which no change is worth its own error. As fast as
+# sizes may grow, what earlier steps have asked for fades.
+SHRINK, GROW = 0.5, 1.1
 # Allowed error of steps over the error asked for: errors of successive steps cancel in part. Larger: longer steps.
 CANCELLED = 1.5
 
@@ -165,10 +164,10 @@ class StepSize:
             # repeated, here or by Exudyn
             self.size, self.demand = step, max(self.demand, 1.0 / step)
         elif self.used is not None:
-            self.demand = max(math.sqrt(self.used) / step, KEPT * self.demand)
+            self.demand = max(math.sqrt(self.used) / step, self.demand / GROW)
             wanted = min(1.0 / self.demand if self.demand > 0.0 else math.inf, LARGEST * self.usual)
             factor = wanted / self.size
-            if factor < WORTH or factor > GROW:
+            if factor * GROW < 1.0 or factor > GROW:
                 self.size *= min(GROW, max(SHRINK, factor))
 
     def _landing(self, time: float) -> float:

@@ -91,7 +91,7 @@ from exudyn_ehd.joint.audit.switches import (
 from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
-from exudyn_ehd.joint.step_error import enough_steps
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, enough_steps
 from exudyn_ehd.status import (
     ROUNDING,
     SMALL,
@@ -104,9 +104,9 @@ from exudyn_ehd.status import (
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
 UNRESOLVED = 0.25
-# Position error below which a step counts as resolved, a small share of the gap or of this one of the clearance, and m:
-# rounding of positions some metres from the origin stays below.
-SMALLEST_GAP_SHARE, SMALLEST_MISMATCH = 1e-2, 1e-14
+# Position error below which a step counts as resolved, as does a small share of the gap, m: rounding of positions some
+# metres from the origin stays below.
+SMALLEST_MISMATCH = 1e-14
 # A step counts if its error is still so large a share of the largest one before, which fades.
 LASTING_SHARE = 0.15
 # A step that counts adds two, any other takes one.
