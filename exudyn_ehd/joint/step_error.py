@@ -60,7 +60,7 @@ import numpy as np
 from exudyn_ehd.joint.jump_error import GAMMA, errors_of_jumps, extrapolated, resists
 
 
-class Part(NamedTuple):
+class MotionPart(NamedTuple):
     """Components of a motion that share mass, stiffness and damping.
 
     Attributes
@@ -78,8 +78,8 @@ class Part(NamedTuple):
 
 
 # Translations and tilts of a journal, translations of a ball.
-JOURNAL: tuple[Part, ...] = (Part((0, 1), (0, 1)), Part((3, 4), (2, 3)))
-BALL: tuple[Part, ...] = (Part((0, 1, 2), (0, 1, 2)),)
+JOURNAL: tuple[MotionPart, ...] = (MotionPart((0, 1), (0, 1)), MotionPart((3, 4), (2, 3)))
+BALL: tuple[MotionPart, ...] = (MotionPart((0, 1, 2), (0, 1, 2)),)
 
 
 class FilmLoad(NamedTuple):
@@ -138,19 +138,19 @@ GOAL = 0.02
 
 
 @functools.cache
-def recorded_entries(parts: tuple[Part, ...]) -> tuple[np.ndarray, ...]:
+def recorded_entries(parts: tuple[MotionPart, ...]) -> tuple[np.ndarray, ...]:
     """Rows and columns of the entries of a tangent (6, 10) that errors need: dF/dp and dF/dr of all parts."""
     pairs = [(row, place + shift) for part in parts for shift in (0, 4) for row in part.rows for place in part.places]
     return tuple(np.array(pairs).T)
 
 
-def no_error(parts: tuple[Part, ...]) -> list[np.ndarray]:
+def no_error(parts: tuple[MotionPart, ...]) -> list[np.ndarray]:
     """Return the errors at the beginning of a record: of each part error and rate, above their variance (2 k, 2 k)."""
     return [np.zeros((1 + 2 * len(part.rows), 2 * len(part.rows))) for part in parts]
 
 
 def errors_behind(
-    parts: tuple[Part, ...],
+    parts: tuple[MotionPart, ...],
     before: Sequence[np.ndarray],
     time: np.ndarray,
     motion: np.ndarray,
@@ -168,7 +168,7 @@ def errors_behind(
 
     Parameters
     ----------
-    parts : tuple of Part
+    parts : tuple of MotionPart
         `JOURNAL` or `BALL`.
     before : sequence of arrays
         `no_error` at the beginning of a record, or what was returned.
@@ -208,7 +208,7 @@ def errors_behind(
 
 
 def next_error(
-    parts: tuple[Part, ...],
+    parts: tuple[MotionPart, ...],
     time: np.ndarray,
     motion: np.ndarray,
     tangents: tuple[np.ndarray, np.ndarray],
@@ -225,7 +225,7 @@ def next_error(
 
     Parameters
     ----------
-    parts : tuple of Part
+    parts : tuple of MotionPart
         `JOURNAL` or `BALL`.
     time : (n,) array
         Times of the last states, three or more, six to tell all pulses from ringing, s.
@@ -257,20 +257,14 @@ def next_error(
         kept, new, _ = terms
         after.append(_errors(n, known, terms, state)[2])
         M, mean = _masses(part, load)[-1], 0.5 * (D[-1] + D[-2])
-        mobility = lever * np.linalg.pinv(mean, rcond=1e-9)
-        impulse = _momenta(part, time, load)
-        soft = lever * np.linalg.pinv(D[-2:], rcond=1e-9)
+        mobility, *at_ends = lever * np.linalg.pinv(np.stack([mean, *D[-2:]]), rcond=1e-9)
         loads = math.sqrt(3.0) * _spread(part, time, load)[-1], h * load.force[-1, places]
-        moved[1:] += [float(np.linalg.norm(soft @ p, axis=1).max()) for p in loads]
+        moved[1:] += [max(float(np.linalg.norm(inverse @ impulse)) for inverse in at_ends) for impulse in loads]
         memory = np.abs(np.linalg.eigvals(kept[-1])).max()
-        # time for which a rate of the error goes on
-        m, d, s = (float(np.linalg.norm(matrix)) for matrix in (M, mean, K[-1]))
-        lasting = min(m / d if d > 0.0 else math.inf, math.sqrt(m / s) if s > 0.0 else math.inf) if m > 0.0 else 0.0
-        size = np.sum(state[0].reshape(2, k) ** 2, axis=1) + np.diag(state[1:]).reshape(2, k).sum(axis=1)
-        left = largest - lever * math.sqrt(float(size[0] + lasting**2 * size[1]))
+        left = largest - lever * math.sqrt(float(np.sum(state[0, :k] ** 2 + np.diag(state[1:])[:k])))
         allowed = max((1.0 - memory) * largest, BUDGET * max(left, BUDGET * largest))
         # accelerations under constraints alternate: the smaller one of two momenta that agree in sign
-        a, b = impulse[-2:]
+        a, b = _momenta(part, time, load)[-2:]
         steady = np.where(a * b > 0.0, np.sign(b) * np.minimum(np.abs(a), np.abs(b)), 0.0)
         own = lever * (missed - lag)[-1, places] + mobility @ steady
         if math.isfinite(load.offset[-1, 0]):
@@ -280,7 +274,7 @@ def next_error(
     return after, used, np.nan_to_num(moved)
 
 
-def _films(parts: tuple[Part, ...], entries: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+def _films(parts: tuple[MotionPart, ...], entries: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Stiffness and damping (n, k, k) of the film in all parts, from `recorded_entries` (n, m) of its tangents."""
     sizes = [len(part.rows) for part in parts]
     blocks = np.split(-entries, np.cumsum([2 * k * k for k in sizes]), axis=1)
@@ -345,7 +339,7 @@ def _outgrown(steps: np.ndarray, off: np.ndarray) -> np.ndarray:
     return earlier < SUDDEN * size
 
 
-def _spread(part: Part, time: np.ndarray, load: FilmLoad) -> np.ndarray:
+def _spread(part: MotionPart, time: np.ndarray, load: FilmLoad) -> np.ndarray:
     """Standard deviation (n, k) of the impulse of a part's jumps of the load whose offset is not known."""
     share = np.diff(time, prepend=time[0])[:, None] / math.sqrt(12.0)
     return np.where(np.isfinite(load.offset), 0.0, _sudden(time, load.force[:, part.places])) * share
@@ -361,13 +355,13 @@ def _steps(K: np.ndarray, D: np.ndarray, M: np.ndarray, step: np.ndarray) -> np.
     return extrapolated(once, np.concatenate([once[:, :, :k], once[:, :, k:] @ M], axis=2) @ once)
 
 
-def _momenta(part: Part, time: np.ndarray, load: FilmLoad) -> np.ndarray:
+def _momenta(part: MotionPart, time: np.ndarray, load: FilmLoad) -> np.ndarray:
     """Momenta (n, k) of a part that steps have missed."""
     momentum, demanded = (np.nan_to_num(values[:, part.places]) for values in (load.momentum, load.demanded))
     return momentum + _bend(time, demanded) * np.diff(time, prepend=time[0])[:, None] ** 3 / 6.0
 
 
-def _masses(part: Part, load: FilmLoad) -> np.ndarray:
+def _masses(part: MotionPart, load: FilmLoad) -> np.ndarray:
     """Masses (n, k, k) of a part."""
     k, upper, place = len(part.rows), np.triu_indices(len(part.rows)), 3 * (part.places[0] // 2)
     M = np.zeros((len(load.mass), k, k))
@@ -378,7 +372,7 @@ def _masses(part: Part, load: FilmLoad) -> np.ndarray:
 
 
 def _terms(
-    part: Part,
+    part: MotionPart,
     time: np.ndarray,
     K: np.ndarray,
     D: np.ndarray,

@@ -46,7 +46,7 @@ from exudyn_ehd.coupling.items.objects import force_owner, object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.joint.step_error import LOAD_COLUMNS, SUDDEN, FilmLoad, Part, departure
+from exudyn_ehd.joint.step_error import LOAD_COLUMNS, SUDDEN, FilmLoad, MotionPart, departure
 from exudyn_ehd.status import SMALL
 
 UNKNOWN = FilmLoad.of(np.full(sum(LOAD_COLUMNS), np.nan))
@@ -164,7 +164,7 @@ class OuterLoad:
     ----------
     sides : (Side, Side)
         Housing and journal.
-    parts : tuple of Part
+    parts : tuple of MotionPart
         Parts of the wrench that do not share a mass.
 
     Attributes
@@ -175,7 +175,7 @@ class OuterLoad:
         Loads of the system that are functions of time, from the first state of a run on.
     """
 
-    def __init__(self, sides: tuple[Side, Side], parts: tuple[Part, ...]) -> None:
+    def __init__(self, sides: tuple[Side, Side], parts: tuple[MotionPart, ...]) -> None:
         self.sides, self.parts, self.rows = sides, parts, [row for part in parts for row in part.rows]
         self.load = UNKNOWN
         self.begin(None)

@@ -5,7 +5,7 @@ The equations of a user's ObjectFFRFreducedOrder, with an exact Jacobian.
 Exudyn differentiates that object by differences, by each of its coordinates and rates. Without its own terms
 (``computeFFRFterms=False``) it has neither forces nor mass, and its differences cost next to nothing, while its
 markers, sensors, loads and drawing go on. An ObjectGenericODE2 on the same two nodes has the equations instead
-(`exudyn_ehd.coupling.kinematics.floating_body`).
+(`exudyn_ehd.coupling.kinematics.flexible_bodies`).
 
 Check that the items of a joint still exist in its system, under the same numbers.
 """
@@ -23,7 +23,7 @@ from scipy.sparse import csc_matrix, csr_matrix, issparse
 
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items.bodies import body_of_node
-from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
+from exudyn_ehd.coupling.kinematics.flexible_bodies import BodyIntegrals, FloatingBody
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, node_side
 from exudyn_ehd.status import ROUNDING, SMALL, InputError, warn_user
 
