@@ -92,11 +92,9 @@ class LoadFunctions:
         if not self.calls:
             return math.nan, math.nan
         times, values = self._states(mbs, time)
-        off = departure(times, values)[-1]
-        is_straight = np.abs(off).max() <= SMALL * np.abs(values).max()
-        if is_straight or not self._departs(times, values):
+        if not self._departs(times, values):
             return math.nan, math.nan
-        beyond, _, _, lasting = self._impulse(mbs, time)
+        off, (beyond, _, _, lasting) = departure(times, values)[-1], self._impulse(mbs, time)
         return float(beyond @ off / (off @ off)), lasting
 
     def largest_change(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
@@ -124,8 +122,8 @@ class LoadFunctions:
         if len(times) < 4:
             return False
         sizes = np.linalg.norm(departure(times, values), axis=1)[2:]
-        last, now = np.diff(times)[1:] * sizes
-        return bool(last < SUDDEN * now or sizes[1] > UNRESOLVED * np.abs(values).max())
+        (last, now), largest = np.diff(times)[1:] * sizes, np.abs(values).max()
+        return bool(sizes[1] > SMALL * largest and (last < SUDDEN * now or sizes[1] > UNRESOLVED * largest))
 
     def _impulse(self, mbs: exu.MainSystem, time: float) -> tuple[np.ndarray, np.ndarray, float, float]:
         """Mean values (k,) beyond those of the chord, largest values (k,), and time of the largest change.

@@ -12,8 +12,7 @@ load.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 import exudyn as exu
@@ -36,7 +35,6 @@ NOT_HELD = (
     "CreateLubricatedJoint(axial=ehd.Held())."
 )
 NO_MASS = "{} moves without mass or inertia; give its body both, or hold it."
-FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
 # Angle by which rotors are turned to see that they are the same in all directions, rad, and how far they may differ.
 TURN, ISOTROPIC = 1.0, 1e-4
 # Smallest stiffness, or mass, over the largest, with rotations at the length of a bearing, that holds a body.
@@ -77,7 +75,7 @@ State: TypeAlias = tuple[dict[str, np.ndarray], tuple[FilmMemory, ...]]
 
 
 class EquilibriumSearch:
-    """Search for the equilibria of one system, whose films are switched off in Exudyn meanwhile (`films_off`).
+    """Search for the equilibria of one system, whose films are switched off in Exudyn meanwhile.
 
     Parameters
     ----------
@@ -262,23 +260,6 @@ class EquilibriumSearch:
             "a higher speed and come down in smaller steps, look at loads and clearances, and give films whose "
             "surfaces come to touch a contact (asperity=, contact=)."
         )
-
-
-@contextmanager
-def films_off(mbs: exu.MainSystem, joints: list[Joint]) -> Iterator[None]:
-    """Let Exudyn see no films: they are evaluated here, once per state."""
-    kept = []
-    try:
-        for number in [joint.objectNumber for joint in joints]:
-            kept += [(number, name, mbs.GetObjectParameter(number, name)["function"]) for name in FUNCTIONS]
-            mbs.SetObjectParameter(number, FUNCTIONS[0], lambda mbs, t, item, q, q_t: np.zeros(len(q)))
-            mbs.SetObjectParameter(number, FUNCTIONS[1], lambda mbs, t, item, q, *rest: np.zeros((len(q), len(q))))
-        yield
-    finally:
-        for number, name, function in kept:
-            mbs.SetObjectParameter(number, name, function)
-        for joint in joints:
-            joint.element.forget()
 
 
 def require_regular(
