@@ -244,24 +244,29 @@ def next_error(
 
     Returns
     -------
-    list of arrays, float, ndarray (3,)
+    list of arrays, float, ndarray (4,)
         The last one in m: error by a jump whose place in the step is known, in the step or behind it; displacement by
-        another jump, at an end of the step, and by the whole load in the step, both without inertia.
+        another jump, at an end of the step, and by the whole load in the step, both without inertia; error before the
+        step.
     """
-    missed, lag = missed_in_steps(time, motion[:, :4], motion[:, 4:8]), _lag(time, deflection)
-    after, used, moved, n, h = [], 0.0, np.zeros(3), time.size, time[-1] - time[-2]
-    entries = np.stack([tangents[0]] * (n - 1) + [tangents[1]])
+    missed, lag, n = missed_in_steps(time, motion[:, :4], motion[:, 4:8]), _lag(time, deflection), time.size
+    entries, h = np.stack([tangents[0]] * (n - 1) + [tangents[1]]), time[-1] - time[-2]
+    after, used, moved = [], 0.0, np.zeros(4)
     for part, state, (K, D) in zip(parts, before, _films(parts, entries), strict=True):
         places, k, lever, known = list(part.places), len(part.places), part.lever(length), slice(n - 1, n)
-        terms = _terms(part, time, K, D, motion, lag, load, known)
-        kept, new, _ = terms
+        kept, new, _ = terms = _terms(part, time, K, D, motion, lag, load, known)
         after.append(_errors(n, known, terms, state)[2])
         M, mean = _masses(part, load)[-1], 0.5 * (D[-1] + D[-2])
         mobility, *at_ends = lever * np.linalg.pinv(np.stack([mean, *D[-2:]]), rcond=1e-9)
         loads = math.sqrt(3.0) * _spread(part, time, load)[-1], h * load.force[-1, places]
-        moved[1:] += [max(float(np.linalg.norm(inverse @ impulse)) for inverse in at_ends) for impulse in loads]
+        moved[1:3] += [max(float(np.linalg.norm(inverse @ impulse)) for inverse in at_ends) for impulse in loads]
         memory = np.abs(np.linalg.eigvals(kept[-1])).max()
-        left = largest - lever * math.sqrt(float(np.sum(state[0, :k] ** 2 + np.diag(state[1:])[:k])))
+        # time for which a rate of the error goes on
+        m, d, s = (float(np.linalg.norm(matrix)) for matrix in (M, mean, K[-1]))
+        lasting = min(m / d if d > 0.0 else math.inf, math.sqrt(m / s) if s > 0.0 else math.inf) if m > 0.0 else 0.0
+        size = np.sum(state[0].reshape(2, k) ** 2, axis=1) + np.diag(state[1:]).reshape(2, k).sum(axis=1)
+        moved[3] += lever * math.sqrt(float(size[0]))
+        left = largest - lever * math.sqrt(float(size[0] + lasting**2 * size[1]))
         allowed = max((1.0 - memory) * largest, BUDGET * max(left, BUDGET * largest))
         # accelerations under constraints alternate: the smaller one of two momenta that agree in sign
         a, b = _momenta(part, time, load)[-2:]
@@ -445,9 +450,8 @@ def enough_steps(time: np.ndarray, omega: np.ndarray, error: np.ndarray, count: 
     step = float((np.diff(time[near]) / np.diff(count[near])).max())
     needed = float(time[-1] - time[0]) / step * math.sqrt(max(1.0, float(error[worst]) / GOAL))
     turns = abs(float(np.trapezoid(omega, time))) / (2.0 * math.pi)
-    if turns < 1.0:
-        return f"{_rounded(needed)} steps in all"
-    return f"{_rounded(needed / turns)} steps per turn of the journal"
+    whole = f"{_rounded(needed)} steps in all"
+    return whole if turns < 1.0 else f"{_rounded(needed / turns)} steps per turn of the journal"
 
 
 def _rounded(number: float) -> int:

@@ -76,13 +76,16 @@ class LoadFunctions:
             function = data[f"{name}UserFunction"]
             if isinstance(function, dict) and callable(function["function"]):
                 self.calls.append((function["function"], np.asarray(data[name]).tolist()))
-        # times and values of the last four accepted states
+        # times and values of the last four accepted states, and whether the loads have departed in the last step
         self.times, self.values = np.empty(0), np.empty((0, 0))
+        self.departed = False
 
     def accept(self, mbs: exu.MainSystem, time: float) -> None:
         """Go on behind an accepted state."""
         if self.calls:
-            self.times, self.values = self._states(mbs, time)
+            times, values = self._states(mbs, time)
+            self.departed = self._departs(times, values)
+            self.times, self.values = times, values
 
     def offset(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
         """Offset in the step from the last accepted state to a time, and the share of the step in which loads change.
@@ -92,9 +95,11 @@ class LoadFunctions:
         if not self.calls:
             return math.nan, math.nan
         times, values = self._states(mbs, time)
-        if not self._departs(times, values):
+        off = departure(times, values)[-1]
+        is_straight = np.abs(off).max() <= SMALL * np.abs(values).max()
+        if is_straight or not (self.departed or self._departs(times, values)):
             return math.nan, math.nan
-        off, (beyond, _, _, lasting) = departure(times, values)[-1], self._impulse(mbs, time)
+        beyond, _, _, lasting = self._impulse(mbs, time)
         return float(beyond @ off / (off @ off)), lasting
 
     def largest_change(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
@@ -122,8 +127,8 @@ class LoadFunctions:
         if len(times) < 4:
             return False
         sizes = np.linalg.norm(departure(times, values), axis=1)[2:]
-        (last, now), largest = np.diff(times)[1:] * sizes, np.abs(values).max()
-        return bool(sizes[1] > SMALL * largest and (last < SUDDEN * now or sizes[1] > UNRESOLVED * largest))
+        last, now = np.diff(times)[1:] * sizes
+        return bool(last < SUDDEN * now or sizes[1] > UNRESOLVED * np.abs(values).max())
 
     def _impulse(self, mbs: exu.MainSystem, time: float) -> tuple[np.ndarray, np.ndarray, float, float]:
         """Mean values (k,) beyond those of the chord, largest values (k,), and time of the largest change.

@@ -7,15 +7,16 @@ velocities consistent.
 Steps chosen by the error that they make in the films.
 
 Behind Newton's method of a step, `exudyn_ehd.joint.step_error.next_error` says for every joint what the step has missed
-over what it may miss. Far too much, and Exudyn repeats the step by half of it (its function after Newton's method
-recommends the size); else the function after the step sets the size of the next one. What a step misses grows with the
-cube of its size, and what it may miss with its size: a step's demand is the root of the quotient over its size, and the
-next one follows the largest demand of late.
+over what it may miss. Far too much, and Exudyn repeats the step by half of it or more (its function after Newton's
+method recommends the size); else the function after the step sets the size of the next one. What a step misses grows
+with the cube of its size, and what it may miss with its size: a step's demand is the root of the quotient over its
+size, and the next one follows the largest demand of late.
 
-A step in which a load jumps is repeated as long as the jump would make more than the error that is asked for. Where the
-load is a function of time its jump is found within the step; the integration takes jumps to be in the middle of their
-step, and the next step, or the one after it, has the jump there. So a pulse within a step is met, too. Jumps of other
-loads count as at an end of the step, which is halved.
+A step in which a load jumps is repeated as long as the jump would make more than what earlier errors leave of the error
+that is asked for, or more than half of it where they leave less. Where the load is a function of time its jump is found
+within the step; the integration takes jumps to be in the middle of their step, and the next step, or the one after it,
+has the jump there. So a pulse within a step is met, too. Jumps of other loads count as at an end of the step, which is
+halved.
 
 A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
 over to the new one within a step or two. So sizes grow by a tenth at a time, and smaller changes are left out.
@@ -210,11 +211,16 @@ def warn_of_misfit(states: Iterable[tuple[str, np.ndarray, JournalBearing]], ste
 
 # First and largest step, in steps of the settings.
 FIRST, LARGEST = 0.125, 4.0
-# Factors of the size at once: the smallest, and the largest, below which no change is worth its own error. As fast as
-# sizes may grow, what earlier steps have asked for fades.
-SHRINK, GROW = 0.5, 1.1
+# Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
+SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
+# Part of its demand that a step hands on.
+KEPT = 0.94
 # Allowed error of steps over the error asked for: errors of successive steps cancel in part. Larger: longer steps.
 CANCELLED = 1.5
+# Least share of a step, at its beginning and its end, in which none ends that is repeated for a jump in its middle.
+END_OF_STEP = 0.25
+# Least share of the error asked for that a jump may make beside the error that is left from earlier ones.
+LEAST_OF_ERROR = 0.5
 
 
 _StepState: TypeAlias = tuple[float, np.ndarray, tuple[float, float], FilmLoad, np.ndarray | None]
@@ -225,6 +231,8 @@ class _JointError:
 
     def __init__(self, film: FilmElement, error: float) -> None:
         self.film, self.error = film, error
+        # start and size of the last step tried, and what a jump in it may make
+        self.jump = (math.nan, 0.0, 0.0)
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_StepState] = []
         self.now: _StepState | None = None
@@ -260,12 +268,25 @@ class _JointError:
         if functions is not None:
             share, place = functions.largest_change(mbs, time)
             jump = jump if math.isfinite(loads.offset[-1, 0]) else share * moved[2]
+            asked = max(asked - moved[3], LEAST_OF_ERROR * asked)
             if jump > asked:
+                most = step * min(1.0 - END_OF_STEP, max(END_OF_STEP, math.sqrt(asked / jump)))
                 # a whole number of steps and a half to the jump, so that the last one has it in its middle
-                steps = max(1, math.ceil((place - start) / (SHRINK * step) + 0.5))
-                self.wanted = max((place - start) / (steps - 0.5), SHRINK * step * asked / jump)
+                centred = (place - start) / (max(1.0, math.ceil((place - start) / most + 0.5)) - 0.5)
+                self.wanted = max(centred, min(most, 0.5 * step * asked / jump))
                 return max(used, REFUSED)
-        return max(used, REFUSED) if moved[1] > asked else used
+        less = self._asks_for_less(start, step, moved[1], asked)
+        return max(used, REFUSED) if less else used
+
+    def _asks_for_less(self, start: float, step: float, error: float, allowed: float) -> bool:
+        """Return whether a shorter step is worth its while for a jump that may make an ``error``.
+
+        In half a step a jump makes half the error at most. Loads that ring grow as 1 / h and make the same error: a
+        step is not repeated again where the error falls by less than the root of what the step does.
+        """
+        (last_start, last_step, last_error), self.jump = self.jump, (start, step, error)
+        rings = start == last_start and error > last_error * math.sqrt(step / last_step)
+        return error > allowed and not rings
 
     def accept(self) -> None:
         """Go on behind the step at hand."""
@@ -319,7 +340,7 @@ class StepSize:
         smallest = mbs.sys["dynamicSolver"].it.minStepSize
         if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + SMALL):
             return [error, wanted]
-        step = min(SHRINK * step, *(joint.wanted for joint in self.joints))
+        step = min(step * max(SHRINK, self.used**-0.5), *(joint.wanted for joint in self.joints))
         return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
 
     def choose(self, own: Any, mbs: exu.MainSystem, time: float) -> bool:
@@ -340,10 +361,10 @@ class StepSize:
             # repeated, here or by Exudyn
             self.size, self.demand = step, max(self.demand, 1.0 / step)
         elif self.used is not None:
-            self.demand = max(math.sqrt(self.used) / step, self.demand / GROW)
+            self.demand = max(math.sqrt(self.used) / step, KEPT * self.demand)
             wanted = min(1.0 / self.demand if self.demand > 0.0 else math.inf, LARGEST * self.usual)
             factor = wanted / self.size
-            if factor * GROW < 1.0 or factor > GROW:
+            if factor < WORTH or factor > GROW:
                 self.size *= min(GROW, max(SHRINK, factor))
 
     def _landing(self, time: float) -> float:
