@@ -39,6 +39,7 @@ import dataclasses
 import functools
 
 import numpy as np
+from numba import njit
 
 _BORE = 10
 # Weights of the velocities' errors in the last steps, the last one first, by the number of known errors.
@@ -89,18 +90,29 @@ class StepStart:
             return motion
         if step * step * step * self._largest < SMALLEST_MISS * self.clearance:
             return motion
-        out, change = motion.copy(), step * step * self._expected
-        out[4:8] += change[:4]
-        if change.size > 4:
-            out[_BORE + change.size - 4 :] += change[4:]
+        out = motion.copy()
+        _add_rates(self._expected, step * step, out)
         return out
 
 
-def _pose_and_rates(motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pose and rates (4 + k,) of a motion (10 + 2 k,)."""
-    (place, rate, _), bore = np.split(motion[:_BORE], (4, 8)), motion[_BORE:]
-    k = bore.size // 2
-    return np.concatenate((place, bore[:k])), np.concatenate((rate, bore[k : 2 * k]))
+@njit(cache=True)
+def _add_rates(expected, factor, motion_out):
+    """Add what is expected (4 + k,), times a factor, to the rates of a motion (10 + 2 k,)."""
+    size = expected.size
+    for j in range(size):
+        motion_out[4 + j if j < 4 else 2 + size + j] += factor * expected[j]
+
+
+@njit(cache=True)
+def _misses(motion, old, step, known, misses_out):
+    """Write the error of the velocities in a step between two motions (10 + 2 k,), then the ``known`` earlier ones."""
+    size = misses_out.shape[1]
+    for j in range(size):
+        place, rate = (j, 4 + j) if j < 4 else (6 + j, 2 + size + j)
+        slope, mean = (motion[place] - old[place]) / step, 0.5 * (motion[rate] + old[rate])
+        misses_out[0, j] = (slope - mean) / (step * step)
+        for k in range(known.shape[0]):
+            misses_out[1 + k, j] = known[k, j]
 
 
 def next_start(before: StepStart | None, motion: np.ndarray, time: float, clearance: float) -> StepStart:
@@ -117,12 +129,13 @@ def next_start(before: StepStart | None, motion: np.ndarray, time: float, cleara
     clearance : float
         m.
     """
-    pose, rate = _pose_and_rates(motion)
+    k = (motion.size - _BORE) // 2
     if before is None or before.time > time:
-        return StepStart(time, motion, 0.0, np.empty((0, pose.size)), clearance)
+        return StepStart(time, motion, 0.0, np.empty((0, 4 + k)), clearance)
     if before.time == time:
         return dataclasses.replace(before, motion=motion)
-    step, (old_pose, old_rate) = time - before.time, _pose_and_rates(before.motion)
+    step, old = time - before.time, before.motion
     known = before.misses[:2] if step <= LARGEST_GROWTH * before.step else before.misses[:0]
-    missed = ((pose - old_pose) / step - 0.5 * (rate + old_rate)) / (step * step)
-    return StepStart(time, motion, step, np.vstack((missed, known)), clearance)
+    misses = np.empty((1 + len(known), 4 + k))
+    _misses(motion, old, step, known, misses)
+    return StepStart(time, motion, step, misses, clearance)
