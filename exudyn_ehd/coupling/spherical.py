@@ -14,22 +14,21 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.api import equip, require_arguments
 from exudyn_ehd.coupling.contract import Data, Index, JointModel, Trial
-from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.joint_frame import move_to_start, place_joint
 from exudyn_ehd.coupling.kinematics.relative import BALL, ball_motion
-from exudyn_ehd.coupling.record.history import PACK, JointHistory, make_row
+from exudyn_ehd.coupling.record.history import JointHistory, make_row
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint
 from exudyn_ehd.coupling.watch.solver_state import StepControl
+from exudyn_ehd.joint import step_error
 from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, steady_spherical
-from exudyn_ehd.joint.step_error import pack_of_ball
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type, require_vector
 
@@ -69,7 +68,7 @@ class SphericalFailures(Failures):
 class SphericalFilmElement(FilmElement):
     """Film between the sides of a socket and of a ball; parameters as for `FilmElement`."""
 
-    kinematics, blocks, messages = BALL, outer_load.BALL, SphericalFailures
+    kinematics, parts, messages = BALL, step_error.BALL, SphericalFailures
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film; its motion is place, velocity, angular velocity and 0."""
@@ -78,10 +77,7 @@ class SphericalFilmElement(FilmElement):
         motion = trial.motion[[0, 1, 2, 4, 5, 6, 8, 9, 10, 3]]
         ratio = float(np.linalg.norm(motion[:3])) / self.model.bearing.radial_clearance
         wrench, quantities = trial.evaluation.wrench, trial.evaluation.quantities()
-        row = make_row(time, motion, (ratio, ratio), wrench, quantities, load=self.outer.load)
-        if self.steps.tangent is not None:
-            row[PACK] = pack_of_ball(self.steps.tangent)
-        return row
+        return make_row(time, motion, (ratio, ratio), wrench, quantities, self.steps.tangent, self.outer.load)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)

@@ -22,9 +22,10 @@ import math
 
 import numpy as np
 
+from exudyn_ehd.status import SMALL
+
 # Share of a step in each stage of backward Euler: the one for which both, extrapolated, are of second order.
 GAMMA = 1.0 - math.sqrt(0.5)
-ROOT = math.sqrt(2.0)
 # Time, over the step, with which rates count beside poses in the way between the ends. 332 errors above 2 % by random
 # jumps (seeds below 4130 of `tests/mechanisms/test_load_jumps.py`) are told at 0.69 to 1.7 of their size; without
 # iterations for s at 0.59 to 1.9 with 1.4 to 4. Less misses how the rupture line moves with the rate (0.25: 0.29 to
@@ -36,8 +37,6 @@ PARTS = 8
 # Iterations for s in a stage. With one, a jump that turns the film within a part of the step is missed. With 1, 2 and 3
 # the logarithm of the estimate over the error has a standard deviation of 0.084, 0.073 and 0.072 (the same errors).
 ITERATIONS = 3
-# Least share of a step before a jump, in it and behind it, so that a film without mass divides by no zero.
-SHORTEST = 1e-6
 # Determinant of a matrix scaled to 1, above which it resists motion in all directions.
 RESISTS = 1e-12
 
@@ -76,8 +75,9 @@ def errors_of_jumps(
     h, change = step[:, None], load[1] - load[0]
     square = np.sum(change * change, axis=1)
     share = 0.5 - np.sum(beyond * change, axis=1) / np.where(square > 0.0, square, 1.0)
-    share = np.clip(share, 1.5 * SHORTEST, 1.0 - 1.5 * SHORTEST)[:, None]
-    changing = np.clip(lasting[:, None], SHORTEST, 2.0 * np.minimum(share, 1.0 - share) - 2.0 * SHORTEST)
+    # a film without mass divides by no zero where no share of the step vanishes
+    share = np.clip(share, 1.5 * SMALL, 1.0 - 1.5 * SMALL)[:, None]
+    changing = np.clip(lasting[:, None], SMALL, 2.0 * np.minimum(share, 1.0 - share) - 2.0 * SMALL)
     before, after = load + beyond - (0.5 - share) * change
     lever = np.square(RATE_LEVER * h)
     way = np.concatenate([pose[1] - pose[0], lever * (rate[1] - rate[0])], axis=1)
@@ -109,8 +109,13 @@ def errors_of_jumps(
         for i in range(PARTS):
             once = stage(p, v, GAMMA * tau, start + (i + GAMMA) / PARTS * way_of_load)
             twice = stage(*once, GAMMA * tau, start + (i + 2.0 * GAMMA) / PARTS * way_of_load)
-            p, v = ((1.0 + ROOT) * b - ROOT * a for a, b in zip(once, twice, strict=True))
+            p, v = (extrapolated(a, b) for a, b in zip(once, twice, strict=True))
     return np.where(stiff[:, 0], np.concatenate([pose[1] - p, rate[1] - v], axis=1), 0.0)
+
+
+def extrapolated(once: np.ndarray, twice: np.ndarray) -> np.ndarray:
+    """Result of second order from the results behind one stage and behind both."""
+    return (1.0 + math.sqrt(2.0)) * twice - math.sqrt(2.0) * once
 
 
 def resists(matrix: np.ndarray) -> np.ndarray:

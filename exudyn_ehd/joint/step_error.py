@@ -50,27 +50,74 @@ order there: with `ElrodAdams` the estimate is some 0.4 to 0.9 of the error.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.joint.jump_error import GAMMA, errors_of_jumps, resists
+from exudyn_ehd.joint.jump_error import GAMMA, errors_of_jumps, extrapolated, resists
 
-# Entries of a tangent (6, 10), rows after each other: dF/dp, dF/dr of translations, and of tilts.
-BLOCKS = np.array([[10 * i + j for i in (k, k + 1) for j in (m, m + 1)] for k, m in ((0, 0), (0, 4), (3, 2), (3, 6))])
-# Rows of a tangent and places of the pose that go together.
-JOURNAL, BALL = (([0, 1], [0, 1]), ([3, 4], [2, 3])), (([0, 1, 2], [0, 1, 2]),)
-# Entries of a symmetric matrix that a ball's row keeps.
-_UPPER = np.triu_indices(3)
+
+class MotionPart(NamedTuple):
+    """Components of a motion that share mass, stiffness and damping.
+
+    Attributes
+    ----------
+    rows, places : tuples of k int
+        In the wrench, and in the pose and the columns of a `FilmLoad`; in a motion rates lie four behind the pose.
+    """
+
+    rows: tuple[int, ...]
+    places: tuple[int, ...]
+
+    def lever(self, length: float) -> float:
+        """Length that turns the part's pose into a distance: half the bearing's for tilts, 1 for translations."""
+        return 0.5 * length if self.rows[0] else 1.0
+
+
+# Translations and tilts of a journal, translations of a ball.
+JOURNAL: tuple[MotionPart, ...] = (MotionPart((0, 1), (0, 1)), MotionPart((3, 4), (2, 3)))
+BALL: tuple[MotionPart, ...] = (MotionPart((0, 1, 2), (0, 1, 2)),)
+
+
+class FilmLoad(NamedTuple):
+    """Load on a film at n accepted states, with what the steps to them have missed; nan where it is not known.
+
+    Attributes
+    ----------
+    force : (n, 4) array
+        N and N m, in the order of the parts.
+    offset : (n, 1) array
+        Mean load in the step less the mean of its ends, over the departure of the load; nan where no function tells it.
+    lasting : (n, 1) array
+        Share of the step in which the load changes.
+    mass : (n, 6) array
+        Upper triangles of the parts' masses, kg and kg m^2.
+    momentum : (n, 4) array
+        Momentum missed with the trapezoid of the accelerations, N s and N m s.
+    demanded : (n, 4) array
+        Masses times the accelerations that the equations of motion demand, N and N m.
+    """
+
+    force: np.ndarray
+    offset: np.ndarray
+    lasting: np.ndarray
+    mass: np.ndarray
+    momentum: np.ndarray
+    demanded: np.ndarray
+
+    @classmethod
+    def of(cls, columns: np.ndarray) -> FilmLoad:
+        """Load from columns (n, 20) side by side."""
+        return cls(*np.split(columns, np.cumsum(LOAD_COLUMNS)[:-1], axis=-1))
+
+
+# Numbers of columns of a `FilmLoad`.
+LOAD_COLUMNS = (4, 1, 1, 6, 4, 4)
 # First state whose error is known.
 FIRST = 3
-# At the beginning of a record, see `errors_behind`.
-NO_ERROR, NO_BALL_ERROR = np.zeros((2, 5, 4)), np.zeros((1, 7, 6))
-# Columns of a load (n, 20) behind the load itself (4,): offset, share of the step in which it changes, masses (three of
-# every two rows, or six), momentum missed with the trapezoid of the accelerations (4,), and masses times the
-# accelerations demanded (4,).
-OFFSET, LASTING, MASS, MOMENTUM, DEMANDED, LOADS = 4, 5, 6, 12, 16, 20
 # Least gap against which errors count, share of the clearance.
 SMALLEST_GAP_SHARE = 1e-3
 # Cosine of the turn of a peak in a step beyond which it has jumped.
@@ -84,14 +131,27 @@ JUMP = 0.9
 SUDDEN = 0.3
 # Error of a step over its allowed error, from which it is repeated.
 REFUSED = 8.0
-# What a step may miss of the error that is left, and of the largest one at least.
-BUDGET, SMALLEST_BUDGET = 0.1, 0.01
+# What a step may miss of the error that is left, which counts as this share of the largest one at least.
+BUDGET = 0.1
 # The error that the number of steps aims at, less than half of the one that is told: the first steps are not known.
 GOAL = 0.02
 
 
+@functools.cache
+def recorded_entries(parts: tuple[MotionPart, ...]) -> tuple[np.ndarray, ...]:
+    """Rows and columns of the entries of a tangent (6, 10) that errors need: dF/dp and dF/dr of all parts."""
+    pairs = [(row, place + shift) for part in parts for shift in (0, 4) for row in part.rows for place in part.places]
+    return tuple(np.array(pairs).T)
+
+
+def no_error(parts: tuple[MotionPart, ...]) -> list[np.ndarray]:
+    """Return the errors at the beginning of a record: of each part error and rate, above their variance (2 k, 2 k)."""
+    return [np.zeros((1 + 2 * len(part.rows), 2 * len(part.rows))) for part in parts]
+
+
 def errors_behind(
-    before: np.ndarray,
+    parts: tuple[MotionPart, ...],
+    before: Sequence[np.ndarray],
     time: np.ndarray,
     motion: np.ndarray,
     tangent: np.ndarray,
@@ -99,8 +159,8 @@ def errors_behind(
     clearance: float,
     length: float,
     deflection: np.ndarray | None,
-    load: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
+    load: FilmLoad,
+) -> tuple[np.ndarray, Sequence[np.ndarray]]:
     """Error (n,) of the gap over the minimum film thickness, of every accepted state, and ``before`` behind the last.
 
     The first `FIRST` states have nan, as those before the first tangent; a record in parts has the errors of the whole
@@ -108,100 +168,51 @@ def errors_behind(
 
     Parameters
     ----------
-    before : (2, 5, 4) array
-        Of places and of slopes behind the first `FIRST` states: error and its rate, and their variance (4, 4) below;
-        zero (`NO_ERROR`) at the beginning of a record.
+    parts : tuple of MotionPart
+        `JOURNAL` or `BALL`.
+    before : sequence of arrays
+        `no_error` at the beginning of a record, or what was returned.
     time : (n,) array
         s.
-    motion : (n, 10) array
-        With the rates that the film was told.
-    tangent : (n, 4, 4) array
-        `BLOCKS` of the tangents; nan where there was none: the last one counts.
+    motion : (n, 8) array
+        Pose and rates that the film was told.
+    tangent : (n, m) array
+        `recorded_entries` of the tangents; nan where there was none: the last one counts.
     minimum_gap : (n,) array
         m.
     clearance, length : float
         m.
     deflection : (n, 2) array, optional
         Deflection of a liner, where it is largest, m.
-    load : (n, 20) array
-        On the film, N and N m (rows of `JOURNAL`), nan where it is not known: no jump. Behind it, see `OFFSET`: offset,
-        nan where it is not known, masses (kg, kg m^2), momentum missed (N s, N m s) and forces of inertia (N, N m).
+    load : FilmLoad
+        On the film; nan where it is not known: no jump.
     """
     out = np.full(time.size, np.nan)
-    last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0, 0]), np.arange(time.size), -1))
+    last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0]), np.arange(time.size), -1))
     # rows before the first tangent know no error
-    known = slice(max(FIRST, int(np.count_nonzero(last < 0))), None)
-    if time.size <= FIRST or last[-1] < 0:
+    first = int(np.count_nonzero(last < 0))
+    known = slice(max(FIRST, first), None)
+    if time.size <= known.start:
         return out, before
-    lag = _lag(time, deflection)
-    square, ends, after = np.zeros(time.size), np.zeros((2, time.size, 2)), np.zeros_like(before)
-    for k, signs in ((0, (1.0, 1.0)), (2, (-0.5 * length, 0.5 * length))):
-        K, D = (-tangent[last, k + j].reshape(-1, 2, 2) for j in (0, 1))
-        parts = _parts(time, K, D, (motion[:, k : k + 2], motion[:, 4 + k : 6 + k]), lag[:, k : k + 2], load, k, known)
-        error, variance, after[k // 2] = _errors(time.size, known, parts, before[k // 2])
-        ends += np.multiply.outer(signs, error)
-        square += signs[1] ** 2 * variance
+    lag, after = _lag(time, deflection), []
+    square, ends = np.zeros(time.size), np.zeros((2, time.size, len(parts[0].rows)))
+    for part, state, film in zip(parts, before, _films(parts, tangent[np.maximum(last, first)]), strict=True):
+        terms, lever = _terms(part, time, *film, motion, lag, load, known), part.lever(length)
+        error, variance, state = _errors(time.size, known, terms, state)
+        after.append(state)
+        ends += np.multiply.outer((-lever if part.rows[0] else lever, lever), error)
+        square += lever**2 * variance
     whole = np.sqrt(np.max(np.sum(ends**2, axis=2), axis=0) + square)
     out[known] = (whole / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance))[known]
     return out, after
 
 
-def pack_of_ball(tangent: np.ndarray) -> np.ndarray:
-    """Return the recorded part (15,) of a ball's tangent (3, >= 7) to place, 0 and velocity: K, symmetric part of D."""
-    damping = -tangent[:3, 4:7]
-    return np.concatenate([-tangent[:3, :3].ravel(), (0.5 * (damping + damping.T))[_UPPER]])
-
-
-def errors_of_ball(
-    before: np.ndarray,
-    time: np.ndarray,
-    place: np.ndarray,
-    velocity: np.ndarray,
-    packed: np.ndarray,
-    minimum_gap: np.ndarray,
-    clearance: float,
-    load: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Error (n,) of a ball's place over the minimum film thickness, of every accepted state, and ``before`` behind.
-
-    See `errors_behind`.
-
-    Parameters
-    ----------
-    before : (1, 7, 6) array
-        `NO_BALL_ERROR` at the beginning of a record.
-    time : (n,) array
-        s.
-    place, velocity : (n, 3) arrays
-        m, and m/s as the film was told.
-    packed : (n, 20) array
-        `pack_of_ball` of the tangents; nan where there was none: the last one counts.
-    minimum_gap : (n,) array
-        m.
-    clearance : float
-        m.
-    load : (n, 20) array
-        On the ball, N; see `errors_behind`.
-    """
-    out = np.full(time.size, np.nan)
-    last = np.maximum.accumulate(np.where(np.isfinite(packed[:, 0]), np.arange(time.size), -1))
-    first = max(FIRST, int(np.count_nonzero(last < 0)))
-    if time.size <= first:
-        return out, before
-    K, D = packed[last, :9].reshape(-1, 3, 3), np.empty((time.size, 3, 3))
-    D[:, _UPPER[0], _UPPER[1]] = D[:, _UPPER[1], _UPPER[0]] = packed[last, 9:]
-    known = slice(first, None)
-    parts = _parts(time, K, D, (place, velocity), np.zeros_like(place), load, 0, known)
-    error, variance, after = _errors(time.size, known, parts, before[0])
-    out[known] = np.sqrt(np.sum(error**2, axis=1) + variance)[known]
-    return out / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance), after[None]
-
-
 def next_error(
+    parts: tuple[MotionPart, ...],
     time: np.ndarray,
     motion: np.ndarray,
     tangents: tuple[np.ndarray, np.ndarray],
-    load: np.ndarray,
+    load: FilmLoad,
     before: Sequence[np.ndarray],
     length: float,
     largest: float,
@@ -214,16 +225,18 @@ def next_error(
 
     Parameters
     ----------
+    parts : tuple of MotionPart
+        `JOURNAL` or `BALL`.
     time : (n,) array
         Times of the last states, three or more, six to tell all pulses from ringing, s.
-    motion : (n, 10) array
+    motion : (n, 8) array
         There, with the rates that the film was told.
-    tangents : two (6, 10) arrays
-        Tangents of the film's wrench, at the start of the step and at its end.
-    load : (n, 20) array
-        On the film, as for `errors_behind` or `errors_of_ball`.
+    tangents : two (m,) arrays
+        `recorded_entries` of the tangents of the film's wrench, at the start of the step and at its end.
+    load : FilmLoad
+        On the film.
     before : sequence of arrays
-        Errors at the start of the step: `NO_ERROR`, `NO_BALL_ERROR` or what was returned.
+        Errors at the start of the step: `no_error`, or what was returned.
     length, largest : float
         Length of the bearing, and allowed error of the gap, m.
     deflection : (n, 2) array, optional
@@ -236,39 +249,42 @@ def next_error(
         another jump, at an end of the step, and by the whole load in the step, both without inertia; error before the
         step.
     """
-    missed, lag = missed_in_steps(time, motion[:, :4], motion[:, 4:8]), _lag(time, deflection)
-    after, used, moved, n, h = [], 0.0, np.zeros(4), time.size, time[-1] - time[-2]
-    for (rows, places), state in zip(BALL if len(before) == 1 else JOURNAL, before, strict=True):
-        K, D = (
-            np.stack([-tangents[i][rows][:, np.add(places, shift)] for i in (*(0,) * (n - 1), 1)]) for shift in (0, 4)
-        )
-        k, first, lever = len(rows), places[0], 1.0 if rows[0] == 0 else 0.5 * length
-        known, motions = slice(n - 1, n), (motion[:, places], motion[:, np.add(places, 4)])
-        parts = _parts(time, K, D, motions, lag[:, places], load, first, known)
-        after.append(_errors(n, known, parts, state)[2])
-        M, mean = _masses(load[-1:], first, k)[0], 0.5 * (D[-1] + D[-2])
-        mobility = lever * np.linalg.pinv(mean, rcond=1e-9)
-        impulse = _momenta(time, load, first, k)
-        soft = lever * np.linalg.pinv(D[-2:], rcond=1e-9)
-        loads = math.sqrt(3.0) * _spread(time, load[:, places], load[:, OFFSET])[-1], h * load[-1, places]
-        moved[1:3] += [float(np.linalg.norm(soft @ p, axis=1).max()) for p in loads]
-        kept = np.abs(np.linalg.eigvals(parts[0][-1])).max()
+    missed, lag, n = missed_in_steps(time, motion[:, :4], motion[:, 4:8]), _lag(time, deflection), time.size
+    entries, h = np.stack([tangents[0]] * (n - 1) + [tangents[1]]), time[-1] - time[-2]
+    after, used, moved = [], 0.0, np.zeros(4)
+    for part, state, (K, D) in zip(parts, before, _films(parts, entries), strict=True):
+        places, k, lever, known = list(part.places), len(part.places), part.lever(length), slice(n - 1, n)
+        kept, new, _ = terms = _terms(part, time, K, D, motion, lag, load, known)
+        after.append(_errors(n, known, terms, state)[2])
+        M, mean = _masses(part, load)[-1], 0.5 * (D[-1] + D[-2])
+        mobility, *at_ends = lever * np.linalg.pinv(np.stack([mean, *D[-2:]]), rcond=1e-9)
+        loads = math.sqrt(3.0) * _spread(part, time, load)[-1], h * load.force[-1, places]
+        moved[1:3] += [max(float(np.linalg.norm(inverse @ impulse)) for inverse in at_ends) for impulse in loads]
+        memory = np.abs(np.linalg.eigvals(kept[-1])).max()
         # time for which a rate of the error goes on
         m, d, s = (float(np.linalg.norm(matrix)) for matrix in (M, mean, K[-1]))
         lasting = min(m / d if d > 0.0 else math.inf, math.sqrt(m / s) if s > 0.0 else math.inf) if m > 0.0 else 0.0
         size = np.sum(state[0].reshape(2, k) ** 2, axis=1) + np.diag(state[1:]).reshape(2, k).sum(axis=1)
         moved[3] += lever * math.sqrt(float(size[0]))
         left = largest - lever * math.sqrt(float(size[0] + lasting**2 * size[1]))
-        allowed = max((1.0 - kept) * largest, BUDGET * left, SMALLEST_BUDGET * largest)
+        allowed = max((1.0 - memory) * largest, BUDGET * max(left, BUDGET * largest))
         # accelerations under constraints alternate: the smaller one of two momenta that agree in sign
-        a, b = impulse[-2:]
+        a, b = _momenta(part, time, load)[-2:]
         steady = np.where(a * b > 0.0, np.sign(b) * np.minimum(np.abs(a), np.abs(b)), 0.0)
         own = lever * (missed - lag)[-1, places] + mobility @ steady
-        if math.isfinite(load[-1, OFFSET]):
-            own = lever * parts[1][-1, :k] + mobility @ M @ parts[1][-1, k:]
-            moved[0] += max(float(np.linalg.norm(lever * parts[1][-1, :k])), float(np.linalg.norm(own)))
+        if math.isfinite(load.offset[-1, 0]):
+            own = lever * new[-1, :k] + mobility @ M @ new[-1, k:]
+            moved[0] += max(float(np.linalg.norm(lever * new[-1, :k])), float(np.linalg.norm(own)))
         used += float(np.linalg.norm(own)) / allowed
     return after, used, np.nan_to_num(moved)
+
+
+def _films(parts: tuple[MotionPart, ...], entries: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Stiffness and damping (n, k, k) of the film in all parts, from `recorded_entries` (n, m) of its tangents."""
+    sizes = [len(part.rows) for part in parts]
+    blocks = np.split(-entries, np.cumsum([2 * k * k for k in sizes]), axis=1)
+    whole = [block.reshape(-1, 2, k, k) for k, block in zip(sizes, blocks, strict=False)]
+    return [(block[:, 0], block[:, 1]) for block in whole]
 
 
 def _bend(time: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -328,10 +344,10 @@ def _outgrown(steps: np.ndarray, off: np.ndarray) -> np.ndarray:
     return earlier < SUDDEN * size
 
 
-def _spread(time: np.ndarray, load: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """Standard deviation (n, k) of the impulse of jumps of a load (n, k) whose ``offset`` (n,) is not known."""
-    share = np.diff(time, prepend=time[0]) / math.sqrt(12.0)
-    return np.where(np.isfinite(offset)[:, None], 0.0, _sudden(time, load)) * share[:, None]
+def _spread(part: MotionPart, time: np.ndarray, load: FilmLoad) -> np.ndarray:
+    """Standard deviation (n, k) of the impulse of a part's jumps of the load whose offset is not known."""
+    share = np.diff(time, prepend=time[0])[:, None] / math.sqrt(12.0)
+    return np.where(np.isfinite(load.offset), 0.0, _sudden(time, load.force[:, part.places])) * share
 
 
 def _steps(K: np.ndarray, D: np.ndarray, M: np.ndarray, step: np.ndarray) -> np.ndarray:
@@ -340,73 +356,72 @@ def _steps(K: np.ndarray, D: np.ndarray, M: np.ndarray, step: np.ndarray) -> np.
     S = M + h * (D + h * K)
     stiff = resists(S)
     rate = np.linalg.inv(np.where(stiff, S, np.eye(k))) * stiff
-    part = np.block([[np.eye(k) * stiff - h * h * (rate @ K), h * rate], [-h * (rate @ K), rate]])
-    twice = np.concatenate([part[:, :, :k], part[:, :, k:] @ M], axis=2) @ part
-    return (1.0 + math.sqrt(2.0)) * twice - math.sqrt(2.0) * part
+    once = np.block([[np.eye(k) * stiff - h * h * (rate @ K), h * rate], [-h * (rate @ K), rate]])
+    return extrapolated(once, np.concatenate([once[:, :, :k], once[:, :, k:] @ M], axis=2) @ once)
 
 
-def _momenta(time: np.ndarray, load: np.ndarray, first: int, k: int) -> np.ndarray:
-    """Momenta (n, k) that steps have missed, of the columns of a load (n, 20) from ``first`` on."""
-    known, h = np.nan_to_num(load), np.diff(time, prepend=time[0])[:, None]
-    return known[:, MOMENTUM + first :][:, :k] + _bend(time, known[:, DEMANDED + first :][:, :k]) * h**3 / 6.0
+def _momenta(part: MotionPart, time: np.ndarray, load: FilmLoad) -> np.ndarray:
+    """Momenta (n, k) of a part that steps have missed."""
+    momentum, demanded = (np.nan_to_num(values[:, part.places]) for values in (load.momentum, load.demanded))
+    return momentum + _bend(time, demanded) * np.diff(time, prepend=time[0])[:, None] ** 3 / 6.0
 
 
-def _masses(load: np.ndarray, first: int, k: int) -> np.ndarray:
-    """Masses (n, k, k) of the columns of a load (n, 20) from ``first`` on."""
-    M, upper = np.zeros((len(load), k, k)), np.triu_indices(k)
-    mass = np.nan_to_num(load[:, MASS + 3 * (first // 2) :][:, : upper[0].size])
+def _masses(part: MotionPart, load: FilmLoad) -> np.ndarray:
+    """Masses (n, k, k) of a part."""
+    k, upper, place = len(part.rows), np.triu_indices(len(part.rows)), 3 * (part.places[0] // 2)
+    M = np.zeros((len(load.mass), k, k))
+    mass = np.nan_to_num(load.mass[:, place : place + upper[0].size])
     M[:, upper[0], upper[1]] = M[:, upper[1], upper[0]] = mass
     # moments Mx and My turn the axis to -y and to x
-    return M @ np.array([[0.0, -1.0], [1.0, 0.0]]) if first else M
+    return M @ np.array([[0.0, -1.0], [1.0, 0.0]]) if part.rows[0] else M
 
 
-def _parts(
+def _terms(
+    part: MotionPart,
     time: np.ndarray,
     K: np.ndarray,
     D: np.ndarray,
-    motion: tuple[np.ndarray, np.ndarray],
+    motion: np.ndarray,
     lag: np.ndarray,
-    load: np.ndarray,
-    first: int,
+    load: FilmLoad,
     known: slice,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return terms of the errors' recursion for ``known`` steps.
+    """Return terms of the recursion of a part's errors for ``known`` steps.
 
     These are the propagation (m, 2 k, 2 k), the new errors (m, 2 k) and their standard deviation (m, 2 k).
-
-    Pose, rate and ``lag`` (n, k) belong to the columns of ``load`` (n, 20) from ``first`` on.
     """
-    pose, rate = motion
-    k, steps, M = pose.shape[1], np.diff(time, prepend=time[0]), _masses(load, first, pose.shape[1])
-    outer, K, D = load[:, first : first + k], np.nan_to_num(K), np.nan_to_num(D)
+    places, k = np.array(part.places), len(part.places)
+    pose, rate, lag = motion[:, places], motion[:, 4 + places], lag[:, places]
+    steps, M, outer = np.diff(time, prepend=time[0]), _masses(part, load), load.force[:, places]
+    K, D = np.nan_to_num(K), np.nan_to_num(D)
     mean = 0.5 * (D + np.concatenate([D[:1], D[:-1]]))
     kept = _steps(K[known], D[known], M[known], steps[known])
     added = _steps(K[known], mean[known], M[known], 0.5 * steps[known])
     kept[:, :, k:] = kept[:, :, k:] @ M[known]
-    missed = np.concatenate([missed_in_steps(time, pose, rate) - lag, _momenta(time, load, first, k)], axis=1)
+    missed = np.concatenate([missed_in_steps(time, pose, rate) - lag, _momenta(part, time, load)], axis=1)
     new = (added @ missed[known, :, None])[:, :, 0]
-    jumps = np.isfinite(load[:, OFFSET] * outer[:, 0])
+    jumps = np.isfinite(load.offset[:, 0] * outer[:, 0])
     jumps[1:] &= np.isfinite(outer[:-1, 0])
     ends = np.flatnonzero(jumps[known]) + known.start
     if ends.size:
         both = np.stack([ends - 1, ends])
-        beyond, lasting = load[ends, OFFSET, None] * departure(time, outer)[ends], load[ends, LASTING]
-        demanded, h = load[both, DEMANDED + first :][..., :k], steps[ends, None]
+        beyond, lasting = load.offset[ends] * departure(time, outer)[ends], load.lasting[ends, 0]
+        demanded, h = load.demanded[:, places][both], steps[ends, None]
         # inertia of the second order in the rates, as in a frame that turns: what the change of the rate has beyond
-        change = (M[ends] @ (rate[ends] - rate[ends - 1])[:, :, None])[:, :, 0] - load[ends, MOMENTUM + first :][:, :k]
+        change = (M[ends] @ (rate[ends] - rate[ends - 1])[:, :, None])[:, :, 0] - load.momentum[:, places][ends]
         films = K[both], D[both], M[ends], demanded - outer[both]
         loads = outer[both] + change / h - demanded.mean(axis=0), beyond, lasting
         jumped = errors_of_jumps(steps[ends], *films, *loads, pose[both], rate[both])
         jumped[:, :k] -= lag[ends]
         new[ends - known.start] = jumped
-    return kept, new, (added[:, :, k:] @ _spread(time, outer, load[:, OFFSET])[known, :, None])[:, :, 0]
+    return kept, new, (added[:, :, k:] @ _spread(part, time, load)[known, :, None])[:, :, 0]
 
 
 def _errors(
-    count: int, known: slice, parts: tuple[np.ndarray, np.ndarray, np.ndarray], before: np.ndarray
+    count: int, known: slice, terms: tuple[np.ndarray, np.ndarray, np.ndarray], before: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Errors (n, k), traces (n,) of their variances, and error, rate and variance (1 + 2 k, 2 k) at the end."""
-    kept, new, wide = parts
+    kept, new, wide = terms
     k = new.shape[1] // 2
     errors, variances, x, P = np.zeros((count, k)), np.zeros(count), before[0], before[1:]
     varies = bool(P.any() or wide.any())
@@ -435,9 +450,8 @@ def enough_steps(time: np.ndarray, omega: np.ndarray, error: np.ndarray, count: 
     step = float((np.diff(time[near]) / np.diff(count[near])).max())
     needed = float(time[-1] - time[0]) / step * math.sqrt(max(1.0, float(error[worst]) / GOAL))
     turns = abs(float(np.trapezoid(omega, time))) / (2.0 * math.pi)
-    if turns < 1.0:
-        return f"{_rounded(needed)} steps in all"
-    return f"{_rounded(needed / turns)} steps per turn of the journal"
+    whole = f"{_rounded(needed)} steps in all"
+    return whole if turns < 1.0 else f"{_rounded(needed / turns)} steps per turn of the journal"
 
 
 def _rounded(number: float) -> int:

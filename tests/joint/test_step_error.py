@@ -5,15 +5,14 @@ import pytest
 from scipy.linalg import expm
 
 from exudyn_ehd.joint.step_error import (
-    BLOCKS,
     FIRST,
-    LOADS,
-    MASS,
-    MOMENTUM,
-    NO_ERROR,
-    OFFSET,
+    JOURNAL,
+    LOAD_COLUMNS,
+    FilmLoad,
     errors_behind,
     next_error,
+    no_error,
+    recorded_entries,
 )
 
 CLEARANCE, LENGTH, GAP = 20e-6, 0.02, 8e-6
@@ -65,11 +64,16 @@ def ends(pose):
     return np.max([np.hypot(*(pose[:, :2] + s * 0.5 * LENGTH * pose[:, 2:4]).T) for s in (-1.0, 1.0)], axis=0)
 
 
-def estimate(time, motion, tangents=None, deflection=None):
-    blocks = np.broadcast_to(tangent().ravel()[BLOCKS], (time.size, 4, 4)) if tangents is None else tangents
-    gaps = np.full(time.size, GAP)
-    load = np.full((time.size, LOADS), np.nan)
-    return errors_behind(NO_ERROR, time, motion, blocks, gaps, CLEARANCE, LENGTH, deflection, load)[0]
+def recorded():
+    """Entries (16,) of the tangent."""
+    return tangent()[recorded_entries(JOURNAL)]
+
+
+def estimate(time, motion, tangents=None, deflection=None, load=None):
+    tangents = np.tile(recorded(), (time.size, 1)) if tangents is None else tangents
+    load = FilmLoad.of(np.full((time.size, sum(LOAD_COLUMNS)), np.nan)) if load is None else load
+    gaps, start = np.full(time.size, GAP), no_error(JOURNAL)
+    return errors_behind(JOURNAL, start, time, motion, tangents, gaps, CLEARANCE, LENGTH, deflection, load)[0]
 
 
 @pytest.mark.parametrize("uneven", [0.0, 0.4])
@@ -89,16 +93,33 @@ def test_estimate_is_the_true_error(steps, uneven):
 def test_what_is_not_known():
     time = np.linspace(0.0, 0.02, 41)
     motion = trapezoid(time, truth(0.0)[0])
-    none = np.full((41, 4, 4), np.nan)
+    none = np.full((41, 16), np.nan)
     assert np.all(np.isnan(estimate(time, motion, none)))
     assert np.all(np.isnan(estimate(time[:FIRST], motion[:FIRST], none[:FIRST])))
     # the last tangent counts for the states without one
     some = none.copy()
-    some[5] = tangent().ravel()[BLOCKS]
+    some[5] = recorded()
     found = estimate(time, motion, some)
     assert np.all(np.isnan(found[:5])) and np.all(np.isfinite(found[5:]))
     # a film that resists nothing has no error to remember
-    assert np.all(estimate(time, motion, np.zeros((41, 4, 4)))[FIRST:] == 0.0)
+    assert np.all(estimate(time, motion, np.zeros((41, 16)))[FIRST:] == 0.0)
+
+
+def test_parts_of_a_record_have_the_errors_of_the_whole():
+    """Bit for bit, also where the first tangents are missing."""
+    time, rng = np.linspace(0.0, 0.02, 41), np.random.default_rng(3)
+    motion, tangents = trapezoid(time, truth(0.0)[0]), rng.normal(size=(41, 16))
+    load = FilmLoad.of(rng.normal(size=(41, sum(LOAD_COLUMNS))))
+    for missing in range(6):
+        tangents[:missing] = np.nan
+        parts, before = [], no_error(JOURNAL)
+        for start, end in ((0, 20), (20 - FIRST, 41)):
+            own = slice(start, end)
+            loads = FilmLoad(*(column[own] for column in load))
+            states = time[own], motion[own], tangents[own], np.full(end - start, GAP)
+            found, before = errors_behind(JOURNAL, before, *states, CLEARANCE, LENGTH, None, loads)
+            parts.append(found[FIRST if start else 0 :])
+        np.testing.assert_array_equal(np.concatenate(parts), estimate(time, motion, tangents, load=load))
 
 
 @pytest.mark.parametrize("steps", [50, 100, 200])
@@ -108,8 +129,7 @@ def test_lag_of_a_liner(steps):
     h, motion = time[1], np.zeros((steps + 1, 10))
     angle = SPEED * time
     w = 1e-6 * np.stack((np.cos(angle), np.zeros_like(angle)), axis=1) + 5e-6 * np.array([1.0, 0.0])
-    resting = np.zeros((steps + 1, 4, 4))
-    resting[:, ::2], resting[:, 1::2] = 0.0, np.array([-1.0, 0.0, 0.0, -1.0])
+    resting = np.tile([[0.0] * 4, [-1.0, 0.0, 0.0, -1.0]], (steps + 1, 2, 1)).reshape(steps + 1, 16)
     # nothing forgotten: the sum of all lags, h/2 times the change of the deflection's rate
     found = estimate(time, motion, resting, deflection=w)
     rate = -1e-6 * SPEED * np.sin(angle)
@@ -139,12 +159,12 @@ def test_jumps_of_a_load(loads, jump):
     The loads lie upon a line. Tolerances are those of round-off.
     """
     time, side = 1e-4 * np.arange(6.0), np.array([100.0, 200.0])
-    load = np.zeros((6, LOADS))
-    load[:, OFFSET] = np.nan
-    load[:, :2] = np.outer(time, [3e4, -2e4]) + np.outer(loads, side)
-    film = tangent()
+    load = FilmLoad.of(np.zeros((6, sum(LOAD_COLUMNS))))
+    load.offset[:] = np.nan
+    load.force[:, :2] = np.outer(time, [3e4, -2e4]) + np.outer(loads, side)
+    film = recorded()
     expected = 0.5e-4 * jump * np.linalg.norm(np.linalg.solve(D[0], side))
-    _, _, moved = next_error(time, np.zeros((6, 10)), (film, film), load, NO_ERROR, LENGTH, 1e-6)
+    _, _, moved = next_error(JOURNAL, time, np.zeros((6, 10)), (film, film), load, no_error(JOURNAL), LENGTH, 1e-6)
     assert moved[1] == pytest.approx(expected, rel=1e-9, abs=1e-15)
 
 
@@ -155,13 +175,10 @@ def test_a_missed_impulse_moves_a_mass_in_its_film(mass):
     The whirl of 1000 kg grows. Errors are those of second-order steps, 0.8 % of the largest response with 5 kg.
     """
     h, n, impulse = 1e-4, 200, np.array([30.0, -20.0])
-    time, load = h * np.arange(n + 1.0), np.zeros((n + 1, LOADS))
-    load[:, OFFSET], load[:, MASS], load[:, MASS + 2] = np.nan, mass, mass
-    load[FIRST, MOMENTUM : MOMENTUM + 2] = impulse
-    blocks = np.broadcast_to(tangent().ravel()[BLOCKS], (n + 1, 4, 4))
-    found = errors_behind(
-        NO_ERROR, time, np.zeros((n + 1, 10)), blocks, np.full(n + 1, GAP), CLEARANCE, LENGTH, None, load
-    )[0]
+    time, load = h * np.arange(n + 1.0), FilmLoad.of(np.zeros((n + 1, sum(LOAD_COLUMNS))))
+    load.offset[:], load.mass[:, [0, 2]] = np.nan, mass
+    load.momentum[FIRST, :2] = impulse
+    found = estimate(time, np.zeros((n + 1, 10)), load=load)
     if mass > 0.0:
         inverse = np.eye(2) / mass
         A, start = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ K[0], -inverse @ D[0]]]), np.zeros(4)

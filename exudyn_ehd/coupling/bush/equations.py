@@ -52,11 +52,6 @@ class RigidPart:
         self.first = share.sum(axis=0)
         self.second = points.T @ share
 
-    def describe(self) -> tuple[str, float, str]:
-        """Return values for messages: kind of the bush, its mass [kg], and an alternative remedy."""
-        remedy = "give the joint bushGravity=(...): the bush's mass then counts beside the housing's, with this gravity"
-        return "ANCFBush", self.mass, remedy
-
     def matrix(self, side: Side) -> np.ndarray:
         """Mass matrix (n, n) on the coordinates of a side."""
         J = side.jac[:2].reshape(6, -1)
@@ -271,7 +266,7 @@ class BushEquations:
         coupling = M[:k, k:].toarray()
         change = M[k:, k:].toarray() - coupling.T @ splu(M[:k, :k]).solve(coupling)
         name = self.name.removesuffix(" bush")
-        warn_if_indefinite(mbs, self.carrier.side.nodes, change, self.contained.describe(), name)
+        warn_if_indefinite(mbs, self.carrier.side.nodes, change, self.contained.mass, name)
 
     def _nodal_forces(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Loads minus internal and mass-proportional damping forces, shape (n, 3) [N]."""

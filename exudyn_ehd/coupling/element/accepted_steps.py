@@ -123,8 +123,8 @@ class AcceptedSteps:
         Newton's absolute tolerance that the run was given, where it is raised for the rounding of meshes.
     chosen : bool
         Whether the run under way chooses the size of its steps.
-    tangent : (6, 10) array or None
-        Tangent of the film's wrench that Newton's method of an implicit run has evaluated last.
+    tangent : (m,) array or None
+        `recorded_entries` of the last tangent of the film's wrench in Newton's method of an implicit run.
     """
 
     def __init__(self, film: SteppedElement) -> None:

@@ -131,7 +131,7 @@ def _attach_nodes(
     weight = [] if gravity is None else [Gravity(acceleration=gravity)]
     bush = add_bush(mbs, f"{name} bush", solid, mount, place, fixed=mount is None, show=show, loads=weight)
     if bush.equations.contained is not None:
-        require_heavy_housing(mbs, item.node, bush.equations.contained.describe(), name)
+        require_heavy_housing(mbs, item.node, bush.equations.contained.mass, name)
     start = initial_coordinates(model, sides)
     if start is not None:
         assert isinstance(model.elasticity, SolidElasticity)

@@ -46,13 +46,11 @@ from exudyn_ehd.coupling.items.objects import force_owner, object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.joint.step_error import DEMANDED, LOADS, MASS, MOMENTUM, OFFSET, SUDDEN, departure
+from exudyn_ehd.joint.step_error import LOAD_COLUMNS, SUDDEN, FilmLoad, MotionPart, departure
 from exudyn_ehd.status import SMALL
 
-UNKNOWN = np.full(LOADS, np.nan)
+UNKNOWN = FilmLoad.of(np.full(sum(LOAD_COLUMNS), np.nan))
 _LoadState: TypeAlias = tuple[float, np.ndarray, np.ndarray]
-# Rows of the wrench (6,) on a journal, and on a ball, in blocks that do not share a mass.
-JOURNAL, BALL = [[0, 1], [3, 4]], [[0, 1, 2]]
 # Samples within a step; a pulse is seen if it is longer than a step over their number. Each costs a call of every load.
 SAMPLES = 16
 # Halvings of the part with the largest change: with 6 a jump is found to 1 / (16 * 2^6) of the step.
@@ -169,25 +167,25 @@ class OuterLoad:
     ----------
     sides : (Side, Side)
         Housing and journal.
-    blocks : sequence of list of int
-        `JOURNAL` or `BALL`.
+    parts : tuple of MotionPart
+        Parts of the wrench that do not share a mass.
 
     Attributes
     ----------
-    load : (20,) array
-        At the state taken last, with what the step to it has missed; nan where it is not known.
+    load : FilmLoad
+        At the state taken last, its arrays without the axis of the states.
     functions : LoadFunctions or None
         Loads of the system that are functions of time, from the first state of a run on.
     """
 
-    def __init__(self, sides: tuple[Side, Side], blocks: Sequence[list[int]]) -> None:
-        self.sides, self.blocks, self.rows = sides, blocks, [row for rows in blocks for row in rows]
+    def __init__(self, sides: tuple[Side, Side], parts: tuple[MotionPart, ...]) -> None:
+        self.sides, self.parts, self.rows = sides, parts, [row for part in parts for row in part.rows]
         self.load = UNKNOWN
         self.begin(None)
 
     def begin(self, solver: solver_state.Solver | None) -> None:
         """Begin a run of ``solver``: masses are read at its first state, loads are known in implicit runs."""
-        # W^-1 of all blocks
+        # W^-1 of all parts
         self.mass: np.ndarray | None = None
         self.functions: LoadFunctions | None = None
         self.is_known = solver_state.is_implicit(solver)
@@ -216,11 +214,10 @@ class OuterLoad:
         """The state accepted before a time; the end of a run is taken more than once."""
         return self.state if self.state is not None and self.state[0] < time else self.before
 
-    def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> np.ndarray:
-        """Load (20,) at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
+    def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> FilmLoad:
+        """Load at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
 
-        Its columns are those of `exudyn_ehd.joint.step_error`, those of a ball's blocks with a zero behind them; nan
-        without a film.
+        nan without a film.
         """
         if not self.is_known or trial.evaluation is None:
             return UNKNOWN
@@ -231,18 +228,19 @@ class OuterLoad:
             self.is_heavy = bool(self.mass.any())
             nodes = [int(node) for side in self.sides for node in side.nodes]
             self.places = [int(place) for node in nodes for place in mbs.systemData.GetNodeLTGODE2(node)]
-        time, out, size = mbs.systemData.GetTime(where), self.constant.copy(), len(self.rows)
-        out[:size] = -trial.evaluation.wrench[self.rows]
+        time, size = mbs.systemData.GetTime(where), len(self.rows)
+        force, momentum, demanded = np.zeros((3, 4))
+        force[:size] = -trial.evaluation.wrench[self.rows]
         if self.is_heavy:
             onto = J[:, self.rows] @ self.mass
             _, rates, accelerations = self._state(mbs, where, time)
-            out[DEMANDED:][:size] = accelerations @ onto
-            out[:size] += out[DEMANDED:][:size]
+            demanded[:size] = accelerations @ onto
+            force += demanded
             if (before := self._before(time)) is not None:
                 missed = rates - before[1] - 0.5 * (time - before[0]) * (accelerations + before[2])
-                out[MOMENTUM:][:size] = missed @ onto
-        out[OFFSET:MASS] = self.functions.offset(mbs, time)
-        return out
+                momentum[:size] = missed @ onto
+        offset, lasting = self.functions.offset(mbs, time)
+        return FilmLoad(force, np.array([offset]), np.array([lasting]), self.masses, momentum, demanded)
 
     def _is_ring(self, mbs: exu.MainSystem, side: Side, objects: Sequence[int]) -> bool:
         """Return whether another journal's film holds the side's body at the same place, within half of its length."""
@@ -258,11 +256,11 @@ class OuterLoad:
         )
 
     def _mass(self, mbs: exu.MainSystem, J: np.ndarray) -> np.ndarray:
-        """W^-1 of all blocks, zero where a body's mass is not known; sets what loads (20,) have in common."""
+        """W^-1 of all parts, zero where a body's mass is not known; sets the masses (6,) of `FilmLoad`."""
         W, size, objects = np.zeros((6, 6)), self.sides[0].size, range(mbs.systemData.NumberOfObjects())
         held = [(int(n), k) for k in objects for n in mbs.GetObject(k).get("nodeNumbers", ())]
-        mass, self.constant = np.zeros((len(self.rows), len(self.rows))), np.zeros(LOADS)
-        for side, part in zip(self.sides, (slice(size), slice(size, None)), strict=True):
+        mass, self.masses = np.zeros((len(self.rows), len(self.rows))), np.zeros(6)
+        for side, own in zip(self.sides, (slice(size), slice(size, None)), strict=True):
             if side.size:
                 films = [number for node, number in held if node == int(side.nodes[0])]
                 is_alone = len(side.nodes) == 1 and len(films) < 3 and not self._is_ring(mbs, side, films)
@@ -271,11 +269,13 @@ class OuterLoad:
                 if not isinstance(M, np.ndarray) or M.shape != (side.size, side.size):
                     return mass
                 # Euler parameters have no inertia along themselves, where no force of the joint points either
-                W += J[part].T @ np.linalg.pinv(M, rcond=1e-9, hermitian=True) @ J[part]
-        place, column = 0, MASS
-        for rows in self.blocks:
-            end, upper = place + len(rows), np.triu_indices(len(rows))
-            own = mass[place:end, place:end] = np.linalg.pinv(W[np.ix_(rows, rows)], hermitian=True)
-            self.constant[column:][: upper[0].size] = own[upper]
-            place, column = end, column + upper[0].size
+                W += J[own].T @ np.linalg.pinv(M, rcond=1e-9, hermitian=True) @ J[own]
+        column = 0
+        for part in self.parts:
+            upper = np.triu_indices(len(part.rows))
+            inverse = mass[np.ix_(part.places, part.places)] = np.linalg.pinv(
+                W[np.ix_(part.rows, part.rows)], hermitian=True
+            )
+            self.masses[column:][: upper[0].size] = inverse[upper]
+            column += upper[0].size
         return mass

@@ -19,7 +19,6 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, JointEvaluation, JointModel, Side, Trial
-from exudyn_ehd.coupling.element import outer_load
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
@@ -29,6 +28,7 @@ from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of, 
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
 from exudyn_ehd.coupling.record.history import make_row
 from exudyn_ehd.coupling.watch import solver_state
+from exudyn_ehd.joint import step_error
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.thrust import ThrustModel
@@ -68,11 +68,11 @@ class FilmElement:
         Number of film evaluations.
     last : Trial or None
         The state evaluated last, if it is still known.
-    kinematics, blocks, messages
-        Kinematics of the motion that the film knows, blocks of its `OuterLoad`, class of its failures.
+    kinematics, parts, messages
+        Kinematics of the motion that the film knows, its parts for errors of steps, class of its failures.
     """
 
-    kinematics, blocks, messages = relative.JOURNAL, outer_load.JOURNAL, Failures
+    kinematics, parts, messages = relative.JOURNAL, step_error.JOURNAL, Failures
 
     def __init__(
         self, model: JointModel, housing: Side, journal: Side, name: str, bore_nodes: Sequence[Index] = ()
@@ -85,7 +85,7 @@ class FilmElement:
         self.last: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self.steps = AcceptedSteps(self)
-        self.outer = OuterLoad(self.sides, self.blocks)
+        self.outer = OuterLoad(self.sides, self.parts)
         self.presence: Presence
         self.faces: ThrustModel | None = None
         self.offset = 0.0
@@ -242,7 +242,7 @@ class FilmElement:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
         if solver_state.is_implicit(self.steps.solver):
-            self.steps.tangent = tangent
+            self.steps.tangent = tangent[step_error.recorded_entries(self.parts)]
         n = self.rigid_size
         state = np.array(trial.q[:n]), np.array(trial.q_t[:n])
         return derivatives_between(mbs, self.sides, state, trial.found.wrench, tangent, self.kinematics)

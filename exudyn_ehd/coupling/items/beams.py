@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
-from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide, slope_rotation
+from exudyn_ehd.coupling.kinematics.flexible_bodies import BeamSide, SlopeSide, slope_rotation
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
 from exudyn_ehd.status import SMALL, InputError
 

@@ -14,7 +14,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
+from exudyn_ehd.coupling.kinematics.flexible_bodies import BeamSide
 from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide, node_side
 from exudyn_ehd.status import InputError
 

@@ -5,7 +5,7 @@ The equations of a user's ObjectFFRFreducedOrder, with an exact Jacobian.
 Exudyn differentiates that object by differences, by each of its coordinates and rates. Without its own terms
 (``computeFFRFterms=False``) it has neither forces nor mass, and its differences cost next to nothing, while its
 markers, sensors, loads and drawing go on. An ObjectGenericODE2 on the same two nodes has the equations instead
-(`exudyn_ehd.coupling.kinematics.floating_body`).
+(`exudyn_ehd.coupling.kinematics.flexible_bodies`).
 
 Check that the items of a joint still exist in its system, under the same numbers.
 """
@@ -23,9 +23,11 @@ from scipy.sparse import csc_matrix, csr_matrix, issparse
 
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items.bodies import body_of_node
-from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
+from exudyn_ehd.coupling.kinematics.flexible_bodies import BodyIntegrals, FloatingBody
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, node_side
 from exudyn_ehd.status import ROUNDING, SMALL, InputError, warn_user
+
+_OR_GRAVITY = "give the joint bushGravity=(...): the bush's mass then counts beside the housing's, with this gravity"
 
 
 def own_equations(mbs: exu.MainSystem, body: Index) -> Index:
@@ -173,26 +175,21 @@ def as_sparse(value) -> csr_matrix | None:
     return None if dense.size == 0 else csr_matrix(dense)
 
 
-def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, bush: tuple[str, float, str], name: str) -> None:
-    """Raise `InputError` if the rigid body on a node is lighter than the bush, which is a part of it.
-
-    ``bush`` is what messages call it, its mass [kg], and what else to do.
-    """
+def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, bush: float, name: str) -> None:
+    """Raise `InputError` if the rigid body on a node is lighter than the bush, which is a part of it: ``bush`` kg."""
     body = None if node is None else body_of_node(mbs, node)
     if body is None:
         return
-    mass, (kind, own, remedy) = float(mbs.GetObject(body)["mass"]), bush
-    if mass < own * (1.0 - 1e-6):
+    mass = float(mbs.GetObject(body)["mass"])
+    if mass < bush * (1.0 - SMALL):
         raise InputError(
-            f"CreateLubricatedJoint '{name}': the housing (object {int(body)}) has a mass of {mass:.4g} kg, its {kind} "
-            f"has {own:.4g} kg, but the body's mass and inertia contain the bush's: add the bush's to the body, or "
-            f"{remedy}."
+            f"CreateLubricatedJoint '{name}': the housing (object {int(body)}) has a mass of {mass:.4g} kg, its "
+            f"ANCFBush has {bush:.4g} kg, but the body's mass and inertia contain the bush's: add the bush's to the "
+            f"body, or {_OR_GRAVITY}."
         )
 
 
-def warn_if_indefinite(
-    mbs: exu.MainSystem, nodes: Sequence[Index], change: np.ndarray, bush: tuple[str, float, str], name: str
-) -> None:
+def warn_if_indefinite(mbs: exu.MainSystem, nodes: Sequence[Index], change: np.ndarray, bush: float, name: str) -> None:
     """Warn if what carries the bush has not its mass: the mass matrix is then indefinite.
 
     To be called once the system is assembled. No error: constraints may hold what is too light.
@@ -206,7 +203,7 @@ def warn_if_indefinite(
     bush, name
         As in `require_heavy_housing`.
     """
-    data, (kind, own, remedy) = mbs.systemData, bush
+    data = mbs.systemData
     places = np.concatenate([data.GetNodeLTGODE2(int(node)) for node in nodes])
     whole = np.zeros_like(change)
     for number in range(data.NumberOfObjects()):
@@ -221,9 +218,9 @@ def warn_if_indefinite(
     scaled = (whole + change)[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
     if np.linalg.eigvalsh(scaled)[0] < -SMALL:
         warn_user(
-            f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the {kind} of "
-            f"{own:.4g} kg is lighter than it there, or has less rotary inertia, but must contain the bush's: add them "
-            f"to the housing, or {remedy}.",
+            f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the "
+            f"ANCFBush of {bush:.4g} kg is lighter than it there, or has less rotary inertia, but must contain the "
+            f"bush's: add them to the housing, or {_OR_GRAVITY}.",
             UserWarning,
         )
 

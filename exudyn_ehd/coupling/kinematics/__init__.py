@@ -4,7 +4,6 @@ Module map
 ----------
 sides          pose, rates and Jacobians of a side; kernels of two sides on nodes
 rigid_nodes    nodes of rigid bodies
-beam_sides     points of beams and cables
-floating_body  equations of motion of a body in a floating frame with modes
+flexible_bodies  points of beams and cables; equations of motion of a body in a floating frame with modes
 relative       motion of a journal or a ball in the housing's frame, place along the axis, smallest gap
 """

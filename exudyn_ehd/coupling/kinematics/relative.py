@@ -38,10 +38,6 @@ from numba import njit
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCITY, column, cross, dot, in_frame, times
 
-# Rows of the Jacobians; numpy's integers, since numba compiles kernels anew for each plain one.
-_JP, _JR, _VQ, _WQ = (np.int64(k) for k in range(4))
-
-
 # Cross products: component [i, j, k] of e_i . (e_k x e_j).
 _CROSS = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(2, 1, 0).copy()
 
@@ -81,9 +77,9 @@ def _plus(a, b):
 
 
 @njit(cache=True)
-def _jac_column(jac, which, k):
-    """Column k of Jp, Jr, Vq or Wq."""
-    return jac[which, 0, k], jac[which, 1, k], jac[which, 2, k]
+def _columns(jac, k):
+    """Columns k of Jp, Jr, Vq and Wq."""
+    return column(jac[0], k), column(jac[1], k), column(jac[2], k), column(jac[3], k)
 
 
 @njit(cache=True, inline="always")
@@ -151,12 +147,7 @@ def variation_of(frame_h, frame_j, jac_h, jac_j):
     for c in range(n):
         with_housing = c < n_h
         jac, k = (jac_h, c) if with_housing else (jac_j, c - n_h)
-        jp, jr, vq, wq = (
-            _jac_column(jac, _JP, k),
-            _jac_column(jac, _JR, k),
-            _jac_column(jac, _VQ, k),
-            _jac_column(jac, _WQ, k),
-        )
+        jp, jr, vq, wq = _columns(jac, k)
         moved = cross(omega_h, jp)
         if with_housing:
             # the frame turns with the housing: a fixed global vector g changes by -A^T (dphi x g)
@@ -204,10 +195,11 @@ def wrench_map(frame_h, frame_j, jac_h, jac_j):
         # moment about the journal's point of a force along axis c at O
         m = cross(a, r)
         for k in range(n_h):
-            out[k, c], out[k, 3 + c] = -dot(_jac_column(jac_h, _JP, k), a), -dot(_jac_column(jac_h, _JR, k), a)
+            place, turn, _, _ = _columns(jac_h, k)
+            out[k, c], out[k, 3 + c] = -dot(place, a), -dot(turn, a)
         for k in range(jac_j.shape[2]):
-            turn = _jac_column(jac_j, _JR, k)
-            out[n_h + k, c] = dot(_jac_column(jac_j, _JP, k), a) + dot(turn, m)
+            place, turn, _, _ = _columns(jac_j, k)
+            out[n_h + k, c] = dot(place, a) + dot(turn, m)
             out[n_h + k, 3 + c] = dot(turn, a)
     return out
 
@@ -230,16 +222,17 @@ def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, m
                 by_place[i] += tangent[i, m] * motion_q[m, c]
                 by_rate[i] += tangent[i, m] * motion_qt[m, c]
         # the arm of the force about the journal's point
-        moved = cross(force, _jac_column(jac, _JP, k))
+        place, turned, _, _ = _columns(jac, k)
+        moved = cross(force, place)
         if c < n_h:
             # the joint frame turns, and with it the wrench
-            turned, moved = _jac_column(jac, _JR, k), _minus((0.0, 0.0, 0.0), moved)
+            moved = _minus((0.0, 0.0, 0.0), moved)
             turn_f, turn_m = in_frame(frame_h, cross(turned, force)), in_frame(frame_h, cross(turned, moment))
             for i in range(3):
                 by_place[i] += turn_f[i]
                 by_place[3 + i] += turn_m[i]
         for i in range(n):
-            total = dot(_jac_column(jac_j, _JR, i - n_h), moved) if i >= n_h else 0.0
+            total = dot(_columns(jac_j, i - n_h)[1], moved) if i >= n_h else 0.0
             d_out[i, c] = 0.0
             for m in range(6):
                 total += by_wrench[i, m] * by_place[m]

@@ -1,7 +1,7 @@
 """The two sides of a joint: who carries the marker frame, and how its state is read.
 
 A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels,
-`beam_sides` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
+`flexible_bodies` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
 marker Jacobians. The side of finite elements in absolute coordinates is in `exudyn_ehd.coupling.items.markers`.
 
 Two sides on the nodes of rigid bodies, or ground: their kernels and those of `relative` in one call.

@@ -14,7 +14,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.joint.audit.samples import RecordedSteps
-from exudyn_ehd.joint.step_error import BLOCKS, LOADS
+from exudyn_ehd.joint.step_error import BALL, LOAD_COLUMNS, FilmLoad, recorded_entries
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import HistoryRecord, shown
 from exudyn_ehd.status import ROUNDING, InputError
@@ -89,18 +89,17 @@ class Quantity(enum.Enum):
 
 # Scalar quantities of the film: those behind motion, eccentricities and loads.
 _SCALARS = tuple(member.value for member in Quantity)[6:]
-# Numbers in a row: columns, the tangent's blocks and the load on the film, then those of a row that is settled.
+# Numbers in a row: columns, the tangent's entries, most of them of a ball, and the load on the film, then those of a
+# row that is settled.
 _SIZES = {"time": 1, "motion": 10, "eccentricity": 2, "eccentricity_ratio": 1, "largest_eccentricity_ratio": 1}
-_SIZES |= {"force": 3, "moment": 3, **dict.fromkeys(_SCALARS, 1), "tangent": BLOCKS.size, "load": LOADS}
-_SIZES |= {"step_count": 1, "step_error": 1}
+_SIZES |= {"force": 3, "moment": 3, **dict.fromkeys(_SCALARS, 1), "tangent": recorded_entries(BALL)[0].size}
+_SIZES |= {"load": sum(LOAD_COLUMNS), "step_count": 1, "step_error": 1}
 _PLACES = {
     name: slice(end - size, end)
     for (name, size), end in zip(_SIZES.items(), itertools.accumulate(_SIZES.values()), strict=True)
 }
 TANGENT, LOAD, FORCE = (_PLACES[name] for name in ("tangent", "load", "force"))
-FIRST_BLOCK, WIDTH, _BLOCKS = TANGENT.start, LOAD.stop, BLOCKS.ravel()
-# Numbers that `pack_of_ball` keeps of a ball's tangent.
-PACK = slice(FIRST_BLOCK, FIRST_BLOCK + 15)
+WIDTH = LOAD.stop
 TIME, MINIMUM_GAP, PEAK_PRESSURE, STEP_COUNT, STEP_ERROR = (
     _PLACES[name].start for name in ("time", "minimum_gap", "peak_pressure", "step_count", "step_error")
 )
@@ -414,12 +413,15 @@ def make_row(
     wrench: np.ndarray,
     quantities: Mapping[str, float],
     tangent: np.ndarray | None = None,
-    load: np.ndarray | None = None,
+    load: FilmLoad | None = None,
 ) -> np.ndarray:
-    """One row of the record; step errors need the ``tangent`` (6, 10) and the ``load`` (20,) on the film."""
+    """One row of the record; step errors need the `recorded_entries` of the tangent and the load on the film."""
     row = np.empty(WIDTH)
     scalars = [quantities.get(name, math.nan) for name in _SCALARS]
-    row[:FIRST_BLOCK] = [time, *motion.tolist(), *motion[:2].tolist(), *ratios, *wrench.tolist(), *scalars]
-    row[TANGENT] = np.nan if tangent is None else tangent.take(_BLOCKS)
-    row[LOAD] = np.nan if load is None else load
+    row[: TANGENT.start] = [time, *motion.tolist(), *motion[:2].tolist(), *ratios, *wrench.tolist(), *scalars]
+    row[TANGENT.start :] = np.nan
+    if tangent is not None:
+        row[TANGENT][: tangent.size] = tangent
+    if load is not None:
+        np.concatenate(load, out=row[LOAD])
     return row

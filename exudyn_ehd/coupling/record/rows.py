@@ -24,7 +24,7 @@ import json
 import os
 import pathlib
 import secrets
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, BinaryIO, ClassVar, NamedTuple
 
@@ -33,11 +33,9 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import (
     COLUMNS,
-    FIRST_BLOCK,
     FORCE,
     LOAD,
     MINIMUM_GAP,
-    PACK,
     PEAK_PRESSURE,
     STEP_COUNT,
     STEP_ERROR,
@@ -47,7 +45,7 @@ from exudyn_ehd.coupling.record.history import (
 )
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.step_error import BLOCKS, FIRST, NO_BALL_ERROR, NO_ERROR, errors_behind, errors_of_ball
+from exudyn_ehd.joint.step_error import BALL, FIRST, JOURNAL, FilmLoad, errors_behind, no_error
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, RunError, require_integer, require_type
 from exudyn_ehd.storage import require_path
 
@@ -125,7 +123,7 @@ class Thinner:
         self._known_error = np.nan if last is None else float(last[STEP_ERROR])
         # what is kept so far of the span under way; the last rows as they came, and the pose's error there
         self._open, self._lead = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH))
-        self._error = NO_BALL_ERROR if isinstance(self._bearing, SphericalBearing) else NO_ERROR
+        self._error: Sequence[np.ndarray] = no_error(BALL if isinstance(self._bearing, SphericalBearing) else JOURNAL)
 
     def take(self, rows: np.ndarray) -> np.ndarray:
         """Add rows (n, WIDTH); returns those (k, WIDTH + 2) of the spans that have ended."""
@@ -141,13 +139,13 @@ class Thinner:
         """Rows (k, WIDTH + 2) of the span under way and those behind it, if rows (n, WIDTH) were taken."""
         return self._keep(self._number(rows)[1])[0] if len(rows) else self._open
 
-    def _number(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _number(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, Sequence[np.ndarray]]:
         """The last rows and these, these with their two numbers behind those kept of the span, error of the pose.
 
         Tangents that are not known are taken from the row before.
         """
         whole = np.concatenate([self._lead, rows])
-        last = np.maximum.accumulate(np.where(np.isfinite(whole[:, FIRST_BLOCK]), np.arange(len(whole)), -1))
+        last = np.maximum.accumulate(np.where(np.isfinite(whole[:, TANGENT.start]), np.arange(len(whole)), -1))
         whole[last >= 0, TANGENT] = whole[last[last >= 0], TANGENT]
         errors, error = errors_of(self._bearing, whole, self._error)
         errors = errors[len(self._lead) :]
@@ -174,25 +172,27 @@ class Thinner:
         return out, int(np.searchsorted(places, edges[-2]))
 
 
-def errors_of(bearing: JournalBearing, rows: np.ndarray, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def errors_of(
+    bearing: JournalBearing, rows: np.ndarray, before: Sequence[np.ndarray]
+) -> tuple[np.ndarray, Sequence[np.ndarray]]:
     """Errors (n,) of the steps of rows (n, WIDTH) of a journal or a ball, and that of the pose behind them.
 
-    See `errors_behind` and `errors_of_ball`.
+    See `errors_behind`.
     """
-    time, motion, gap, load = rows[:, TIME], rows[:, COLUMNS["motion"]], rows[:, MINIMUM_GAP], rows[:, LOAD]
+    parts, motion, peak, deflection = JOURNAL, rows[:, COLUMNS["motion"]], rows[:, COLUMNS["peak_angle"]], None
     if isinstance(bearing, SphericalBearing):
-        place, velocity, _ = np.split(motion[:, :9], 3, axis=1)
-        return errors_of_ball(before, time, place, velocity, rows[:, PACK], gap, bearing.radial_clearance, load)
-    peak, deflection = rows[:, COLUMNS["peak_angle"]], None
+        # place, velocity, angular velocity and 0
+        parts, motion = BALL, motion[:, [0, 1, 2, 9, 3, 4, 5, 9]]
     if isinstance(getattr(bearing, "bush", None), ElasticLiner):
         size = rows[:, COLUMNS["bore_displacement"], None]
         deflection = size * np.stack((np.cos(peak), np.sin(peak)), axis=1)
-    blocks, dimensions = rows[:, TANGENT].reshape(-1, *BLOCKS.shape), (bearing.radial_clearance, bearing.length)
-    return errors_behind(before, time, motion, blocks, gap, *dimensions, deflection, load)
+    dimensions, load = (bearing.radial_clearance, bearing.length), FilmLoad.of(rows[:, LOAD])
+    states = rows[:, TIME], motion, rows[:, TANGENT], rows[:, MINIMUM_GAP]
+    return errors_behind(parts, before, *states, *dimensions, deflection, load)
 
 
 HEAD = 512
-FORMAT = "exudyn_ehd rows 5"
+FORMAT = "exudyn_ehd rows 6"
 # Bytes of a row.
 BYTES = 8 * (WIDTH + 2)
 NAME = "{name}"

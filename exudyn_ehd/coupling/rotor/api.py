@@ -12,7 +12,7 @@ import scipy
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, ObjectIndex, require_system
 from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
-from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, State, films_off
+from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, State
 from exudyn_ehd.coupling.rotor.spinning import WHERE
 from exudyn_ehd.coupling.run.solve import joints_of
 from exudyn_ehd.status import InputError, require_number, require_plausible
@@ -21,6 +21,8 @@ from exudyn_ehd.status import InputError, require_number, require_plausible
 SCAN = 16
 # Configurations of a system that the search overwrites, although a run or its history continues from them.
 CONFIGURATIONS = (CURRENT, START_OF_STEP)
+# Functions of films, which are evaluated here, once per state: Exudyn sees none meanwhile.
+FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
 
 
 def SolveEquilibrium(
@@ -228,10 +230,20 @@ def _search(
         joint.element.presence.require(mbs)
     data = mbs.systemData
     kept = [(c, data.GetSystemState(c), data.GetODE2Coordinates_tt(c), data.GetTime(c)) for c in CONFIGURATIONS]
+    numbers = [joint.objectNumber for joint in joints]
+    films = [
+        (number, name, mbs.GetObjectParameter(number, name)["function"]) for number in numbers for name in FUNCTIONS
+    ]
     try:
-        with films_off(mbs, joints):
-            yield EquilibriumSearch(mbs, joints, rotors, ratios)
+        for number in numbers:
+            mbs.SetObjectParameter(number, FUNCTIONS[0], lambda mbs, t, item, q, q_t: np.zeros(len(q)))
+            mbs.SetObjectParameter(number, FUNCTIONS[1], lambda mbs, t, item, q, *rest: np.zeros((len(q), len(q))))
+        yield EquilibriumSearch(mbs, joints, rotors, ratios)
     finally:
+        for number, name, function in films:
+            mbs.SetObjectParameter(number, name, function)
+        for joint in joints:
+            joint.element.forget()
         for configuration, state, accelerations, time in kept:
             data.SetSystemState(state, configuration)
             data.SetODE2Coordinates_tt(accelerations, configuration)

@@ -12,8 +12,7 @@ load.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 import exudyn as exu
@@ -31,12 +30,15 @@ from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
 # Unbalance over the loads of the films that counts as none, and steps of Newton's method that may pass.
 TOLERANCE, STEPS = 1e-8, 40
-FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
+NOT_HELD = (
+    "nothing holds {}; hold it by a film, a spring or a constraint, a shaft along its axis by "
+    "CreateLubricatedJoint(axial=ehd.Held())."
+)
+NO_MASS = "{} moves without mass or inertia; give its body both, or hold it."
 # Angle by which rotors are turned to see that they are the same in all directions, rad, and how far they may differ.
 TURN, ISOTROPIC = 1.0, 1e-4
-# Smallest stiffness over the largest, with rotations at the length of a bearing, that holds a body.
+# Smallest stiffness, or mass, over the largest, with rotations at the length of a bearing, that holds a body.
 SOFTEST = 1e-11
-LIGHTEST = 1e-13
 
 
 class ForceBalance(NamedTuple):
@@ -73,7 +75,7 @@ State: TypeAlias = tuple[dict[str, np.ndarray], tuple[FilmMemory, ...]]
 
 
 class EquilibriumSearch:
-    """Search for the equilibria of one system, whose films are switched off in Exudyn meanwhile (`films_off`).
+    """Search for the equilibria of one system, whose films are switched off in Exudyn meanwhile.
 
     Parameters
     ----------
@@ -156,14 +158,14 @@ class EquilibriumSearch:
             self._update()
             springs = [film.support(*part) for film, part in zip(self.films, supports, strict=True)]
             balance = self._balance([f.loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
-            require_held(self.system, self.weights, balance.K, balance.free)
+            require_regular(self.system, self.weights, balance.K, balance.free, NOT_HELD)
             step = self._step(balance)
             self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
             self._update()
             forces = np.array([f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)])
             supports = [place for k, film in enumerate(self.films) for place in film.guess(forces[k:])]
         if self.slope is None:
-            require_mass(self.system, self.weights, self.system.mass(), balance.free)
+            require_regular(self.system, self.weights, self.system.mass(), balance.free, NO_MASS)
             require_axis(self.mbs, self.system)
             require_isotropy(self.system, self.weights)
 
@@ -260,51 +262,24 @@ class EquilibriumSearch:
         )
 
 
-@contextmanager
-def films_off(mbs: exu.MainSystem, joints: list[Joint]) -> Iterator[None]:
-    """Let Exudyn see no films: they are evaluated here, once per state."""
-    kept = []
-    try:
-        for number in [joint.objectNumber for joint in joints]:
-            kept += [(number, name, mbs.GetObjectParameter(number, name)["function"]) for name in FUNCTIONS]
-            mbs.SetObjectParameter(number, FUNCTIONS[0], lambda mbs, t, item, q, q_t: np.zeros(len(q)))
-            mbs.SetObjectParameter(number, FUNCTIONS[1], lambda mbs, t, item, q, *rest: np.zeros((len(q), len(q))))
-        yield
-    finally:
-        for number, name, function in kept:
-            mbs.SetObjectParameter(number, name, function)
-        for joint in joints:
-            joint.element.forget()
-
-
-def require_held(system: SpinningSystem, weights: np.ndarray, K: np.ndarray, free: np.ndarray) -> None:
-    """Refuse a body that may move without resistance.
+def require_regular(
+    system: SpinningSystem, weights: np.ndarray, matrix: np.ndarray, free: np.ndarray, message: str
+) -> None:
+    """Refuse a body that moves without stiffness or mass, by a ``message`` that has a place for its name.
 
     Parameters
     ----------
     system : SpinningSystem
     weights : (N,) array
         1 for displacements, 1 / length for rotations.
-    K, free : (N, N), (N, n) arrays
-        Stiffness, and the directions that constraints leave.
+    matrix, free : (N, N), (N, n) arrays
+        Stiffness or mass, and the directions that constraints leave.
     """
     scaled = free.T * weights
-    _, values, right = np.linalg.svd(scaled @ K @ scaled.T)
+    _, values, right = np.linalg.svd(scaled @ matrix @ scaled.T)
     if values[-1] <= SOFTEST * values[0]:
         loose = named(system, int(np.argmax(np.abs(free @ right[-1]) / weights)))
-        raise InputError(
-            f"{WHERE}: nothing holds {loose}; hold it by a film, a spring or a constraint, a shaft along its axis by "
-            "CreateLubricatedJoint(axial=ehd.Held())."
-        )
-
-
-def require_mass(system: SpinningSystem, weights: np.ndarray, M: np.ndarray, free: np.ndarray) -> None:
-    """Refuse bodies without mass, as `require_held` those without stiffness."""
-    scaled = free.T * weights
-    values, vectors = np.linalg.eigh(scaled @ M @ scaled.T)
-    if values[0] <= LIGHTEST * values[-1]:
-        light = named(system, int(np.argmax(np.abs(free @ vectors[:, 0]) / weights)))
-        raise InputError(f"{WHERE}: {light} moves without mass or inertia; give its body both, or hold it.")
+        raise InputError(f"{WHERE}: {message.format(loose)}")
 
 
 def require_axis(mbs: exu.MainSystem, system: SpinningSystem) -> None:

@@ -92,8 +92,6 @@ LARGEST_CHANGE = 0.5
 LARGEST_BEND = 0.1
 # Largest change of the opening of constraints from step to step, share of beta h^2 times the largest acceleration.
 LARGEST_JUMP = 3e-5
-# Beyond any tolerance of Exudyn's discontinuous iterations: Newton's method takes another pass, or a smaller step.
-REFUSED = 1e100
 
 
 class StartGuess:
@@ -179,7 +177,7 @@ class StartGuess:
         h = solver.it.currentStepSize
         reach = solver.newmarkGamma * h if self.by_velocities else solver.newmarkBeta * h * h
         largest = LARGEST_JUMP * reach * np.abs(data.GetODE2Coordinates_tt()).max(initial=0.0)
-        return [REFUSED, -1.0] if np.abs(opening - self.accepted).max() > largest else [error, size]
+        return [math.inf, -1.0] if np.abs(opening - self.accepted).max() > largest else [error, size]
 
 
 def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:
@@ -258,7 +256,7 @@ def refuse(films: Sequence[FilmElement], own: _UserFunction, mbs: exu.MainSystem
     for film in failed:
         film.failures.blame(film.steps.start, t, "the pressure exceeded what oil and steel bear")
     half = 0.5 * solver.it.currentStepSize
-    return [REFUSED, half if size < 0.0 else min(size, half)]
+    return [math.inf, half if size < 0.0 else min(size, half)]
 
 
 # Share of a film's gap that a step of Newton's method may close.

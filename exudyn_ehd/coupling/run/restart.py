@@ -28,7 +28,7 @@ from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 from exudyn_ehd.storage import read_arrays, replacing, require_path
 
-_FORMAT = "exudyn_ehd SystemState 6"
+_FORMAT = "exudyn_ehd SystemState 7"
 Part = TypeVar("Part", History, StepStart)
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 

@@ -61,8 +61,6 @@ DynamicSolver: TypeAlias = Any
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
 # products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
-# Iterations of a step that are slow for its films' sake, not for an old factor of meshes that only films load.
-FILMS_FIRST = 4
 # Coordinates and multipliers beside the meshes at most, which are solved for as dense.
 LARGEST_REST = 200
 
@@ -343,20 +341,12 @@ class _SparseNewton:
                 return True
             if iteration == 1 and newton.adaptInitialResidual:
                 first = max(first, error)
-            if error > self.reuse.contractivity * previous and not self._slow_for_films(iteration, age, renewable):
+            # the films, whose tangents are new in every iteration, slow iterations too: one new factor a step
+            if error > self.reuse.contractivity * previous and (renewable or not self.matrix.films):
                 self.factor = None
         self.factor = None
         self.run.rejected += 1
         return False
-
-    def _slow_for_films(self, iteration: int, age: int, renewable: bool) -> bool:
-        """Return whether the films, whose tangents are new in every iteration, slow an iteration, and no old factor."""
-        if not self.matrix.films:
-            return False
-        if self.factor is None or self.factor.coupled:
-            # what holds the meshes may have turned far since
-            return not renewable and age <= FILMS_FIRST // 2
-        return not renewable or iteration <= FILMS_FIRST
 
     def _factorise(self, solver: DynamicSolver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         """Make the factor where there is none, else renew what is beside the meshes where only films join the two.

@@ -91,7 +91,7 @@ from exudyn_ehd.joint.audit.switches import (
 from exudyn_ehd.joint.balance.limits import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
-from exudyn_ehd.joint.step_error import enough_steps
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, enough_steps
 from exudyn_ehd.status import (
     ROUNDING,
     SMALL,
@@ -104,9 +104,9 @@ from exudyn_ehd.status import (
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
 UNRESOLVED = 0.25
-# Position error below which a step counts as resolved, a small share of the gap or of this one of the clearance, and m:
-# rounding of positions some metres from the origin stays below.
-SMALLEST_GAP_SHARE, SMALLEST_MISMATCH = 1e-2, 1e-14
+# Position error below which a step counts as resolved, as does a small share of the gap, m: rounding of positions some
+# metres from the origin stays below.
+SMALLEST_MISMATCH = 1e-14
 # A step counts if its error is still so large a share of the largest one before, which fades.
 LASTING_SHARE = 0.15
 # A step that counts adds two, any other takes one.
@@ -338,8 +338,6 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
 STARVED, LEAST = 0.6, 0.1
 # Roughness of a good surface, m; surfaces of the smallest bearings are as much finer as these are smaller.
 GOOD_SURFACE, CLEARANCE_SHARE = 0.2e-6, 0.05
-# Pressure over the highest one yet from which on the grid is looked at again. Larger: of a lower peak; smaller: dearer.
-HIGHER = 1.02
 # Tolerance over the mean force of a run from which on it is told.
 LOOSE = 1e-3
 
@@ -392,7 +390,7 @@ class GridWatch:
 
     def take(self, time: float, peak: float, film: object) -> None:
         """Take an accepted step's film of a peak pressure, Pa."""
-        if not (peak > HIGHER * self._peak and isinstance(film, SolvedFilm)):
+        if not (peak > self._peak and isinstance(film, SolvedFilm)):
             return
         if is_judged(film):
             self._peak, found = peak, resolution(film)

@@ -280,7 +280,6 @@ def viscosity_of_transformed(q, law, p_out, ratio_out, ratio_q_out):
 NEAR = 5e-4
 
 
-
 @njit(cache=True)
 def density_at(P, scale, floor, law, known, rho_out):
     """Density ratio (n, m); what is not known near by is looked up. Beyond the law's range it is that at its end."""

@@ -240,8 +240,6 @@ def nominal_gap(t: np.ndarray, residual: float) -> np.ndarray:
     return 0.5 * (low + high)
 
 
-
-
 class RoughFlow(FluxEffect):
     """`PatirCheng` as flux effect and shear factor of one bearing model.
 

@@ -15,7 +15,7 @@ from exudyn_ehd.coupling.record import history as rows_of
 from exudyn_ehd.coupling.record.history import make_row
 from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.record.rows import HEAD, RowsOnDisk
-from exudyn_ehd.joint.step_error import LOADS, MASS, MOMENTUM
+from exudyn_ehd.joint.step_error import LOAD_COLUMNS, FilmLoad
 
 ROOT = Path(__file__).parents[3]
 
@@ -31,7 +31,7 @@ def same(a, b):
 
 def random_row(rng, time):
     values = {"minimum_gap": rng.uniform(1e-6, 9e-6), "peak_pressure": rng.uniform(1e6, 9e6)}
-    return make_row(time, rng.normal(size=10), (0.3, 0.4), rng.normal(size=6), values, rng.normal(size=(6, 10)))
+    return make_row(time, rng.normal(size=10), (0.3, 0.4), rng.normal(size=6), values, rng.normal(size=16))
 
 
 @pytest.mark.slow
@@ -73,9 +73,9 @@ def test_a_part_of_a_long_file_is_read_alone(tmp_path, monkeypatch):
         row = random_row(rng, time)
         # a film that keeps nine tenths of its errors from step to step
         blocks = np.tile(np.eye(2).ravel(), 4) * np.repeat([-1000.0, -1.0, -1000.0, -1.0], 4)
-        row[rows_of.FIRST_BLOCK : rows_of.LOAD.start] = blocks
-        row[rows_of.LOAD] = rng.normal(size=LOADS) * 1e-3
-        row[rows_of.LOAD][MASS:MOMENTUM] = 1e-6, 0.0, 1e-6, 0.0, 1e-6, 0.0
+        row[rows_of.TANGENT][: blocks.size] = blocks
+        load = FilmLoad.of(rng.normal(size=sum(LOAD_COLUMNS)) * 1e-3)
+        row[rows_of.LOAD] = np.concatenate(load._replace(mass=[1e-6, 0.0, 1e-6, 0.0, 1e-6, 0.0]))
         record.append(row)
     whole = record.snapshot(None)
     for start, end in ((0.3, 0.301), (whole.time[2000], whole.time[2100]), (0.399, 9.0), (-1.0, 0.02), (7.0, 8.0)):

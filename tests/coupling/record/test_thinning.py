@@ -67,7 +67,7 @@ def test_any_course_gives_steps_of_the_whole_record(name, on_disk, tmp_path):
                 time += rng.uniform(1e-4, 1e-3)
             row = random_row(rng, time)
             if rng.random() < 0.3:
-                row[rows_of.FIRST_BLOCK :] = np.nan
+                row[rows_of.TANGENT.start :] = np.nan
             for record in (whole, thinned):
                 record.append(row)
             if rng.random() < 0.01:

@@ -56,7 +56,7 @@ def test_iterations_and_jacobians_of_rigid_liner_and_modal_bores(modified, state
 
 @pytest.mark.slow
 def test_iterations_and_factors_of_nodal_bores():
-    """`SolveDynamicSparse` keeps the mesh's factor while it is reusable: two in the first twenty steps.
+    """`SolveDynamicSparse` keeps the mesh's factor while it is reusable: five in the first twenty steps.
 
     These are the first steps of a run, in which cavities move: a flexible bore of any kind takes 4.5 iterations for the
     rigid bore's 3.1. The mesh hardly changes; the journal turns, and has its own factor in every iteration.

@@ -7,7 +7,7 @@ import pytest
 from scenes import rotation
 
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
+from exudyn_ehd.coupling.kinematics.flexible_bodies import BodyIntegrals, FloatingBody
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
