@@ -88,7 +88,7 @@ from exudyn_ehd.joint.audit.switches import (
     STEEL,
     TEMPERATURE_COEFFICIENT,
 )
-from exudyn_ehd.joint.balance.limits import Resolution, coarse_film, is_judged, resolution
+from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, enough_steps

@@ -25,7 +25,7 @@ from exudyn_ehd.joint.audit.switches import (
     turbulent,
     two_dimensional,
 )
-from exudyn_ehd.joint.balance.limits import Resolution
+from exudyn_ehd.joint.balance.resolution import Resolution
 from exudyn_ehd.joint.step_error import enough_steps
 
 # Grids this many times finer than needed cost time for nothing.

@@ -32,8 +32,8 @@ from exudyn_ehd.joint.audit.samples import (
     squeeze_share,
 )
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
-from exudyn_ehd.joint.balance.limits import Resolution, resolution
 from exudyn_ehd.joint.balance.newton import evaluate_at
+from exudyn_ehd.joint.balance.resolution import Resolution, resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation

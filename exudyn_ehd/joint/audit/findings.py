@@ -10,7 +10,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.audit.case import MATTERS, NOTHING, Case, Change
 from exudyn_ehd.joint.audit.ringing import LIMIT
 from exudyn_ehd.joint.audit.switches import Switch, turbulent
-from exudyn_ehd.joint.balance.limits import FEWEST, HOT, STEEPEST
+from exudyn_ehd.joint.balance.limits import HOT
+from exudyn_ehd.joint.balance.resolution import FEWEST, STEEPEST
 from exudyn_ehd.status import InputError
 
 

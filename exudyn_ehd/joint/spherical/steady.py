@@ -26,13 +26,8 @@ from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, squeeze_share
 from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
-from exudyn_ehd.joint.balance.limits import (
-    Resolution,
-    advice,
-    intervals_at_half,
-    refuse_pressed_through,
-    warn_of_overload,
-)
+from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE

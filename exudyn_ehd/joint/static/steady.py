@@ -15,14 +15,9 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.samples import FilmState
-from exudyn_ehd.joint.balance.limits import (
-    refuse_pressed_through,
-    warn_of_grid,
-    warn_of_heat,
-    warn_of_overload,
-    warn_of_starved,
-)
+from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload, warn_of_starved
 from exudyn_ehd.joint.balance.newton import evaluate_at, history_at, lacks_oil
+from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
 from exudyn_ehd.joint.model.quantities import passing_flows, pocket_pressures, refined_peak, supply_flows
