@@ -35,15 +35,15 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import SurfaceProfile
 from exudyn_ehd.film.thrust.annulus import ThrustFaces, check_faces
-from exudyn_ehd.plausible import Kind
 from exudyn_ehd.status import (
     POSITIVE,
     Checked,
     InputError,
+    PlausibilityWarning,
     require_bool,
-    require_plausible,
     require_type,
     require_vector,
+    warn_user,
 )
 
 if TYPE_CHECKING:
@@ -52,10 +52,10 @@ if TYPE_CHECKING:
     from exudyn_ehd.solid.journal.modes import ElasticJournal
     from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 
-# Clearance over the radius. Above the last number nothing is a thin film, or lengths are in other units.
-_CLEARANCE = Kind(
-    "of the journal radius", 0.0, 1e-4, 1e-2, 0.1, note="it is bore minus journal radius, not diametral, in metres"
-)
+SMALLEST_CLEARANCE_RATIO = 1e-4
+LARGEST_CLEARANCE_RATIO = 1e-2
+# Beyond it nothing is a thin film, or lengths are in other units.
+THICKEST_FILM_RATIO = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,8 +211,12 @@ class JournalBearing(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        share = float(f"{self.clearance_ratio:.3g}")
-        require_plausible("JournalBearing.radial_clearance", share, self.clearance_ratio, _CLEARANCE)
+        if self.radial_clearance > THICKEST_FILM_RATIO * self.journal_radius:
+            raise InputError(
+                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a "
+                f"thin film, got {self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, "
+                "usual clearances a thousandth of the radius."
+            )
         for name, types in _OPTIONS.items():
             require_type(f"JournalBearing.{name}", getattr(self, name), *types)
         for profile in self.profiles:
@@ -298,6 +302,14 @@ class JournalBearing(Checked):
             raise InputError(
                 f"RegularisedWall.onset must be below the radial clearance {self.radial_clearance:g} m, got "
                 f"{self.contact.onset:g} m; the wall would touch a concentric journal."
+            )
+        ratio = self.radial_clearance / self.journal_radius
+        if not SMALLEST_CLEARANCE_RATIO <= ratio <= LARGEST_CLEARANCE_RATIO:
+            warn_user(
+                f"JournalBearing: the clearance ratio c/R is {ratio:.3g}, outside {SMALLEST_CLEARANCE_RATIO:g} to "
+                f"{LARGEST_CLEARANCE_RATIO:g}; radial_clearance is radial (bore radius - journal radius), not "
+                "diametral, and in metres.",
+                PlausibilityWarning,
             )
 
     @property

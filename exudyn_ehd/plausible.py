@@ -306,18 +306,17 @@ def kind_of(where: str) -> Kind | None:
     return KINDS.get(ARGUMENTS.get(where.replace(": ", ".").replace(" ", "."), ""))
 
 
-def doubt(kind: Kind | None, where: str, value: object, size: float) -> tuple[str, bool] | None:
+def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
     """Return a message on an implausible size of an argument, and whether it is an error; None if it is plausible.
 
     Parameters
     ----------
-    kind : Kind or None
-        As of `kind_of`; None: of no dimension.
     where, value
-        Argument and its value as given, for the message.
+        Argument, as of `kind_of`, and its value as given, for the message.
     size : float
         Its size in the unit of the table.
     """
+    kind = kind_of(where)
     if kind is None or size == 0.0 or kind.low <= size <= kind.high:
         return None
     meant = ((unit, factor * size) for unit, factor in kind.others if kind.low <= factor * size <= kind.high)

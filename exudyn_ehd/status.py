@@ -16,7 +16,7 @@ from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from exudyn_ehd.plausible import Kind, doubt, kind_of
+from exudyn_ehd.plausible import doubt, kind_of
 
 Hinted = TypeVar("Hinted")
 # Largest number of vertices of a film grid in one direction. The error of the load falls with its square, 0.05 % at 192
@@ -256,9 +256,7 @@ def warn_user(text: str, kind: type[Warning]) -> None:
     warnings.warn(text, kind, stacklevel=level)
 
 
-def require_plausible(
-    where: str, value: object, size: float | np.ndarray | None = None, kind: Kind | None = None
-) -> None:
+def require_plausible(where: str, value: object, size: float | np.ndarray | None = None) -> None:
     """Warn of a size that bearings do not have, and raise `InputError` beyond all reason; see `plausible`.
 
     Parameters
@@ -269,14 +267,10 @@ def require_plausible(
         Value given by the user.
     size : float or array, optional
         Size to be judged in place of ``value``, which then is only named; of arrays the largest number.
-    kind : Kind, optional
-        In place of the argument's in the table.
     """
     judged = np.abs(np.asarray(value if size is None else size, dtype=float))
     largest = float(judged.max(initial=0.0))
-    said = doubt(
-        kind or kind_of(where), where, value if size is not None or judged.size < 4 else f"up to {largest:g}", largest
-    )
+    said = doubt(where, value if size is not None or judged.size < 4 else f"up to {largest:g}", largest)
     if said is not None and said[1]:
         raise InputError(said[0])
     if said is not None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.plausible import ARGUMENTS, KINDS, doubt, kind_of
+from exudyn_ehd.plausible import ARGUMENTS, KINDS, doubt
 from tests.descriptions import usual
 from tests.sampling import but_slow
 
@@ -343,7 +343,7 @@ def test_what_may_be_meant_warns(trap):
 )
 def test_onsets_of_contact_in_other_units(onset, advice):
     """Two micrometres in mm, half of one in micrometres."""
-    said = doubt(kind_of("RegularisedWall.onset"), "RegularisedWall.onset", onset, onset)
+    said = doubt("RegularisedWall.onset", onset, onset)
     assert said is None if advice is None else advice in said[0]
 
 

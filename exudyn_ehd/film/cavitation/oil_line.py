@@ -84,13 +84,6 @@ def curve_of(f):
     return CurveFields(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8])
 
 
-def straight(shape: tuple[int, int]) -> np.ndarray:
-    """Return the fields (12, n m) of a `RuptureLine` without a line at any vertex."""
-    fields = np.zeros((12, shape[0] * shape[1]))
-    fields[6] = 1.0
-    return fields
-
-
 class OilLine:
     """Rupture line of one mass-conserving film.
 

@@ -37,6 +37,13 @@ from exudyn_ehd.film.reynolds.links import LinkFlux
 LEAST = 1e-8
 
 
+def straight(shape: tuple[int, int]) -> np.ndarray:
+    """Return the fields (12, n m) of a `RuptureLine` that lies at no vertex."""
+    fields = np.zeros((12, shape[0] * shape[1]))
+    fields[6] = 1.0
+    return fields
+
+
 class RuptureLine:
     """The rupture line of one film.
 

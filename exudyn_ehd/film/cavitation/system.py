@@ -26,8 +26,8 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation.linear_film import ColumnLine, column_line
-from exudyn_ehd.film.cavitation.oil_line import OilLine, straight
-from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
+from exudyn_ehd.film.cavitation.oil_line import OilLine
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, straight
 from exudyn_ehd.film.cavitation.states import CLIPPED, OIL
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import DensityField

@@ -8,7 +8,7 @@ import pytest
 from exudyn_ehd import FullSommerfeld, Gumbel, InputError, Status, SwiftStieber, bearing_grid
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
-from exudyn_ehd.film.cavitation.oil_line import straight
+from exudyn_ehd.film.cavitation.rupture_line import straight
 from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.solvers.solver import FilmSolver
 
