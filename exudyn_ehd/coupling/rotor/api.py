@@ -188,7 +188,7 @@ def stability_map(
             found = _threshold(search, low, high)
         unstable = found is not None and found.speeds[0] == low and found.growth[0] > 0.0
         thresholds.append(np.inf if found is None else 0.0 if unstable else float(found.speeds[0]))
-        worst = None if found is None or unstable else found.eigenvalues[0, np.argmax(found.eigenvalues[0].real)]
+        worst = None if found is None or unstable else found.eigenvalues[0, np.nanargmax(found.eigenvalues[0].real)]
         ratios.append(np.nan if worst is None else abs(worst.imag) / thresholds[-1])
     return StabilityMap(
         values=np.array(values, dtype=float),

@@ -152,7 +152,7 @@ class RotorResult:
                 M, D, K = (part[k] for part in matrices)
                 found[k] = delayed_vibrations(M, D, K, partial(self._beyond, k), abs(float(self.speeds[k])))
         values, vectors = (np.array(part) for part in zip(*found, strict=True))
-        order = np.lexsort((values.real, values.imag))
+        order = np.lexsort((values.real, np.nan_to_num(values.imag, nan=-np.inf)))
         values = np.take_along_axis(values, order, axis=1)
         return values, self.directions @ np.take_along_axis(vectors, order[:, None, :], axis=2)
 
@@ -164,7 +164,9 @@ class RotorResult:
     def eigenvalues(self) -> np.ndarray:
         """(k, 2n) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency.
 
-        With `ElrodAdams` and liners a motion that only decays may stand here twice, since films have more of these.
+        Films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) have more or fewer
+        motions that fade within a turn. The place of one that they do not have is nan, here and in ``modes``, and comes
+        first.
         """
         return self._modes[0]
 
@@ -176,7 +178,7 @@ class RotorResult:
     @property
     def growth(self) -> np.ndarray:
         """(k,) largest real part of the eigenvalues, 1/s; positive: unstable, small motions grow."""
-        return self.eigenvalues.real.max(axis=1)
+        return np.nanmax(self.eigenvalues.real, axis=1)
 
     @property
     def is_stable(self) -> np.ndarray:

@@ -44,6 +44,8 @@ from exudyn_ehd.status import FilmError, InputError
 STEP, RATE_STEP = 1e-6, 1e-2
 
 
+# Eigenvalue, 1/s, and shape (n,) of a vibration.
+Track: TypeAlias = tuple[complex, np.ndarray]
 NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -313,34 +315,66 @@ def delayed_vibrations(
     """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K + beyond(s)) y = 0`` for films with a memory.
 
     They are followed from those of the films' K and C at half the speed, as the dynamic stiffness takes their place by
-    and by.
+    and by, all of them together: where two end in one, or one is lost, the step is halved. Motions that fade within a
+    turn may end there: with the films' own memory there are more or fewer of them. They are nan.
     """
-    half = 0.5 * speed
+    half, share, step = 0.5 * speed, 0.0, 0.25
     there = beyond(1j * half)
     start = D + there.imag / half, K + there.real
     values, vectors = vibrations(M, *start)
-    for j in np.flatnonzero(values.imag >= 0.0):
-        twin = np.argmin(np.abs(values - values[j].conj())) if values[j].imag > 0.0 else j
-        share, step = 0.0, 0.25
-        while share < 1.0:
-            larger = min(1.0, share + step)
+    # one of each pair of conjugates
+    tracks = [(values[j], vectors[:, j]) for j in np.flatnonzero(values.imag >= 0.0)]
+    while share < 1.0:
+        larger = min(1.0, share + step)
 
-            def stiffness(s: complex, share: float = larger) -> np.ndarray:
-                """Dynamic stiffness (n, n) without inertia, with a share of the films' own."""
-                return share * (K + s * D + beyond(s)) + (1.0 - share) * (start[1] + s * start[0])
+        def stiffness(s: complex, share: float = larger) -> np.ndarray:
+            """Dynamic stiffness (n, n) without inertia, with a share of the films' own."""
+            return share * (K + s * D + beyond(s)) + (1.0 - share) * (start[1] + s * start[0])
 
-            found = _near(M, stiffness, values[j], vectors[:, j], DIFFERENCE * speed)
-            share, step = (share, 0.5 * step) if found is None else (larger, 1.5 * step)
-            if found is not None:
-                values[j], vectors[:, j] = found
-            elif step < SMALLEST_SHARE:
-                raise FilmError(
-                    f"RotorResult: the vibration near {values[j]:.6g} 1/s at {speed:.6g} rad/s is not found, because "
-                    "its films follow it with a delay; look at speeds beside it, or run it in time."
-                )
-        if twin != j:
-            values[twin], vectors[:, twin] = values[j].conj(), vectors[:, j].conj()
+        found = _follow(M, stiffness, tracks, DIFFERENCE * speed, drops=step < SMALLEST_SHARE)
+        if found is None and step < SMALLEST_SHARE:
+            raise FilmError(
+                f"RotorResult: the vibrations at {speed:.6g} rad/s are not all found, because the films follow them "
+                "with a delay; look at speeds beside it, or run it in time."
+            )
+        share, step = (share, 0.5 * step) if found is None else (larger, 1.5 * step)
+        tracks = found or tracks
+    tracks += [(s.conjugate(), y.conj()) for s, y in tracks if s.imag > 0.0]
+    values, vectors = np.full(values.size, np.nan, dtype=complex), np.full(vectors.shape, np.nan, dtype=complex)
+    values[: len(tracks)], vectors[:, : len(tracks)] = [s for s, _ in tracks], np.column_stack([y for _, y in tracks])
     return values, vectors
+
+
+def _follow(M: np.ndarray, stiffness: Stiffness, tracks: list[Track], step: float, drops: bool) -> list[Track] | None:
+    """Vibrations near those of ``tracks``, none of negative frequency; None if one is lost, or if two end in one.
+
+    A pair that meets on the real axis goes on as two motions that decay; two of these that meet go on as a pair. Lost
+    motions that fade within a turn are left out if it ``drops`` them.
+    """
+    out: list[Track] = []
+    met: list[Track] = []
+    for s, y in tracks:
+        found = _near(M, stiffness, s, y, step)
+        new = [] if found is None else [found if found[0].imag >= 0.0 else (found[0].conjugate(), found[1].conj())]
+        if new and s.imag == 0.0 < new[0][0].imag and not any(_is_same(new[0], other) for other in met):
+            met += new
+            continue
+        parts = 1 + bool(new and s.imag > 0.0 == new[0][0].imag)
+        if parts == 2:
+            other = _near(M, stiffness, complex(2.0 * s.real - new[0][0].real), y, step)
+            new += [other] if other is not None and other[0].imag == 0.0 else []
+        new = [track for k, track in enumerate(new) if not any(_is_same(track, other) for other in out + new[:k])]
+        if len(new) < parts and not (drops and s.real < -abs(s.imag)):
+            return None
+        out += new
+    alone = [track[0] for track in met if not any(_is_same(track, other) for other in out)]
+    return None if any(not (drops and s.real < 0.0) for s in alone) else out
+
+
+def _is_same(a: Track, b: Track) -> bool:
+    """Return whether two vibrations are one, in value and shape."""
+    alike = abs(np.vdot(a[1], b[1])) / (np.linalg.norm(a[1]) * np.linalg.norm(b[1]))
+    return abs(a[0] - b[0]) <= DIFFERENCE * abs(a[0]) and bool(alike >= 1.0 - DIFFERENCE)
 
 
 def _near(

@@ -127,10 +127,38 @@ def test_no_vibration_in_films_that_remember_is_missed(name, mass, speed):
     found = ehd.SolveEquilibrium(shaft(place=0.05, mass=mass, film=film, **scale)[0], speed)
     values = found.eigenvalues[0]
     assert np.sum(values.real > 0.0) == pytest.approx(unstable_motions(found), abs=0.02)
+    assert np.all(np.isfinite(values[values.imag != 0.0]))
     vibrations = values[values.imag > 0.0]
     apart = np.abs(vibrations[:, None] - vibrations) / np.abs(vibrations) + np.eye(vibrations.size)
     assert vibrations.size >= 2 and apart.min() > 1e-3
     assert np.isfinite(found.campbell()["frequency"]).sum() == vibrations.size
+
+
+@pytest.mark.parametrize("seed", sample([1, 2, 3, 4], 1))
+def test_no_vibration_stands_twice(seed):
+    """Random symmetric rotors, whose vibrations come in neighbours; each solves the whole dynamic stiffness."""
+    rng, names = np.random.default_rng(seed), ["oil content", "liner", "oil content, liner", "pockets"]
+    for name in names * 3:
+        mass, load = float(np.exp(rng.uniform(np.log(5.0), np.log(1000.0)))), float(rng.uniform(300.0, 3000.0))
+        scale = {"transverse": 0.01 * mass * rng.uniform(0.3, 3.0), "polar": 0.005 * mass, "weight": load / mass}
+        rotor = shaft(mass=mass, film=bearing(**MEMORIES[name]), **scale)[0]
+        found = ehd.SolveEquilibrium(rotor, float(rng.uniform(100.0, 700.0)))
+        there = np.isfinite(found.eigenvalues[0])
+        values, modes = found.eigenvalues[0, there], found.directions[0].T @ found.modes[0][:, there]
+        # only motions that fade within a turn may be missing
+        assert np.sum(values.imag > 0.0) >= 2 and np.all(np.diff(values.imag) >= 0.0)
+        modes /= np.linalg.norm(modes, axis=0)
+        for k, (value, y) in enumerate(zip(values, modes.T, strict=True)):
+            close = np.abs(values[:k] - value) < 1e-5 * abs(value)
+            assert not np.any(close & (np.abs(y.conj() @ modes[:, :k]) > 1.0 - 1e-5)), (name, mass, value)
+            M, D, K = (part[0] for part in (found.mass_matrix, found.damping_matrix, found.stiffness_matrix))
+            terms = [
+                value**2 * M @ y,
+                value * D @ y,
+                K @ y,
+                *(memory.beyond(value) @ y for memory in found.memories[0]),
+            ]
+            assert np.abs(sum(terms)).max() < 1e-5 * max(np.abs(term).max() for term in terms)
 
 
 def test_a_vertical_rotor_at_the_exact_centre_has_the_coefficients_of_a_slight_load():
