@@ -12,7 +12,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
-from exudyn_ehd.coupling.rotor.system import delayed_vibrations, vibrations
+from exudyn_ehd.coupling.rotor.vibrations import delayed_vibrations, vibrations
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number
