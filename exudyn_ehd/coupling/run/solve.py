@@ -20,9 +20,9 @@ from exudyn_ehd.coupling.run.settings import (
     require_control,
     require_settings,
     require_time,
-    steps_by_error,
     warn_of_misfit,
 )
+from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.solver_state import StepControl, hooked
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
