@@ -373,8 +373,10 @@ class ElrodAdams(Closure):
     content follows from them but for half of a step's change of the gap, a difference that does not add up over steps.
 
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
-    stiffness falls from 9 to 1.5 %, and the spread of damping over the direction from 10 to 1.3 %, in two to three
-    times the time. The reformation line stays on vertices, which may leave an error of 6 % in damping.
+    stiffness falls from 9 to 1.5 %, in two to three times the time. The spread of damping over the direction of the
+    load falls from 8 to 1 % with a cavity pressure of -10 bar. The line where the film reforms stays on vertices, and
+    matters more the nearer the cavity's pressure is to that of the ends: at -1 bar damping differs by up to 23 % over
+    the direction (49 % without), stiffness by up to 4 % (9 %), on 192 x 20 vertices by 2 % (3 %).
 
     Parameters
     ----------
