@@ -7,7 +7,6 @@ plain_film   a film without further effects in one kernel
 step_rates   rates of a step that agree with its positions
 step_error   what the steps of a run miss in the gap
 seams        what an effect must offer to take part
-newton       one damped Newton's method and one continuation, for all balances
 bore         shapes of an elastic bore and their balance
 tangent      derivatives of the wrench
 heat         temperature over time

@@ -57,7 +57,7 @@ sinks.
 
 Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
 
-Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.limits`), at the highest pressure.
+Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.resolution`), at the highest pressure.
 
 Films that carry so little that Newton's absolute tolerance is a share of it.
 """

@@ -21,12 +21,15 @@ from exudyn_ehd.film.banded.factors import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_along
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.rupture_line import LEAST, RuptureLine, line_terms
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 from exudyn_ehd.film.cavitation.solve import FAR, LEFT, REUSABLE
 from exudyn_ehd.film.cavitation.states import ROUNDING
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.kernels import I0
 from exudyn_ehd.film.reynolds.links import lacks
+
+# s that a vertex starts from whose pressure says nothing of it; a smaller one costs steps.
+START = 1e-3
 
 
 @njit(cache=True)
@@ -152,7 +155,7 @@ def place_line(line, fixed, active, p):
         elif whole[c] > 0.0 and (own < 1.0 or pressures[c] < whole[c]):
             if not own < 1.0:
                 own = np.sqrt(max(pressures[c], 0.0) / whole[c])
-            s[c] = max(own, LEAST)
+            s[c] = max(own, START)
             pressures[c] = whole[c] * s[c] * s[c]
 
 

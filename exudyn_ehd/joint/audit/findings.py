@@ -81,7 +81,7 @@ LIMITS = {
     "turbulence": Limit(2000.0, "rho U c / mu of a Couette flow", nothing=200.0),
     # up to twice the forces of lubrication theory were measured at 10: ASME GT1984, V005T13A003
     "fluid inertia": Limit(1.0, "rho w c^2 / mu: inertia takes a tenth of the viscous pressure of a swinging flow"),
-    "grid around": Limit(FEWEST, "intervals: 5 % of the peak pressure, `joint.balance.limits`", below=True),
+    "grid around": Limit(FEWEST, "intervals: 5 % of the peak pressure, `joint.balance.resolution`", below=True),
     "grid along": Limit(STEEPEST, "times as thick a film: as around"),
     "supply resolution": Limit(
         1.0, "interval across the narrowest area, whose edges act where they are", below=True, nothing=math.inf

@@ -2,7 +2,7 @@
 
 Module map
 ----------
-newton      position and temperature together in balance; film at a motion
+newton      one damped Newton's method for position and temperature; film at a motion
 position    journal's position under a load
 limits      temperatures and pressures beyond which a film is told of; advice for films without a solution
 resolution  grids too coarse for a film's pressure peak

@@ -16,7 +16,6 @@ from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import (
-    ROUNDING,
     FilmError,
     HotFilmWarning,
     OverloadWarning,
@@ -33,6 +32,8 @@ PRESSED_THROUGH = "the journal was pressed through its contact by more than the 
 # K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
 # beyond any oil, so that a film of one is a wrong answer.
 HOT, HOTTEST = 423.15, 700.0
+# K, round-off of temperatures.
+ROUNDING = 1e-6
 COOLER = (
     "let more oil flow through (end pressures, supply, clearance), give the thermal effect heat transfer to the "
     "surfaces (housing_conductance, bush_coefficient, journal_coefficient), or take a thinner oil, less load or speed."
@@ -139,7 +140,7 @@ def outside_table(film: object) -> str:
         return ""
     T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
     low, high = float(np.min(T)), float(np.max(T))
-    if limits[0] * (1.0 - ROUNDING) <= low and high <= limits[1] * (1.0 + ROUNDING):
+    if limits[0] - ROUNDING <= low and high <= limits[1] + ROUNDING:
         return ""
     return (
         f"the film's temperatures reach from {low:.4g} to {high:.4g} K, but the oil's {type(law).__name__} from "

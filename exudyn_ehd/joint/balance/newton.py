@@ -1,14 +1,20 @@
-"""Steady films in balance: the journal's position under a load, and the temperature.
+"""One damped Newton's method for steady films: for the journal's position under a load, and for the temperature.
 
 Of the free coordinates x of the journal and the temperature T, with the force F of the films and the load W, and with
 the temperature T* that is in balance with the heat of the film at x and T,
 
     F(x, T) + W = 0,    T*(x, T) - T = 0.
 
-A round solves one film, whose flexible bore is in balance with it. It takes the step of `exudyn_ehd.joint.newton` in x
-at the film's temperature, with its forces multiplied by what the mean viscosity changes by from T to T*, and the step
-to T*. Near the end Anderson's acceleration of both finds what each adds to the other. Damping d stands for a resistance
-of d times the load over the clearance, and slows down changes of the temperature, too.
+A round solves one film, whose flexible bore is in balance with it. It takes Newton's step in x at the film's
+temperature, with its forces multiplied by what the mean viscosity changes by from T to T*, and the step to T*. Near
+the end Anderson's acceleration of both finds what each adds to the other. With a resistance r, N/m, the step in x is
+damped after Levenberg (1944) and Marquardt (1963): with K = -dF/dx
+
+    (K^T K + r^2 I) step = K^T (F + W)
+
+goes downhill in |F + W|^2 for r large enough, whatever K; r falls as |F + W| does, and a step that increases it is
+taken back and r grows. Slow and sure where Newton's method jumps over a film that starves or touches, and where a film
+without a cavity turns the journal across the load. A step that meets no film is halved.
 
 Free coordinates are x and y, and the place z along the axis if films on the end faces carry an axial load.
 
@@ -27,7 +33,6 @@ from numpy.linalg import norm
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, outside_table, require_oil_bears, seized
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.newton import DampedNewton, levenberg_step
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
@@ -35,12 +40,21 @@ if TYPE_CHECKING:
     from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
 
 
-# Steps of a first position towards the centre, after which there is no film.
-NEARER = 8
-# K: change that the acceleration starts from, and one that weighs as much as a clearance.
-ACCELERATED, TYPICAL_CHANGE = 5.0, 30.0
-# Damping of searches that are to stay near their start.
-HELD_BACK = 10.0
+# Change of the temperature that counts as settled, as a share of the film's rise over its coldest source; where
+# round-off of hot fields keeps changes from falling further, `ROUNDING` does.
+SETTLED = 1e-11
+LOAD_TOLERANCE = 1e-10
+# Rounds of a search, and of one from a film nearby, or those that may pass without the error falling to a share of what
+# it was. More rounds, and a share nearer to 1, give up later.
+ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
+# Damping of the temperature's steps below which it gives up where they make no progress.
+WEAKEST = 0.1
+# Halvings of a step without a film, or steps of the first position towards the centre, after which there is none.
+HALVINGS = 8
+# Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
+LARGEST_EFFORT = 6000
+# K: largest change of a round, change that the acceleration starts from, and one that weighs as much as a clearance.
+LARGEST_CHANGE, ACCELERATED, TYPICAL_CHANGE = 50.0, 5.0, 30.0
 # Differences of past rounds that the acceleration combines.
 DEPTH = 10
 # K, up to which a search goes on, far beyond what any oil bears: on its way a film is hotter than where it ends.
@@ -79,7 +93,7 @@ class Place:
     faces: ThrustEvaluation | None
 
 
-class Balance(DampedNewton[Place]):
+class Balance:
     """Steady films of a model, whose temperature and position are sought.
 
     Parameters
@@ -123,8 +137,8 @@ class Balance(DampedNewton[Place]):
         self.thermal = model.effects.thermal if held is None else None
         cold = np.zeros(0) if self.thermal is None else self.thermal.initial_temperature(model.grid.shape)
         self.cold = np.asarray(cold, dtype=float)
-        self.count, self.strongest = 0, (0.0, 0.0)
-        self._past: list[tuple[Place, np.ndarray, np.ndarray]] = []
+        self.count, self.first = 0, model.parts.evaluations.count
+        self.strongest = (0.0, 0.0)
 
     def temperature_of(self, near: History | None) -> np.ndarray:
         """Temperature, K, at which a search starts beside a film with this memory."""
@@ -148,7 +162,8 @@ class Balance(DampedNewton[Place]):
                 raise FilmError(f"{self.where}: the film is heated, and its heat has no way out; {WAY_OUT}")
             if not float(T.max()) < DIVERGED:
                 raise FilmError(f"{self.where}: the film is beyond {DIVERGED:g} K, {NO_OIL}")
-            thinner = float(thermal.viscosity_ratio(T + change).mean() / thermal.viscosity_ratio(T).mean())
+            after = T + change * min(1.0, LARGEST_CHANGE / max(size, 1e-300))
+            thinner = float(thermal.viscosity_ratio(after).mean() / thermal.viscosity_ratio(T).mean())
         unbalance, slope, beside = self.share * self.load, np.zeros((k, k)), None
         if k:
             carried = float(np.hypot(*evaluation.wrench[:2]))
@@ -170,26 +185,26 @@ class Balance(DampedNewton[Place]):
         return float((np.abs(place.unbalance) / self._sizes).max(initial=0.0)) / self.share
 
     def error(self, place: Place) -> float:
-        """The larger of the unbalance over the load and of the temperature's change over a typical one."""
-        left = float(norm(place.unbalance / self._sizes)) / self.share
-        return max(left, float(np.abs(place.change).max(initial=0.0)) / TYPICAL_CHANGE)
+        """The larger of the residual and of the temperature's change over a typical one."""
+        return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / TYPICAL_CHANGE)
 
-    def is_balanced(self, place: Place, tolerance: float = ROUNDING) -> bool:
-        """Return whether the residual is below a tolerance, or round-off, and so is the change of the temperature."""
+    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = ROUNDING) -> bool:
+        """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
         T, change = place.temperature, place.change
-        if self.free:
-            # of the film's force, which a tiny load can't fall below
-            round_off = np.finfo(float).eps * self.model.bearing.reference_force(place.motion[8]) / self.size
-            if self.residual(place) > max(tolerance, round_off):
-                return False
-        rise = max(float(np.ptp(T + change)), float(np.abs(T - self.cold).max()), 1e-3) if change.size else 1.0
-        return float(np.abs(change).max(initial=0.0)) <= tolerance * rise
+        if self.residual(place) > tolerance or not change.size:
+            return self.residual(place) <= tolerance
+        rise = max(float(np.ptp(T + change)), float(np.abs(T - self.cold).max()), 1e-3)
+        return float(np.abs(change).max()) <= settled * rise
 
-    def accepts(self, here: Place, there: Place, damping: float) -> bool:
-        """Return whether a step is taken: any undamped one, as Newton's method comes back from films that starve."""
-        return damping == 0.0 or super().accepts(here, there, damping)
-
-    def solve(self, motion: np.ndarray, temperature: np.ndarray, damping: float = 0.0) -> Place:
+    def solve(
+        self,
+        motion: np.ndarray,
+        temperature: np.ndarray,
+        tolerance: float = LOAD_TOLERANCE,
+        *,
+        resistance: float = 0.0,
+        rounds: int = ROUNDS,
+    ) -> Place:
         """Film in balance from a motion (11,) and a temperature on, or the last of the search.
 
         It ends where it makes no progress, too. The film is the model's last.
@@ -199,15 +214,42 @@ class Balance(DampedNewton[Place]):
         FilmError
             Without a film at the start, nor at smaller eccentricities.
         """
-        self._past = []
-        here = self.descend(self._first(motion, temperature), damping)
+        here = self._first(motion, temperature)
+        past: list[tuple[np.ndarray, np.ndarray]] = []
+        best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
+        for _ in range(rounds):
+            spent = self.model.parts.evaluations.count - self.first > LARGEST_EFFORT
+            if self.is_balanced(here, tolerance, SETTLED) or spent:
+                break
+            if idle > PATIENCE:
+                if not here.change.size or damping < WEAKEST or (self.free and not resistance):
+                    break
+                here, past, idle, damping = best, [], 0, 0.6 * damping
+            step = self._step(here, resistance)
+            past = [*past, (self._unknowns(here), step)][-min(DEPTH, step.size) - 1 :]
+            if not here.change.size or np.abs(here.change).max() >= ACCELERATED:
+                past = []
+            accelerated = damping * step - (foreseen(past, damping) if len(past) > 1 else 0.0)
+            try:
+                there = self._moved(here, part * accelerated)
+            except FilmError:
+                there = None
+            if there is None or (resistance and not norm(there.unbalance) < norm(here.unbalance)):
+                past, part, resistance = [], part if resistance else 0.5 * part, 4.0 * resistance
+                if resistance > highest or part < 0.5**HALVINGS:
+                    break
+                continue
+            here, part, resistance = there, 1.0, resistance / 5.0
+            idle = 0 if self.error(here) <= FALLS * smallest else idle + 1
+            if self.error(here) < smallest:
+                best, smallest = here, self.error(here)
         if here.film.serial != self.model.parts.evaluations.count:
             here = self.at(here.motion, here.temperature)
         return here
 
     def _first(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
         """The film at a motion (11,), or that of a free journal at a smaller eccentricity if there is none."""
-        for _ in range(NEARER if self.free else 0):
+        for _ in range(HALVINGS if self.free else 0):
             try:
                 return self.at(motion, temperature)
             except FilmError:
@@ -223,33 +265,24 @@ class Balance(DampedNewton[Place]):
         """Scaled unknowns (k + m,) at a place."""
         return np.append(place.motion[self.free], place.temperature) / self._scales(place.change.size)
 
-    def step(self, here: Place, damping: float) -> np.ndarray:
-        """Damped step of the position and the temperature's change, scaled (k + m,), accelerated."""
-        c, sizes, k = self.model.bearing.radial_clearance, self._sizes[:, None], len(self.free)
-        slower = 1.0 / (1.0 + damping)
-        step = levenberg_step(-c / sizes * here.slope, here.unbalance / self._sizes, damping)
-        step = np.append(step, here.change.ravel() / self._scales(here.change.size)[k:])
-        if self._past and self._past[-1][0] is here:
-            self._past = []
-        self._past = [*self._past, (here, self._unknowns(here), step)][-min(DEPTH, step.size) - 1 :]
-        if not here.change.size or np.abs(here.change).max() >= ACCELERATED:
-            self._past = []
-        return slower * step - (foreseen([past[1:] for past in self._past], slower) if len(self._past) > 1 else 0.0)
+    def _step(self, place: Place, resistance: float) -> np.ndarray:
+        """Newton's step from a place, damped, and the temperature's change, scaled (k + m,)."""
+        k, size = len(self.free), float(np.abs(place.change).max(initial=1e-300))
+        rows = np.vstack((-place.slope, resistance * np.eye(k)))
+        step, *_ = np.linalg.lstsq(rows, np.append(place.unbalance, np.zeros(k)), rcond=None)
+        return np.append(step, place.change * min(1.0, LARGEST_CHANGE / size)) / self._scales(place.change.size)
 
-    def moved(self, here: Place, step: np.ndarray) -> Place | None:
+    def _moved(self, place: Place, step: np.ndarray) -> Place:
         """The film a scaled step (k + m,) on, shortened to what the gaps leave and to four times the last change."""
-        k, motion, size = len(self.free), here.motion.copy(), float(np.abs(here.change).max(initial=1e-300))
-        step = step * self._scales(here.change.size)
+        k, motion, size = len(self.free), place.motion.copy(), float(np.abs(place.change).max(initial=1e-300))
+        step = step * self._scales(place.change.size)
         if k:
             motion[:2] += limited_step(self.model, motion, step[:2])
-        if here.faces is not None and k > 2:
-            motion[MOTION_SIZE] += limited_shift(here.faces, float(step[2]))
-        change = step[k:].reshape(here.change.shape)
+        if place.faces is not None and k > 2:
+            motion[MOTION_SIZE] += limited_shift(place.faces, float(step[2]))
+        change = step[k:].reshape(place.change.shape)
         change = change * min(1.0, 4.0 * size / float(np.abs(change).max(initial=size)))
-        try:
-            return self.at(motion, here.temperature + change)
-        except FilmError:
-            return None
+        return self.at(motion, place.temperature + change)
 
 
 def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float) -> np.ndarray:
@@ -356,8 +389,6 @@ def settled_history(
     if balance.thermal is None:
         return None
     found = balance.solve(motion, balance.temperature_of(near))
-    if not balance.is_balanced(found):
-        found = balance.solve(motion, found.temperature, HELD_BACK)
     if not balance.is_balanced(found):
         require_oil_bears(found.film.temperature, model.grid, where)
         raise FilmError(

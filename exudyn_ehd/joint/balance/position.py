@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -11,8 +12,15 @@ import scipy
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
 from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
-from exudyn_ehd.joint.balance.newton import HELD_BACK, NEARER, Balance, Place, gaps_of_arcs
-from exudyn_ehd.joint.newton import continued
+from exudyn_ehd.joint.balance.newton import (
+    HALVINGS,
+    LOAD_TOLERANCE,
+    PATIENCE,
+    ROUNDS,
+    Balance,
+    Place,
+    gaps_of_arcs,
+)
 from exudyn_ehd.status import FilmError, InputError, warn_user
 
 # Eccentricity ratio in the direction of the load of the second start of damped steps: inside, where neither a gap is
@@ -29,11 +37,10 @@ class LoadSearch(Balance):
     """Search for the position in which the steady film of a model carries a load.
 
     Newton's method; where it fails, and the film has a temperature and none is known yet, for loads that grow from a
-    quarter of the whole, `climb`; where this finds none either, damped steps from inside the bearing; in a lobed one
-    also from where the film is as strong as the load, on the way on which the load presses the journal onto the bore.
+    quarter of the whole, `climb`; where this finds none either, damped steps, first from the same place, then from
+    inside the bearing; in a lobed one also from where the film is as strong as the load, on the way on which the load
+    presses the journal onto the bore.
     """
-
-    nearest: Place | None = None
 
     def find(self, motion: np.ndarray, near: Place | None = None) -> Place:
         """Position, from that of a motion on, in which the film carries the load.
@@ -45,29 +52,43 @@ class LoadSearch(Balance):
         FilmError
             If none was found.
         """
-        carried, self.nearest = 0.0, None
+        self.first, carried = self.model.parts.evaluations.count, 0.0
+        self.nearest: Place | None = None
         start = self.temperature_of(None if near is None else near.film.history)
         found = self.attempt(motion, start)
         if found is None and near is None and self.thermal is not None:
             carried, found = self.climb(motion)
-        places = (partial(self.loaded, motion, INSIDE), partial(self.opposed, motion, start))
-        for place in places[: 1 + self.model.bearing.is_lobed] if carried == 0.0 else ():
+        places = (lambda: motion, partial(self.loaded, motion, INSIDE), partial(self.opposed, motion, start))
+        for place in places[: 2 + self.model.bearing.is_lobed] if carried == 0.0 else ():
             if found is None:
-                found = self.attempt(place(), start, HELD_BACK)
+                found = self.attempt(place(), start, self.held_back)
         if found is None:
             raise self._not_found(carried * self.size)
         return found
 
-    def attempt(self, motion: np.ndarray, temperature: np.ndarray, damping: float = 0.0) -> Place | None:
+    @property
+    def held_back(self) -> float:
+        """Resistance of a damped search, N/m."""
+        return 10.0 * self.size / self.model.bearing.radial_clearance
+
+    def tolerance(self, motion: np.ndarray) -> float:
+        """Share of the load that may be left of it at a motion."""
+        # rounding of the film's force, which a tiny load can't fall below
+        return max(LOAD_TOLERANCE, np.finfo(float).eps * self.model.bearing.reference_force(motion[8]) / self.size)
+
+    def attempt(
+        self, motion: np.ndarray, temperature: np.ndarray, resistance: float = 0.0, rounds: int = ROUNDS
+    ) -> Place | None:
         """The film of one search, see `solve`; None if it is not in balance, or hotter than any oil."""
+        tolerance = self.tolerance(motion)
         try:
-            found = self.solve(motion, temperature, damping)
+            found = self.solve(motion, temperature, tolerance, resistance=resistance, rounds=rounds)
         except FilmError as error:
             self.failure = error
             return None
         self.nearest = found
         hot = found.change.size and is_above(HOTTEST, found.temperature)
-        return found if self.is_balanced(found) and not hot else None
+        return found if self.is_balanced(found, tolerance) and not hot else None
 
     def loaded(self, motion: np.ndarray, ratio: float) -> np.ndarray:
         """A motion with the journal moved to a share of the way on which the load presses it onto the bore."""
@@ -87,7 +108,7 @@ class LoadSearch(Balance):
     def opposed(self, motion: np.ndarray, temperature: np.ndarray) -> np.ndarray:
         """A motion with the journal on this way, by bisection where its film is as strong as the load."""
         lower, upper = 0.0, 1.0
-        for _ in range(2 * NEARER):
+        for _ in range(2 * HALVINGS):
             ratio = 0.5 * (lower + upper)
             try:
                 wrench = self.at(self.loaded(motion, ratio), temperature).evaluation.wrench
@@ -105,8 +126,8 @@ class LoadSearch(Balance):
         def reach(share: float, here: Place | None, _: bool) -> Place | None:
             self.share = share
             if here is None:
-                return self.attempt(first, self.temperature_of(None))
-            return self.attempt(here.motion, here.temperature)
+                return self.attempt(first, self.temperature_of(None), rounds=PATIENCE)
+            return self.attempt(here.motion, here.temperature, rounds=PATIENCE)
 
         share, found = continued(reach, FIRST_SHARE, SMALLEST_SHARE)
         self.share = 1.0
@@ -211,6 +232,37 @@ def turning(motion: np.ndarray) -> np.ndarray:
     return math.cos(angle) * np.eye(2) + math.sin(angle) * QUARTER_TURN
 
 
+def continued(
+    reach: Callable[[float, Place | None, bool], Place | None], step: float, shortest: float
+) -> tuple[float, Place | None]:
+    """Follow films over a parameter from 0 to 1, by steps that are halved where one is not reached.
+
+    Parameters
+    ----------
+    reach : function
+        Of the parameter, the last film (None for the first), and whether the step can't be halved any more; returns the
+        film there, or None.
+    step, shortest : float
+        First and shortest step.
+
+    Returns
+    -------
+    parameter, film
+        The last that was reached; 0 and None without any.
+    """
+    at, here = 0.0, None
+    while at < 1.0:
+        target = min(1.0, at + step)
+        there = reach(target, here, step <= shortest)
+        if there is not None:
+            at, here = target, there
+        elif step <= shortest:
+            break
+        else:
+            step = max(0.5 * step, shortest)
+    return at, here
+
+
 def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
     """Eccentricity (2,) in m from the mean of the short and the long bearing's load, both half Sommerfeld.
 
@@ -264,7 +316,7 @@ def steadiest(search: LoadSearch, found: Place) -> Place:
     places = [found]
     for ratio in (LOADED, INSIDE):
         start = search.loaded(found.motion, ratio)
-        other = search.attempt(start, found.temperature, HELD_BACK)
+        other = search.attempt(start, found.temperature, search.held_back)
         if other is None:
             continue
         away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)

@@ -2,34 +2,37 @@
 
 The bore's coordinates in equilibrium with the film, and the tangent of a bore that follows.
 
-With the bush's stiffness K the residual is ``r(q) = Q(q) - K q``; the damped Newton's method of
-`exudyn_ehd.joint.newton` with the exact ``K - dQ/dq``. A pressure falls with the gap it opens, and falls the less the
-wider the gap: from a small q on Newton's steps stop short of the solution and stay on the safe side.
+With the bush's stiffness K the residual is ``r(q) = K q - Q(q)``; Newton with the exact ``K - dQ/dq``. A pressure
+falls with the gap it opens, and falls the less the wider the gap: from a small q on Newton's steps stop short of the
+solution and stay on the safe side.
 
 A bore with thin parts that the film bends or tilts, as tongues and pads, has several equilibria, and Newton's method
-jumps between them or nowhere. Damped, its steps are those of a bore that moves as slowly as a viscous one,
-``K (q + tau dq/dt) = Q(q)``: backward Euler, whose time step is tau over the damping. A step is taken where it leaves
-less of this balance than there was before. So the equilibrium is the one to which the undeformed bore comes.
+jumps between them or nowhere. Where it does not go straight to one, the one counts to which the bore comes from where
+it is undeformed if it moves as slowly as a viscous one, ``K (q + tau dq/dt) = Q(q)``: backward Euler, each step with
+the tau over time h that the last one's success allows, and Newton's method from where the motion dies down.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from exudyn_ehd.joint.bore.shapes import Bore
-from exudyn_ehd.joint.newton import DampedNewton, continued
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
-from exudyn_ehd.status import ROUNDING, Status
+from exudyn_ehd.status import Status
 
-# Shortest step of the continuation to the prescribed position, and trials after which none is begun.
-SMALLEST_PART, MOST_TRIALS = 1e-4, 3000
-# Share of the viscous balance that a damped step may leave. Larger ones jump between equilibria: with 0.5 one of 16
-# random tongues is in another one than with 0.2 and with ten Newton steps at a time.
-LEFT = 0.2
+# Continuation to the prescribed position: step below which it ends, and growth of the step after a success.
+SMALLEST_PART, LONGER = 1e-4, 1.5
+# Steps of Newton's method and what they may leave of the residual, over the load; of a viscous bore's step likewise.
+LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60, 1e-11, 10, 1e-5
+# Pseudo-transient continuation of a viscous bore: slowness at its start and its end, share of q that it may leave to
+# Newton's method; trials after which no continuation is begun or continued.
+SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
+# Trials after which the whole way ends, and a straight one.
+LARGEST_WAY, STRAIGHT_WAY = 3000, 60
 
 
 class Elasticity:
@@ -116,7 +119,6 @@ class NodalEvaluation(BoreEvaluation, Protocol):
 
 
 Result = TypeVar("Result", bound=BoreEvaluation, covariant=True)
-Film = TypeVar("Film", bound=BoreEvaluation)
 
 
 class FilmOnBore(Protocol[Result]):
@@ -131,11 +133,11 @@ class FilmOnBore(Protocol[Result]):
 
 
 def bore_equilibrium(
-    model: FilmOnBore[Film],
+    model: FilmOnBore[Result],
     motion: np.ndarray,
     film: tuple[History | None, float, float],
     start: np.ndarray,
-) -> tuple[Film | None, tuple[float, np.ndarray]]:
+) -> tuple[Result | None, tuple[float, np.ndarray]]:
     """Evaluate with the bore in equilibrium.
 
     The place is approached in parts where the rigid surfaces would touch, each from where the last two lead: a thin
@@ -145,83 +147,94 @@ def bore_equilibrium(
     they leave a gap, before the undeformed bore. Returns the evaluation or None, and the largest part of the place with
     an equilibrium on the way, with its coordinates (k,).
     """
-    newton, still = BoreNewton(model, motion, film), np.zeros_like(start)
+    newton, most = Newton(model, motion, film), STRAIGHT_WAY if model.elasticity.straight else LARGEST_WAY
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
-    if found is not None:
-        return found, (1.0, start)
-    path, straight = [(-1.0, still), (0.0, still)], model.elasticity.straight
-
-    def reach(part: float, here: Film | None, final: bool) -> Film | None:
-        (before, first), (last, q) = path[-2:]
-        guess = q + (part - last) / (last - before) * (q - first)
-        near = newton.solve(guess, part, straight) if newton.trials < MOST_TRIALS else None
-        if near is not None:
-            path.append((part, near.bore.coordinates.copy()))
-        return near
-
-    reached, found = continued(reach, 1.0, 1.0 if straight else SMALLEST_PART)
-    return found if reached == 1.0 else None, path[-1]
+    reached, part, q, rate = 0.0, 1.0, np.zeros_like(start), np.zeros_like(start)
+    while found is None and part > SMALLEST_PART and newton.trials < most:
+        target = min(1.0, reached + part)
+        near = newton.settle(q + (target - reached) * rate, target)
+        if near is None:
+            part *= 0.5
+        elif target == 1.0:
+            found = near
+        else:
+            rate = (near.bore.coordinates - q) / (target - reached)
+            reached, q, part = target, near.bore.coordinates.copy(), LONGER * part
+    return found, (reached, q)
 
 
-class BoreNewton(DampedNewton[Film]):
-    """Search for the coordinates q of a bore in balance with the film at a motion."""
+class Newton(Generic[Result]):
+    """Newton's method on q; steps are halved until the gap stays open and the residual falls."""
 
-    def __init__(self, model: FilmOnBore[Film], motion: np.ndarray, film: tuple[History | None, float, float]) -> None:
+    def __init__(
+        self, model: FilmOnBore[Result], motion: np.ndarray, film: tuple[History | None, float, float]
+    ) -> None:
         self.model, self.motion, self.film = model, motion, film
         self.trials = 0
 
-    def solve(self, q: np.ndarray, part: float, straight: bool = False) -> Film | None:
-        """Equilibrium from coordinates q (k,) with the pose scaled by ``part``, the model's last; None if not found.
-
-        ``straight``: nor where a step has to be damped.
-        """
-        self._full = np.concatenate((self.motion[:MOTION_SIZE], q, np.zeros(q.size)))
-        self._full[:4] *= part
-        self._size, self._at = 1e-300, None
-        self.most_damping = 0.0 if straight else DampedNewton.most_damping
-        start = self._evaluate(q)
-        found = None if start is None else self.descend(start)
-        if found is None or not self.is_balanced(found):
-            return None
-        return found if found is self._last else self._evaluate(found.bore.coordinates.copy())
-
-    def _evaluate(self, q: np.ndarray) -> Film | None:
-        self._full[MOTION_SIZE : MOTION_SIZE + q.size] = q
-        self.trials += 1
-        self._last = found = self.model.evaluate(self._full, *self.film)
-        if found.status is not Status.CONVERGED:
-            return None
-        self._size = max(self._size, float(np.linalg.norm(found.bore.load)))
+    def settle(self, q: np.ndarray, part: float) -> Result | None:
+        """Find the balance by full Newton steps, else as a viscous bore comes to rest from q, else by halved steps."""
+        found = self.solve(q, part, straight=True)
+        if found is None and self.trials < LARGEST_EFFORT and not self.model.elasticity.straight:
+            found = self._come_to_rest(q, part) or self.solve(q, part)
         return found
 
-    def _residual(self, place: Film) -> np.ndarray:
-        elasticity = self.model.elasticity
-        return place.bore.load + elasticity.load - elasticity.force(place.bore.coordinates)
+    def _come_to_rest(self, q: np.ndarray, part: float) -> Result | None:
+        slowness, start = SLOWEST, self.trials
+        while slowness < LARGEST_SLOWNESS and self.trials - start < LARGEST_EFFORT:
+            near = self.solve(q, part, slowness)
+            if near is None:
+                slowness *= 4.0
+                continue
+            new = near.bore.coordinates.copy()
+            moved, size = np.linalg.norm(new - q), np.linalg.norm(new)
+            found = self.solve(new, part) if moved <= NEAR * size else None
+            if found is not None and np.linalg.norm(found.bore.coordinates - new) <= 5.0 * NEAR * size:
+                return found
+            q, slowness = new, slowness / 3.0
+        return None
 
-    def step(self, here: Film, damping: float) -> np.ndarray:
-        """Step (k,) of a bore with a viscosity, m."""
-        if here is not self._at:  # its film is the model's last then
-            self._at, self._softening = here, here.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
-        held = 1.0 + damping
-        return self.model.elasticity.solve(here.bore.coordinates, self._softening / held, self._residual(here) / held)
+    def solve(self, q: np.ndarray, part: float, slowness: float = 0.0, straight: bool = False) -> Result | None:
+        """Equilibrium from coordinates q (k,) with the pose scaled by ``part``; None if none was found.
 
-    def moved(self, here: Film, step: np.ndarray) -> Film | None:
-        """The film a step on."""
-        return self._evaluate(here.bore.coordinates + step)
-
-    def error(self, place: Film) -> float:
-        """Residual over the largest load of the search."""
-        return float(np.linalg.norm(self._residual(place))) / self._size
-
-    def is_balanced(self, place: Film, tolerance: float = ROUNDING) -> bool:
-        """Return whether the residual is below a share of the load."""
-        return self.error(place) <= tolerance
-
-    def accepts(self, here: Film, there: Film, damping: float) -> bool:
-        """Return whether a step is taken: with what the viscosity resists, less of the balance is left."""
-        resisted = damping * (self.model.elasticity.stiffness @ (there.bore.coordinates - here.bore.coordinates))
-        left = np.linalg.norm(self._residual(there) - resisted)
-        return bool(left < (LEFT if damping > 0.0 else 1.0) * np.linalg.norm(self._residual(here)))
+        ``straight``: nor where a step has to be halved. With a slowness s, tau over the time of a step, what a viscous
+        bore has reached after the step: ``K (q' + s (q' - q)) = Q(q')``.
+        """
+        model, elasticity, k, old, held = self.model, self.model.elasticity, q.size, q, 1.0 + slowness
+        full = np.concatenate((self.motion[:MOTION_SIZE], q, np.zeros(k)))
+        full[:4] *= part
+        evaluation = model.evaluate(full, *self.film)
+        if evaluation.status is not Status.CONVERGED:
+            return None
+        steps, tolerance = (
+            (MOVING_STEPS, MOVING_TOLERANCE) if slowness else (LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE)
+        )
+        scale = max(float(np.linalg.norm(evaluation.bore.load)), 1e-300)
+        residual = evaluation.bore.load + elasticity.load - elasticity.force(q)
+        error, last = float(np.linalg.norm(residual)), np.inf
+        for _ in range(steps):
+            # stop at the tolerance, or where rounding keeps a converged residual from falling
+            if error <= tolerance * scale or (error <= 1e-8 * scale and error > 0.5 * last):
+                return evaluation
+            softening = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
+            step = elasticity.solve(q, softening / held, residual / held)
+            last = error
+            for _ in range(1 if straight else 12):
+                full[MOTION_SIZE : MOTION_SIZE + k] = q + step
+                evaluation = model.evaluate(full, *self.film)
+                self.trials += 1
+                if evaluation.status is Status.CONVERGED:
+                    resisted = elasticity.force(q + step) + elasticity.force(q + step - old) * slowness
+                    residual = evaluation.bore.load + elasticity.load - resisted
+                    error = float(np.linalg.norm(residual))
+                    if error < 2.0 * last or error <= 1e-8 * scale:
+                        break
+                step = 0.5 * step
+            else:
+                return None
+            q = q + step
+            scale = max(scale, float(np.linalg.norm(evaluation.bore.load)))
+        return None
 
 
 def condensed_tangent(tangent: np.ndarray, elasticity: Elasticity, coordinates: np.ndarray) -> np.ndarray:

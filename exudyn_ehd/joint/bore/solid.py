@@ -18,13 +18,14 @@ from numpy.linalg import LinAlgError
 from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.joint.bore.equilibrium import BoreNewton, Elasticity, FilmOnBore, NodalEvaluation
-from exudyn_ehd.joint.newton import TOLERANCE, continued
+from exudyn_ehd.joint.bore.equilibrium import SETTLING_TOLERANCE, Elasticity, FilmOnBore, Newton, NodalEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.solid.linear import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
-from exudyn_ehd.status import ROUNDING, Status
+from exudyn_ehd.status import Status
 
+# Residual over the film's forces that counts as balanced if round-off lets it fall no more.
+ROUNDING = 1e-8
 # Largest ratio of successive residuals of the corrections, and those up to which their K serves a search and a tangent.
 SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
 # Corrections by one K, or states at which the solid is made linear in a search, and parts of a step that lead to one.
@@ -115,18 +116,20 @@ class SolidElasticity(Elasticity):
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
         """Find the balance at once, else by continuation of the pose, from that of the present displacements."""
+        reached, part = 0.0, 1.0
         between = motion.copy()
-
-        def reach(part: float, here: NodalEvaluation | None, final: bool) -> NodalEvaluation | None:
-            before, q = self.displacements, start if here is None else here.bore.coordinates.copy()
-            between[:4] = (1.0 - part) * self._pose + part * motion[:4]
-            near = self._balance(model, between, film, q) if self._linearised < CORRECTIONS else None
+        while part > SMALLEST_PART and self._linearised < CORRECTIONS:
+            target, before = min(1.0, reached + part), self.displacements
+            between[:4] = (1.0 - target) * self._pose + target * motion[:4]
+            near = self._balance(model, between, film, start)
             if near is None:
                 self._return(before)
-            return near
-
-        reached, found = continued(reach, 1.0, SMALLEST_PART)
-        return found if reached == 1.0 else None
+                part *= 0.5
+            elif target == 1.0:
+                return near
+            else:
+                reached, start = target, near.bore.coordinates.copy()
+        return None
 
     def _balance(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
@@ -162,7 +165,7 @@ class SolidElasticity(Elasticity):
         """
         if not self.displacements.any():
             return super().settle(model, motion, film, start)
-        return BoreNewton(model, motion, film).solve(start, 1.0, straight=True)
+        return Newton(model, motion, film).solve(start, 1.0, straight=True)
 
     def _follow(self, evaluation: NodalEvaluation) -> bool:
         """Move the linear solid under the film's loads; a part of the way, and False, where it would be torn."""
@@ -190,7 +193,7 @@ class SolidElasticity(Elasticity):
         error, last = float(np.linalg.norm(lack)), np.inf
         for _ in range(CORRECTIONS):
             rounded = error <= ROUNDING * size
-            if error <= TOLERANCE * size or (rounded and error > 0.5 * last):
+            if error <= SETTLING_TOLERANCE * size or (rounded and error > 0.5 * last):
                 return evaluation
             if not rounded and error > SLOWEST * last:
                 break

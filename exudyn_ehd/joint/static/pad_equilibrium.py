@@ -9,8 +9,8 @@ called spragging. It is held at the tilt from which on its gap widens all along 
 Shear tips a pad over at a small load that is not zero. Where a pad would carry less than that, and its absence lets the
 journal come nearer, no position has it loaded. Then the pad that carries least counts as tipped over, and stays so.
 
-With the tilts eliminated, the damped Newton's method of `exudyn_ehd.joint.newton` has the exact Jacobian
-``K_aa - K_at K_tt^-1 K_ta``.
+With the tilts eliminated, Newton's method has the exact Jacobian ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not lead
+downhill are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.newton`.
 
 Small motions ``q exp(i nu t)`` of all coordinates q = (x, y, tilts, shifts) obey ``Z q = f``, Z = K + i nu C - nu^2 M.
 Without forces on the pads the journal's are ``Z_jj - Z_jp Z_pp^-1 Z_pj``.
@@ -24,17 +24,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.joint.balance.newton import FREE_STEP
-from exudyn_ehd.joint.newton import TOLERANCE, DampedNewton, levenberg_step
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads
 from exudyn_ehd.joint.static.steady import SteadyResult, result_at
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import ROUNDING, FilmError, InputError, require_number, warn_user
+from exudyn_ehd.status import FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
-# Force on a pad, over the load, from which on it carries.
-CARRIES = 0.01
+# Share of the force that may be left; rounds of a search for the tilt of a pad; steps in a row that may leave more than
+# a share of the unbalance before.
+TOLERANCE, TILT_ROUNDS, PATIENCE, FALLS = 1e-9, 60, 12, 0.9
+# Places after which a search gives up, and force on a pad, over the load, from which on it carries.
+MOST_PLACES, CARRIES = 400, 0.01
+# Round-off of the films' forces, as a share of them.
+ROUNDING = 1e-11
+# Change of a pad's edge over the clearance that ends the search for its tilt.
+SMALLEST_STEP = 1e-11
 # Places between the tilts at which an edge touches, where the moment is looked at first.
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
 # Shifts of such places for a second look around the largest moment.
@@ -101,25 +106,22 @@ def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoa
 
 
 def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, float]) -> PadLoads | None:
-    """Loads where the moment falls through zero between two tilts, None without; Newton's steps or the middle.
-
-    Steps have to halve, as in `rtsafe` (W. H. Press et al., Numerical Recipes, section 9.4).
-    """
-    (lower, upper), sense = sorted(ends), math.copysign(1.0, pad.speed)
-    tilt, longest = 0.5 * (lower + upper), 0.5 * (upper - lower)
-    finest = TOLERANCE * pad.model.bearing.radial_clearance / pad.arm
-    while True:
+    """Loads where the moment falls through zero between two tilts, by Newton's method and bisection; None without."""
+    (lower, upper), sense = ends, math.copysign(1.0, pad.speed)
+    tilt = 0.5 * (lower + upper)
+    finest = SMALLEST_STEP * pad.model.bearing.radial_clearance / pad.arm
+    for _ in range(TILT_ROUNDS):
         here = pad.at(journal, shift, tilt)
-        # a pad without a film has touched, beyond the larger tilt in the sense of rotation
-        moment = -sense if here is None else float(here.forces[2])
-        lower, upper = (tilt, upper) if moment > 0.0 else (lower, tilt)
+        rises = here is not None and sense * here.forces[2] > 0.0
+        lower, upper = (tilt, upper) if rises else (lower, tilt)
         stiff = 0.0 if here is None else here.stiffness[2, 2]
         step = here.forces[2] / stiff if here is not None and stiff > 0.0 else math.inf
-        if abs(step) <= finest or upper - lower <= finest:
+        if abs(step) <= finest:
+            return here
+        if abs(upper - lower) <= finest:
             return here if stiff > 0.0 else None
-        if not (lower < tilt + step < upper and abs(step) <= longest):
-            step = 0.5 * (lower + upper) - tilt
-        tilt, longest = tilt + step, 0.5 * abs(step)
+        tilt = tilt + step if (tilt + step - lower) * (tilt + step - upper) < 0.0 else 0.5 * (lower + upper)
+    return None
 
 
 class Balanced(NamedTuple):
@@ -142,12 +144,21 @@ class Balanced(NamedTuple):
     slope: np.ndarray
 
     @property
+    def left(self) -> float:
+        """Size of the forces that are left, N."""
+        return float(np.linalg.norm(self.unbalance))
+
+    @property
     def carried(self) -> np.ndarray:
         """Sizes of the forces on the journal (n,), N."""
         return np.array([np.hypot(*here.forces[:2]) for here in self.loads])
 
+    def is_balanced(self, size: float, tolerance: float = TOLERANCE) -> bool:
+        """Return whether a share of a force, N, is left, or the round-off of the pads' forces."""
+        return self.left <= tolerance * size + ROUNDING * float(self.carried.sum())
 
-class PadSearch(DampedNewton[Balanced]):
+
+class PadSearch:
     """Search for the place of a journal in tilting pads under a load (2,), N.
 
     Parameters
@@ -188,19 +199,21 @@ class PadSearch(DampedNewton[Balanced]):
         along = complex(*self.load) / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
         unmoved, found = np.zeros(self.bearing.pads if self.moves else 0), []
         for k in range(self.bearing.pads + 1 if np.any(along) else 1):
+            if self.count > MOST_PLACES:
+                break
             places = np.outer(TURNS if k == 1 else TURNS[:1], STARTS if np.any(along) else STARTS[:1]).ravel() * along
             tried = [self.at(np.array([place.real, place.imag, *unmoved])) for place in places]
             # beside the load's line, places at which two pads or more carry
             starts = [p for p in tried if p and (k != 1 or np.sum(p.carried > CARRIES * self.size) > 1)]
-            starts.sort(key=self.error)
+            starts.sort(key=lambda place: place.left)
             for start in starts[:MOST_STARTS]:
-                found.append(here := self.descend(start))
-                if self.is_balanced(here):
+                found.append(here := self._descend(start))
+                if here.is_balanced(self.size):
                     return here
             if k and found:
-                here = min(found, key=self.error)
+                here = min(found, key=lambda place: place.left)
                 self.tipped[np.argmin(np.where(self.tipped, math.inf, here.carried))] = True
-        off = min(map(self.error, found), default=math.inf)
+        off = min((here.left for here in found), default=math.inf) / self.size
         yields, soft = self.size / (self.bearing.pivot_stiffness or math.inf), ""
         if yields > self.bearing.radial_clearance:
             soft = (
@@ -214,23 +227,23 @@ class PadSearch(DampedNewton[Balanced]):
             "film grid."
         )
 
-    def step(self, here: Balanced, damping: float) -> np.ndarray:
-        """Damped step of the unknowns, m."""
-        c = self.bearing.radial_clearance
-        return c * levenberg_step(c / self.size * here.slope, here.unbalance / self.size, damping)
-
-    def moved(self, here: Balanced, step: np.ndarray) -> Balanced | None:
-        """Balance of all pads behind a step, or behind its part that no pad is shifted by more than a part of c_p."""
-        longest = FREE_STEP * self.bearing.machined_clearance
-        return self.at(here.unknowns + step * min(1.0, longest / max(float(np.abs(step).max()), 1e-300)))
-
-    def error(self, place: Balanced) -> float:
-        """Force that is left over the load."""
-        return float(np.linalg.norm(place.unbalance)) / self.size
-
-    def is_balanced(self, place: Balanced, tolerance: float = ROUNDING) -> bool:
-        """Return whether a share of the load and of the pads' forces is left."""
-        return self.error(place) <= tolerance * (1.0 + float(place.carried.sum()) / self.size)
+    def _descend(self, here: Balanced) -> Balanced:
+        """Steps downhill from a place until the load is carried or no step leads further."""
+        first = 10.0 * self.size / self.bearing.radial_clearance
+        resistance, longest, idle = 0.0, 0.5 * self.bearing.machined_clearance, 0
+        while not here.is_balanced(self.size, 1e-2 * TOLERANCE) and idle < PATIENCE:
+            rows = np.vstack((here.slope, resistance * np.eye(here.unknowns.size)))
+            step, *_ = np.linalg.lstsq(rows, np.append(here.unbalance, np.zeros_like(here.unbalance)), rcond=None)
+            step *= min(1.0, longest / max(float(np.abs(step).max()), 1e-300))
+            there = self.at(here.unknowns + step)
+            idle = 0 if there and there.left < FALLS * here.left else idle + 1
+            if there and there.left < here.left:
+                here, resistance = there, resistance / 5.0 if resistance > 1e-6 * first else 0.0
+            elif here.is_balanced(self.size):
+                break
+            else:
+                resistance = max(8.0 * resistance, 1e-3 * first)
+        return here
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

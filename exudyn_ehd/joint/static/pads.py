@@ -30,7 +30,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from exudyn_ehd.bearing import Cavitation, JournalBearing
-from exudyn_ehd.film.arcs import SMALLEST_ARC, TURN, Arc
+from exudyn_ehd.film.arcs import SMALLEST_ARC, Arc
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
@@ -55,6 +55,8 @@ from exudyn_ehd.status import (
     require_number,
     require_vector,
 )
+
+TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, kw_only=True)

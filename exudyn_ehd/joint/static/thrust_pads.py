@@ -6,9 +6,8 @@ film presses the collar up by F and turns the pad by M_x and M_y about its pivot
 
     F(v) = W,   M_x(v) = M_y(v) = 0,
 
-by the damped Newton's method of `exudyn_ehd.joint.newton` with the exact tangent, in the unknowns ln h and phi L / h
-for ln(F / W) and M / (F L), L the outer radius: plane pads in unbroken films have forces in proportion to 1 / h^2 at
-fixed phi / h. Small motions meet
+by Newton's method with the exact tangent, in the unknowns ln h and phi L / h for ln(F / W) and M / (F L), L the outer
+radius: plane pads in unbroken films have forces in proportion to 1 / h^2 at fixed phi / h. Small motions meet
 ``Q = -(K v + C dv/dt)`` with K and C (3, 3). With the tilting inertia J and, of a pivot with stiffness k and damping c
 under a pad of mass m, S = k + i nu c - nu^2 m, the complex stiffness of one pad under a collar that moves along the
 axis at the frequency nu is
@@ -23,21 +22,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
-from exudyn_ehd.joint.newton import DampedNewton
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import ROUNDING, FilmError, InputError, Status, require_number
+from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
 WHERE = "equilibrium"
 ALONG = "of TiltingThrustPads it presses the collar onto the pads along the axis."
 # Gap at the trailing edge of a first guess over that at the pivot; tried in this order.
 STARTS = (0.6, 0.85, 0.3)
+# Residual at which an equilibrium is found, above round-off of the integrals. Most steps, and halvings of one.
+TOLERANCE, MOST_STEPS, HALVINGS = 1e-10, 50, 12
 # Largest over smallest gap below which a film carries by no wedge, but by a vanishing gap.
 LEAST_WEDGE = 1.001
 
@@ -139,29 +138,7 @@ def axial(pads: TiltingThrustPads, K: np.ndarray, C: np.ndarray, nu: float) -> c
     return complex(pads.pads * Z)
 
 
-class PadFilm(NamedTuple):
-    """Film of a pad.
-
-    Attributes
-    ----------
-    v : (3,) array
-        Its coordinates.
-    found : FaceState
-    residual, slope : (3,), (3, 3) arrays
-        Scaled, and minus its derivative to the scaled unknowns.
-    stiffness, damping : (3, 3) arrays
-        K and C.
-    """
-
-    v: np.ndarray
-    found: FaceState
-    residual: np.ndarray
-    slope: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
-
-
-class ThrustPadSearch(DampedNewton[PadFilm]):
+class ThrustPadSearch:
     """Films of a pad at coordinates v under a collar that turns at a speed.
 
     Parameters
@@ -181,54 +158,53 @@ class ThrustPadSearch(DampedNewton[PadFilm]):
         self.by_wrench = np.zeros((3, 6))
         self.by_wrench[[0, 1, 2, 2], [2, 3, 4, 2]] = 1.0, -1.0, -1.0, -pads.pivot_radius
 
-    def at(self, v: np.ndarray) -> PadFilm | None:
-        """The film at coordinates v; None where no film presses."""
+    def at(self, v: np.ndarray) -> tuple[FaceState, np.ndarray]:
+        """The film, and the residuals (3,), infinite where no film presses."""
         self.count += 1
-        motion, L = np.zeros(FACE_SIZE), self.pads.outer_radius
+        motion = np.zeros(FACE_SIZE)
         motion[:3], motion[6] = self.by_v @ (v - [self.pads.pivot_film, 0.0, 0.0]), self.speed
         found = self.film.evaluate(motion)
         if found.status is not Status.CONVERGED or not found.wrench[2] > 0.0:
-            return None
-        force, *moments = self.by_wrench @ found.wrench
+            return found, np.full(3, np.inf)
+        Q = self.by_wrench @ found.wrench
+        return found, np.array([math.log(Q[0] / self.load), *(Q[1:] / (Q[0] * self.pads.outer_radius))])
+
+    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """K and C (3, 3) of the last film."""
         tangent = self.by_wrench @ self.film.tangent()
-        K, C = -tangent[:, :3] @ self.by_v, -tangent[:, 3:6] @ self.by_v
-        residual = np.array([math.log(force / self.load), *(np.array(moments) / (force * L))])
-        rows = K / force
-        rows[1:] = rows[1:] / L - np.outer(residual[1:], rows[0])
-        slope = rows @ np.column_stack([v, v[0] / L * np.eye(3)[:, 1:]])
-        return PadFilm(v, found, residual, slope, K, C)
+        return -tangent[:, :3] @ self.by_v, -tangent[:, 3:6] @ self.by_v
 
-    def step(self, here: PadFilm, damping: float) -> np.ndarray:
-        """Newton's step of ln h and phi L / h, shortened: Levenberg's tilts pads away from their wedge."""
-        return np.linalg.solve(here.slope, here.residual) / (1.0 + damping)
+    def find(self, trailing: float) -> tuple[np.ndarray, FaceState, np.ndarray] | None:
+        """Coordinates, film and residuals of an equilibrium, from a gap at the ``trailing`` edge over the pivot's.
 
-    def moved(self, here: PadFilm, step: np.ndarray) -> PadFilm | None:
-        """The film a step on, which changes the film thickness at most by the factor e^2."""
-        h = here.v[0] * math.exp(float(np.clip(step[0], -2.0, 2.0)))
-        return self.at(h * np.array([1.0, *(here.v[1:] / here.v[0] + step[1:] / self.pads.outer_radius)]))
-
-    def error(self, place: PadFilm) -> float:
-        """Size of the scaled residual."""
-        return float(np.linalg.norm(place.residual))
-
-    def is_balanced(self, place: PadFilm, tolerance: float = ROUNDING) -> bool:
-        """Return whether the residual is below a tolerance."""
-        return self.error(place) <= tolerance
-
-    def find(self, trailing: float) -> PadFilm | None:
-        """Film in which a pad stays, from a gap at the ``trailing`` edge over the pivot's; None if none was found."""
-        pads = self.pads
+        None if none was found.
+        """
+        pads, L = self.pads, self.pads.outer_radius
         behind = pads.extent - pads.pivot_angle if self.speed > 0.0 else pads.pivot_angle
         tilt = math.copysign((1.0 - trailing) / (pads.pivot_radius * math.sin(min(behind, 1.0))), self.speed)
-        start = self.at(pads.pivot_film * np.array([1.0, tilt, 0.0]))
-        found = None if start is None else self.descend(start)
-        if found is None or not self.is_balanced(found):
-            return None
-        found = self.at(found.v)
-        gap = self.film.gap
-        assert found is not None
-        stays = np.linalg.eigvals(found.stiffness[1:, 1:]).real.min() > 0.0
-        return found if stays and gap.max() > LEAST_WEDGE * gap.min() else None
+        v = pads.pivot_film * np.array([1.0, tilt, 0.0])
+        found, r = self.at(v)
+        for _ in range(MOST_STEPS):
+            if not np.isfinite(r[0]):
+                return None
+            if np.abs(r).max() < TOLERANCE:
+                gap = self.film.gap
+                return (v, found, r) if gap.max() > LEAST_WEDGE * gap.min() else None
+            rows = -self.matrices()[0] / (self.load * math.exp(r[0]))
+            rows[1:] = rows[1:] / L - np.outer(r[1:], rows[0])
+            step = np.linalg.solve(rows @ np.column_stack([v, v[0] / L * np.eye(3)[:, 1:]]), -r)
+            v, found, r = self._shorter(v, r, step)
+        return None
+
+    def _shorter(self, v: np.ndarray, r: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, FaceState, np.ndarray]:
+        """Take the step, or the part of it that reduces the residuals; they are infinite where no part does."""
+        for part in 0.5 ** np.arange(HALVINGS):
+            h = v[0] * math.exp(float(np.clip(part * step[0], -2.0, 2.0)))
+            there = h * np.array([1.0, *(v[1:] / v[0] + part * step[1:] / self.pads.outer_radius)])
+            found, now = self.at(there)
+            if np.linalg.norm(now) < np.linalg.norm(r):
+                return there, found, now
+        return v, found, np.full(3, np.inf)
 
 
 def equilibrium_of_pads(
@@ -246,8 +222,9 @@ def equilibrium_of_pads(
     carried = require_number(f"{WHERE}: load", load, "N", above=0.0, hint=ALONG)  # type: ignore[arg-type]
     search = ThrustPadSearch(pads, speed, carried / pads.pads)
     for trailing in STARTS:
-        if (found := search.find(trailing)) is not None:
-            return _result(search, found)
+        place = search.find(trailing)
+        if place is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
+            return _result(search, *place)
     raise FilmError(
         f"{WHERE}: no film was found in which TiltingThrustPads carry {carried:.4g} N at {speed:.4g} rad/s with their "
         f"pivot {pads.pivot_angle / pads.extent:.3g} of the extent behind the leading edge of a positive spin: plane "
@@ -257,28 +234,28 @@ def equilibrium_of_pads(
     )
 
 
-def _result(search: ThrustPadSearch, at: PadFilm) -> ThrustPadsResult:
-    """Result at a film in balance, the model's last."""
+def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndarray) -> ThrustPadsResult:
+    """Result at coordinates of an equilibrium, whose film is the model's last."""
     pads, film, nu = search.pads, search.film, abs(search.speed)
-    v, K, C = at.v, at.stiffness, at.damping
+    K, C = search.matrices()
     Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
     (inner, outer), (first, last) = film.flows(), film.flows_along()
     peak, _, _ = refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.link_x, grid.z)
     return ThrustPadsResult(
         film_thickness=float(v[0]),
         inclination=np.array([v[2], -v[1]]),
-        minimum_gap=at.found.minimum_gap,
+        minimum_gap=found.minimum_gap,
         maximum_gap=float(film.gap.max()),
         peak_pressure=film.scales.pressure * peak,
-        power_loss=pads.pads * at.found.power_loss,
-        friction_torque=-pads.pads * at.found.power_loss / search.speed,
+        power_loss=pads.pads * found.power_loss,
+        friction_torque=-pads.pads * found.power_loss / search.speed,
         flows=pads.pads * np.array([-first, last, -inner, outer]),
         stiffness=Z.real,
         damping=Z.imag / nu,
         frequency=nu,
         pad_stiffness=K,
         pad_damping=C,
-        residual=float(np.abs(at.residual).max()),
+        residual=float(np.abs(r).max()),
         iterations=search.count,
         theta=grid.x,
         r=a.scale * a.r,

@@ -9,6 +9,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.balance.newton import evaluate_at
+from exudyn_ehd.joint.bore.equilibrium import Newton
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.elements.kinds import boundary_faces
 from exudyn_ehd.solid.mesh import BushMesh, surface_of
@@ -80,21 +81,6 @@ def test_films_on_thin_tongues_are_found():
         np.testing.assert_allclose(evaluation.bore_load, held, atol=1e-8 * np.abs(held).max())
 
 
-def viscous_step(model, motion, q, slowness):
-    """Coordinates q' with ``K (q' + slowness (q' - q)) = Q(q')`` by Newton's method; None if it does not find them."""
-    new, K = q, model.elasticity.stiffness
-    for _ in range(10):
-        evaluation = model.evaluate(np.concatenate((motion, new, np.zeros_like(q))))
-        if evaluation.status is not ehd.Status.CONVERGED:
-            return None
-        residual = evaluation.bore_load - K @ (new + slowness * (new - q))
-        if np.linalg.norm(residual) <= 1e-5 * np.linalg.norm(evaluation.bore_load):
-            return new
-        softening = evaluation.combined_tangent(1.0, 0.0)[6:, 10:]
-        new = new + np.linalg.solve((1.0 + slowness) * K - softening, residual)
-    return None
-
-
 @pytest.mark.slow
 def test_the_film_on_a_tongue_is_the_one_reached_from_the_undeformed_bore():
     """The end of the viscous bore's motion ``K (q + tau dq/dt) = Q``, followed in short steps.
@@ -105,12 +91,11 @@ def test_the_film_on_a_tongue_is_the_one_reached_from_the_undeformed_bore():
     for model, motion in tongues(1, 8, ((4e-4, 8), (1e-3, 6))):
         evaluation = model.evaluate_steady(motion)
         found, load = evaluation.bore.coordinates.copy(), evaluation.bore_load
-        q = np.zeros_like(found)
+        q, newton = np.zeros_like(found), Newton(model, motion, (None, 0.0, 0.0))
         part = min(1.0, 0.9 * C / float(np.hypot(*motion[:2])))
         for step in range(150):
-            place = motion * np.where(np.arange(10) < 4, min(1.0, part + 0.01 * step), 1.0)
-            ways = (viscous_step(model, place, q, slowness) for slowness in (10.0, 100.0, 1e3, 1e4))
-            q = next(near for near in ways if near is not None)
+            ways = (newton.solve(q, min(1.0, part + 0.01 * step), slowness=s) for s in (10.0, 100.0, 1e3, 1e4))
+            q = next(near for near in ways if near is not None).bore.coordinates.copy()
         if np.linalg.norm(q - found) > 1e-3 * np.linalg.norm(found):
             others += 1
             held = model.elasticity.force(found)
