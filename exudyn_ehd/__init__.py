@@ -15,7 +15,7 @@ coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `C
            `CreateFlexibleBush`, solvers, histories
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
 tables     columns of numbers as text and as CSV; units by name
-kernels    compilation of kernels: a line for the user
+compilation a line for the user while kernels are compiled
 progress   how far long work is, where somebody looks
 storage    files on disk: whole or absent, and arrays kept between runs
 status     outcomes, errors and checks of input
@@ -38,7 +38,7 @@ import ast
 import importlib
 import pathlib
 
-import exudyn_ehd.kernels
+import exudyn_ehd.compilation
 import exudyn_ehd.storage
 
 __version__ = "0.2.0"

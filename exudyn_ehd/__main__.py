@@ -14,7 +14,7 @@ import exudyn as exu
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.kernels import COMPILATIONS
+from exudyn_ehd.compilation import COMPILATIONS
 from exudyn_ehd.progress import without_lines
 
 FILM = ehd.JournalBearing(

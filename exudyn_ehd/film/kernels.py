@@ -13,6 +13,8 @@ import numpy as np
 # What a compiler may do with sums: reorder and fuse them, lose the sign of a zero, multiply by inverses; infinite
 # values and nan stay what they are.
 FAST = {"reassoc", "contract", "nsz", "arcp"}
+# The same in the order that is written.
+FUSED = {"contract", "nsz", "arcp"}
 I0, I1, I4 = np.int64(0), np.int64(1), np.int64(4)
 # Any: for mypy, products of numpy's integers are no indices
 unsigned: Any = np.uint64

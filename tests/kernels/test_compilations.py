@@ -7,8 +7,8 @@ import pytest
 from numba.core import event
 
 from exudyn_ehd import __main__ as ahead_of_time
-from exudyn_ehd import kernels
-from exudyn_ehd.kernels import MESSAGE, Compilations
+from exudyn_ehd import compilation
+from exudyn_ehd.compilation import MESSAGE, Compilations
 from exudyn_ehd.progress import show_progress
 
 
@@ -58,7 +58,7 @@ def test_groups_by_name(monkeypatch, capsys):
 
     def run(group):
         asked.append(group)
-        monkeypatch.setattr(kernels.COMPILATIONS, "count", kernels.COMPILATIONS.count + (group == "elrod"))
+        monkeypatch.setattr(compilation.COMPILATIONS, "count", compilation.COMPILATIONS.count + (group == "elrod"))
 
     monkeypatch.setattr(ahead_of_time, "run", run)
     ahead_of_time.main(["film", "elrod"])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.kernels import MESSAGE
+from exudyn_ehd.compilation import MESSAGE
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FILM = """

@@ -1,9 +1,5 @@
-"""Motion of the two sides of a joint.
-
-Module map
-----------
-sides          pose, rates and Jacobians of a side; kernels of two sides on nodes
-rigid_nodes    nodes of rigid bodies
+"""Motion of the two sides            pose, rates and Jacobians of a side; kernels of two sides on nodes
+rigid_nodes      nodes of rigid bodies
 flexible_bodies  points of beams and cables; equations of motion of a body in a floating frame with modes
-relative       motion of a journal or a ball in the housing's frame, place along the axis, smallest gap
+relative         motion of a journal or a ball in the housing's frame, place along the axis, smallest gap
 """

@@ -152,7 +152,7 @@ class RotorResult:
                 M, D, K = (part[k] for part in matrices)
                 found[k] = delayed_vibrations(M, D, K, partial(self._beyond, k), abs(float(self.speeds[k])))
         values, vectors = (np.array(part) for part in zip(*found, strict=True))
-        order = np.lexsort((values.real, np.nan_to_num(values.imag, nan=-np.inf)))
+        order = np.lexsort((values.real, values.imag))
         values = np.take_along_axis(values, order, axis=1)
         return values, self.directions @ np.take_along_axis(vectors, order[:, None, :], axis=2)
 
@@ -164,9 +164,9 @@ class RotorResult:
     def eigenvalues(self) -> np.ndarray:
         """(k, 2n) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency.
 
-        Films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) have more or fewer
-        motions that fade within a turn. The place of one that they do not have is nan, here and in ``modes``, and comes
-        first.
+        With films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) there are more or
+        fewer motions that die out without a swing and within a turn. The place of one that is missing is nan, here and
+        in ``modes``.
         """
         return self._modes[0]
 

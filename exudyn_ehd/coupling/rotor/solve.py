@@ -37,8 +37,8 @@ NOT_HELD = (
 NO_MASS = "{} moves without mass or inertia; give its body both, or hold it."
 # Angle by which rotors are turned to see that they are the same in all directions, rad, and how far they may differ.
 TURN, ISOTROPIC = 1.0, 1e-4
-# Smallest stiffness, or mass, over the largest, with rotations at the length of a bearing, that holds a body.
-SOFTEST = 1e-11
+# Smallest stiffness, and mass, over the largest, with rotations at the length of a bearing, that a body has.
+SOFTEST, LIGHTEST = 1e-11, 1e-13
 
 
 class ForceBalance(NamedTuple):
@@ -158,14 +158,14 @@ class EquilibriumSearch:
             self._update()
             springs = [film.support(*part) for film, part in zip(self.films, supports, strict=True)]
             balance = self._balance([f.loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
-            require_regular(self.system, self.weights, balance.K, balance.free, NOT_HELD)
+            require_regular(self.system, self.weights, balance.K, balance.free, SOFTEST, NOT_HELD)
             step = self._step(balance)
             self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
             self._update()
             forces = np.array([f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)])
             supports = [place for k, film in enumerate(self.films) for place in film.guess(forces[k:])]
         if self.slope is None:
-            require_regular(self.system, self.weights, self.system.mass(), balance.free, NO_MASS)
+            require_regular(self.system, self.weights, self.system.mass(), balance.free, LIGHTEST, NO_MASS)
             require_axis(self.mbs, self.system)
             require_isotropy(self.system, self.weights)
 
@@ -263,7 +263,7 @@ class EquilibriumSearch:
 
 
 def require_regular(
-    system: SpinningSystem, weights: np.ndarray, matrix: np.ndarray, free: np.ndarray, message: str
+    system: SpinningSystem, weights: np.ndarray, matrix: np.ndarray, free: np.ndarray, least: float, message: str
 ) -> None:
     """Refuse a body that moves without stiffness or mass, by a ``message`` that has a place for its name.
 
@@ -274,10 +274,12 @@ def require_regular(
         1 for displacements, 1 / length for rotations.
     matrix, free : (N, N), (N, n) arrays
         Stiffness or mass, and the directions that constraints leave.
+    least : float
+        Smallest share of the largest stiffness or mass.
     """
     scaled = free.T * weights
     _, values, right = np.linalg.svd(scaled @ matrix @ scaled.T)
-    if values[-1] <= SOFTEST * values[0]:
+    if values[-1] <= least * values[0]:
         loose = named(system, int(np.argmax(np.abs(free @ right[-1]) / weights)))
         raise InputError(f"{WHERE}: {message.format(loose)}")
 

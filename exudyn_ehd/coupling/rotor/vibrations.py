@@ -33,8 +33,8 @@ def delayed_vibrations(
     """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K + beyond(s)) y = 0`` for films with a memory.
 
     They are followed from those of the films' K and C at half the speed, as the dynamic stiffness takes their place by
-    and by, all of them together: where two end in one, or one is lost, the step is halved. Motions that fade within a
-    turn may end there: with the films' own memory there are more or fewer of them. They are nan.
+    and by, all of them together: where two end in one, or one is lost, the step is halved. With the films' own memory
+    there are more or fewer motions that die out without a swing and within a turn of the rotor: those lost are nan.
     """
     half, share, step = 0.5 * speed, 0.0, 0.25
     there = beyond(1j * half)
@@ -49,25 +49,25 @@ def delayed_vibrations(
             """Dynamic stiffness (n, n) without inertia, with a share of the films' own."""
             return share * (K + s * D + beyond(s)) + (1.0 - share) * (start[1] + s * start[0])
 
-        found = _follow(M, stiffness, tracks, DIFFERENCE * speed, drops=step < SMALLEST_SHARE)
-        if found is None and step < SMALLEST_SHARE:
+        fades = speed / (2.0 * np.pi) if step < SMALLEST_SHARE else np.inf
+        found = _follow(M, stiffness, tracks, DIFFERENCE * speed, fades)
+        if not found and step < SMALLEST_SHARE:
             raise FilmError(
                 f"RotorResult: the vibrations at {speed:.6g} rad/s are not all found, because the films follow them "
                 "with a delay; look at speeds beside it, or run it in time."
             )
-        share, step = (share, 0.5 * step) if found is None else (larger, 1.5 * step)
-        tracks = found or tracks
+        tracks, share, step = (found, larger, 1.5 * step) if found else (tracks, share, 0.5 * step)
     tracks += [(s.conjugate(), y.conj()) for s, y in tracks if s.imag > 0.0]
     values, vectors = np.full(values.size, np.nan, dtype=complex), np.full(vectors.shape, np.nan, dtype=complex)
     values[: len(tracks)], vectors[:, : len(tracks)] = [s for s, _ in tracks], np.column_stack([y for _, y in tracks])
     return values, vectors
 
 
-def _follow(M: np.ndarray, stiffness: Stiffness, tracks: list[Track], step: float, drops: bool) -> list[Track] | None:
+def _follow(M: np.ndarray, stiffness: Stiffness, tracks: list[Track], step: float, fades: float) -> list[Track] | None:
     """Vibrations near those of ``tracks``, none of negative frequency; None if one is lost, or if two end in one.
 
-    A pair that meets on the real axis goes on as two motions that decay; two of these that meet go on as a pair. Lost
-    motions that fade within a turn are left out if it ``drops`` them.
+    A pair that meets on the real axis goes on as two motions that decay; two of these that meet go on as a pair. Of
+    motions that decay faster than they swing, and than at the rate ``fades``, 1/s, lost ones are left out.
     """
     out: list[Track] = []
     met: list[Track] = []
@@ -82,11 +82,11 @@ def _follow(M: np.ndarray, stiffness: Stiffness, tracks: list[Track], step: floa
             other = _near(M, stiffness, complex(2.0 * s.real - new[0][0].real), y, step)
             new += [other] if other is not None and other[0].imag == 0.0 else []
         new = [track for k, track in enumerate(new) if not any(_is_same(track, other) for other in out + new[:k])]
-        if len(new) < parts and not (drops and s.real < -abs(s.imag)):
+        if len(new) < parts and not s.real < -max(abs(s.imag), fades):
             return None
         out += new
     alone = [track[0] for track in met if not any(_is_same(track, other) for other in out)]
-    return None if any(not (drops and s.real < 0.0) for s in alone) else out
+    return None if any(not s.real < -fades for s in alone) else out
 
 
 def _is_same(a: Track, b: Track) -> bool:

@@ -16,12 +16,7 @@ from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton import StartGuess, free_bushes, refuse
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
 from exudyn_ehd.coupling.run.restart import SystemState, load_state
-from exudyn_ehd.coupling.run.settings import (
-    require_control,
-    require_settings,
-    require_time,
-    warn_of_misfit,
-)
+from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time, warn_of_misfit
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.coupling.watch.solver_state import StepControl, hooked
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type

@@ -2,7 +2,7 @@
 
 User options for the steps, and the rejection of steps too coarse for a film, through Exudyn's own control.
 
-`exudyn_ehd.coupling.run.settings` chooses steps by their error.
+`exudyn_ehd.coupling.run.step_size` chooses steps by their error.
 """
 
 from __future__ import annotations

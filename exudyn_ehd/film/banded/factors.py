@@ -33,7 +33,7 @@ from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
 from exudyn_ehd.film.banded.workspace import PAD
-from exudyn_ehd.film.kernels import U0, U1, U2, U3, U4, unsigned
+from exudyn_ehd.film.kernels import FUSED, U0, U1, U2, U3, U4, unsigned
 
 LANES = 4
 _int32 = ir.IntType(32)
@@ -91,9 +91,6 @@ def subtract_four_lanes(typingctx, target, at, source, p0, p1, p2, p3, f0, f1, f
     return _signature(target, source, 4), _subtract(4)
 
 
-_FAST = {"contract", "nsz", "arcp"}
-
-
 @njit(cache=True)
 def assemble_band(kx, kz, number, order, count, width, first, band_out):
     """Fill the upper band of the active cells' matrix, rows from ``first`` on, without links longer than ``width``.
@@ -122,7 +119,7 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
             flat[unsigned(b) * stride + unsigned(r - b)] -= along[c]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FUSED)
 def factor_band(band, count, width, first, inv_diag_out):
     """Factor in place, four pivots at a time; returns False if a pivot is not positive.
 
@@ -149,7 +146,7 @@ def factor_band(band, count, width, first, inv_diag_out):
     return True
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FUSED)
 def _factor_four(flat, stride, k, rows, w, inv_diag_out):
     """Up to four rows from k on among themselves."""
     for q in range(rows):
@@ -167,7 +164,7 @@ def _factor_four(flat, stride, k, rows, w, inv_diag_out):
     return True
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FUSED)
 def factor_lu(lower, upper, count, width, inv_diag_out):
     """Factor in place, four pivots at a time; returns False if a pivot vanishes."""
     low, up, stride = lower.reshape(-1), upper.reshape(-1), unsigned(upper.shape[1])
@@ -191,7 +188,7 @@ def factor_lu(lower, upper, count, width, inv_diag_out):
     return True
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=FUSED)
 def _factor_lu_four(low, up, stride, k, rows, w, inv_diag_out):
     """Up to four rows of U and columns of L from k on among themselves."""
     for q in range(rows):

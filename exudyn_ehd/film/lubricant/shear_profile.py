@@ -26,6 +26,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.kernels import FUSED
+
 # Intervals of the fluidity's table for every factor of two in 1 + |T|^2, a power of two; scaled shear rate at its end.
 PARTS, FASTEST = 32, 1e12
 # Numbers in one interval differ in the last 47 of the 52 bits of their mantissa, which follow the 5 of PARTS.
@@ -42,7 +44,6 @@ LAST = 11
 SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
 STILL = 1e-3
-_FUSE = {"contract", "arcp", "nsz"}
 
 
 class Profile(NamedTuple):
@@ -169,13 +170,13 @@ def _moments(T_x, T_z, S, G_x, G_z, oil, points):
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+@njit(cache=True, error_model="numpy", fastmath=FUSED)
 def profile(S, G_x, G_z, oil, points, T_x, T_z):
     """`Profile` of one place, by Newton's method from a mean stress, which may prolong but not mislead it."""
     return _profile(S, G_x, G_z, oil, points, T_x, T_z, EXACT)[0]
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
+@njit(cache=True, error_model="numpy", fastmath=FUSED, inline="always")
 def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
     """`Profile`; the mean stress's derivatives T_zs, T_zx, T_zz; the last step's share of the stress."""
     r, F, H, C, B = _moments(T_x, T_z, S, G_x, G_z, oil, points)
@@ -207,7 +208,7 @@ def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
     return found, (i_xz, -m_zx, -m_zz)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+@njit(cache=True, error_model="numpy", fastmath=FUSED)
 def _slide(S, oil, T):
     """`Profile` of sliding alone, whose stress is the same at every height, from a stress T as `profile`."""
     f, f_s = _fluidity(T * T, oil)
@@ -232,7 +233,7 @@ def _scale(T_x, T_z, G_x, G_z):
     return abs(T_x) + abs(T_z) + 1e-3 * (abs(G_x) + abs(G_z)) + 1e-300
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
+@njit(cache=True, error_model="numpy", fastmath=FUSED, inline="always")
 def _follow(S, G_x, G_z, oil, points, last_step, last):
     """`Profile` from where the derivatives of the last one lead, ``last`` (`LAST`,), which it becomes."""
     dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
@@ -250,7 +251,7 @@ def _follow(S, G_x, G_z, oil, points, last_step, last):
     return p
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+@njit(cache=True, error_model="numpy", fastmath=FUSED)
 def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out):
     """Pressure flow of links over that of an oil of constant viscosity.
 
@@ -292,7 +293,7 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out)
             out[4, i, j] = 12.0 * p.F_xz / a
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+@njit(cache=True, error_model="numpy", fastmath=FUSED)
 def thin_shear(H, slopes, fluid, speed, k, oil, points, last, out):
     """Mean stress along the sliding over that of an oil of constant viscosity.
 

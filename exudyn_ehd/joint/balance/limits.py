@@ -15,14 +15,7 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import (
-    FilmError,
-    HotFilmWarning,
-    OverloadWarning,
-    StarvationWarning,
-    Status,
-    warn_user,
-)
+from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
 
 # Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
 HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9

