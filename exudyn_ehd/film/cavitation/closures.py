@@ -375,8 +375,8 @@ class ElrodAdams(Closure):
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
     stiffness falls from 9 to 1.5 %, in two to three times the time. The spread of damping over the direction of the
     load falls from 8 to 1 % with a cavity pressure of -10 bar. The line where the film reforms stays on vertices, and
-    matters more the nearer the cavity's pressure is to that of the ends: at -1 bar damping differs by up to 23 % over
-    the direction (49 % without), stiffness by up to 4 % (9 %), on 192 x 20 vertices by 2 % (3 %).
+    matters more the nearer the cavity's pressure is to that of the ends: at -1 bar the spread of damping falls from 49
+    to 23 %, and that of stiffness from 9 to 4 %; on 192 x 20 vertices that of damping falls from 3 to 2 %.
 
     Parameters
     ----------
