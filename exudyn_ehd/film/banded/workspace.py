@@ -69,3 +69,23 @@ class Workspace:
     def slopes(self) -> np.ndarray:
         """Derivatives of its flows and its storage."""
         return np.zeros((5, self.order.size))
+
+    @cached_property
+    def above(self) -> np.ndarray:
+        """Pressures above the cavity's."""
+        return np.zeros(self.shape)
+
+    @cached_property
+    def matrix(self) -> tuple[np.ndarray, ...]:
+        """Argument ``matrix`` of `exudyn_ehd.film.solvers.newton`."""
+        steep = np.zeros(self.shape)
+        return self.order, self.number, self.lower, self.upper, self.inv_diag, self.slopes, steep
+
+    @cached_property
+    def _before(self) -> tuple[np.ndarray, ...]:
+        residual, u, above = np.zeros((3, *self.shape))
+        return residual, self.unknowns, u, np.zeros(self.shape, dtype=np.bool_), above
+
+    def places_of(self, P: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Argument ``places`` of `exudyn_ehd.film.solvers.newton` for the pressures P (n, m)."""
+        return P, *self._before

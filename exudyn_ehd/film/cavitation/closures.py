@@ -6,7 +6,7 @@ here are scaled (see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of t
 * `FullSommerfeld`: nothing; negative pressures stay.
 * `Gumbel` (half Sommerfeld): the linear problem is solved, then pressures below the cavity pressure are cut off.
 * `SwiftStieber` (Reynolds condition): the complementarity problem ``P >= Pc, A P - b >= 0, (P - Pc)(A P - b) = 0``,
-  which `exudyn_ehd.film.cavitation.swift_stieber` solves. Vertices with neither pressure nor source (a film at rest)
+  which `exudyn_ehd.film.solvers.swift_stieber` solves. Vertices with neither pressure nor source (a film at rest)
   count as active, so that a film at rest has the tangent of the whole film: the sum of what a motion and its opposite
   meet (a concentric journal meets half of it).
 
@@ -20,133 +20,22 @@ Its balance is
 with the Poiseuille conductance k, the Couette flux f of a full film (gap on the link), the fill carried from upstream,
 which in a step is averaged over it (`exudyn_ehd.film.reynolds.links`), and ``kept`` by the film's history,
 `exudyn_ehd.film.solvers.solver.FilmSolver.keep`. Without a history the film is steady and the last term is
-``area fill dH/dt``. For given sets the system is linear; `exudyn_ehd.film.cavitation.solve` finds them with it. Should
+``area fill dH/dt``. For given sets the system is linear; `exudyn_ehd.film.solvers.newton` finds them with it. Should
 it not, the film is approached through growing pseudo time steps, whose storage makes the matrices dominant enough.
 
 Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
 Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58
 (2015) 18.
-
-Pseudo-transient continuation for a film that Newton's method does not find from its initial guess.
-
-An additional storage at every vertex slows the film down and is reduced step by step; the last solution has none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
-from exudyn_ehd.film.cavitation.solve import base_of, solve_system
-from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
-from exudyn_ehd.film.cavitation.swift_stieber import solve_rupturing
-from exudyn_ehd.film.cavitation.system import FilmSystem, has_unfed_row
-from exudyn_ehd.film.reynolds.balance import store_content
-from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
-
-MOST_STEPS = 200
-# Rates of the storage over that of the film: of the first one, of one above which the continuation ends, of one below
-# which the film without storage is tried, and of one below which it is not tried again.
-FIRST, HOPELESS, LAST, LEAST = 100.0, 1e6, 1e-3, 1e-7
-# Factors of the storage after a film that is found, and after one that is not.
-FADES, GROWS = 0.3, 8.0
-# Share of its compressibility with which an oil counts as nearly incompressible.
-SOFTEST = 1e-9
-
-
-def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float) -> tuple[bool, int]:
-    """Find a film by pseudo-transient continuation; returns (found, Newton steps).
-
-    Parameters
-    ----------
-    attempt : function of a rate, 1/s
-        Solves with a storage of that rate, 0 for the film itself, and keeps a film that is found as the start of the
-        next; returns (found, Newton steps).
-    rate : float
-        Rate of the film itself, 1/s, > 0.
-    """
-    extra, total = FIRST * rate, 0
-    for _ in range(MOST_STEPS):
-        ok, steps = attempt(extra)
-        total += steps
-        if not ok:
-            extra *= GROWS
-            if extra > HOPELESS * rate:
-                return False, total
-            continue
-        extra *= FADES
-        if extra < LAST * rate:
-            ok, steps = attempt(0.0)
-            total += steps
-            if ok:
-                return True, total
-            if extra < LEAST * rate:
-                return False, total
-    return False, total
-
-
-def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Find a film that Newton's method does not find from a full one; returns (status, Newton steps).
-
-    Where the density follows the pressure, Newton's method starts from the film of a nearly incompressible oil. If it
-    fails and pressures reach the end of the law's range, the status is NO_PRESSURE. A film that is still not found is
-    followed in pseudo time.
-    """
-    density, steps = s.density, 0
-    if density is not None:
-        work.warm = False
-        scale, density.scale = density.scale, SOFTEST * density.scale
-        ok, steps = solve_system(s, work)
-        density.scale = scale
-        beyond = ok and density.is_exhausted(s.linear_pressure)
-        for crosses in (True, False) if ok else ():
-            # the iteration oscillates about the end of the law, unless its steps stop there
-            work.warm, density.crosses = True, crosses
-            ok, count = solve_system(s, work)
-            steps += count
-            if ok:
-                break
-        density.crosses = False
-        if ok or beyond or density.is_exhausted(s.linear_pressure):
-            return (Status.CONVERGED if ok else Status.NO_PRESSURE), steps
-    status, count = follow(s, work)
-    return status, steps + count
-
-
-def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Follow a film in pseudo time from a full one; returns (status, Newton steps). The status is NO_OIL if rows run
-    dry on the way."""
-    largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
-    largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - base_of(s)), initial=0.0))
-    rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
-    mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
-    work.warm = runs_dry = False
-
-    def attempt(extra: float) -> tuple[bool, int]:
-        nonlocal runs_dry
-        inverse = s.inverse_step + extra
-        blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
-        # in a steady film the gap's rate is kept: extra (fill H - mass) + fill dH/dt
-        H = s.H + s.H_t / extra if s.inverse_step == 0.0 < extra else s.H
-        store_content(s.term_fields, H, s.H_t, inverse, blend, s.instant)
-        ok, steps = solve_system(s, work)
-        if ok:
-            np.multiply(s.fill, s.H, out=mass)
-            if s.density is not None:
-                np.multiply(mass, s.density.rho, out=mass)
-            runs_dry = has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)
-        return ok, steps
-
-    ok, steps = pseudo_time(attempt, rate if rate > 0.0 else 1.0)
-    if ok:
-        return Status.CONVERGED, steps
-    return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
-
+from exudyn_ehd.status import PlausibilityWarning, require_bool, require_number, warn_user
 
 # Gauge pressure of the absolute vacuum, Pa, where the air presses most.
 VACUUM = -1.1e5
@@ -155,7 +44,7 @@ Placed = TypeVar("Placed", bound="Closure")
 
 @runtime_checkable
 class Closure(Protocol):
-    """Properties of a cavitation model that a film solver needs; its films are found by `solve_sets`.
+    """Properties of a cavitation model that a film solver needs; its films are found by `exudyn_ehd.film.solvers.sets`.
 
     Derive a frozen dataclass from it, and set what differs.
 
@@ -280,58 +169,6 @@ class SwiftStieber(Closure):
 
     def __post_init__(self) -> None:
         _check_closure(self)
-
-
-def solve_sets(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Find a film whose coefficients do not follow its pressure, from the last one if ``work.warm``, else from a full
-    one; returns (status, linear solves)."""
-    s = system
-    if s.kind == OIL or s.density is not None:
-        outcome = _solve_by_newton(s, work)
-    elif s.kind == RUPTURE:
-        outcome = _solve_rupturing(s, work)
-    else:
-        outcome = _solve_linear(s, work)
-    if s.kind == CLIPPED:
-        linear, pc = s.linear_pressure, s.cavity_pressure
-        clip_pressure(linear, s.fixed, pc, s.pressure, work.active)
-        if s.continued is not None:
-            mean_in_cells(linear, s.fixed, s.linked, pc, work.active, s.pressure)
-    return outcome
-
-
-def _solve_linear(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Solve the linear film of all vertices that are not prescribed."""
-    np.logical_not(s.fixed, out=work.active)
-    links, P = (s.kx, s.kz, s.b), s.linear_pressure
-    ok, work.count, work.width = solve_linear(links, work.active, work.factor, work.unknowns, P)
-    return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
-
-
-def _solve_rupturing(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Solve a film of Swift and Stieber, and continue it behind a line between its columns."""
-    ok, steps = solve_rupturing(s, s.rupture, work, s.line is not None)
-    if s.column_line is not None:
-        size, pc = work.count, s.cavity_pressure
-        work.count = extend_film(s.column_line, s.b, (s.fixed, work.active), pc, work.factor, size, s.pressure)
-    return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
-
-
-def _solve_by_newton(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Solve a film that conserves mass or whose density follows the pressure, by Newton's method; where that does not
-    find it from a full film, by `recover`."""
-    was_warm, status = work.warm, Status.CONVERGED
-    store_content(s.term_fields, s.H, s.H_t, s.inverse_step, s.mass_old, s.instant)
-    ok, steps = solve_system(s, work)
-    if not ok:
-        status = Status.NOT_CONVERGED
-    elif s.closes and has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure):
-        ok = False
-    if not (ok or was_warm):
-        status, count = recover(s, work)
-        steps += count
-    work.warm = status is Status.CONVERGED
-    return status, steps
 
 
 def check_cavity_pressure(name: str, pressure: float) -> None:

@@ -38,16 +38,6 @@ FULL, CLIPPED, RUPTURE, OIL = 0, 1, 2, 3
 
 
 @njit(cache=True)
-def start_states(film, pc, curve, full, u):
-    """Set u of a cold start: fully developed curves, no gauge pressure at other full vertices, u = 0 in cavities."""
-    known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)
-    for c in range(x.size):
-        x[c] = 0.0
-        if sets[c] and not known[c]:
-            x[c] = 1.0 if curve.whole[c] > 0.0 else max(-pc, 0.0)
-
-
-@njit(cache=True)
 def set_states(film, late, curve, full, u, P, fill):
     """Set pressures, fills and slopes of the curves from u.
 

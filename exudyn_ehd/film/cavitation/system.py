@@ -28,7 +28,7 @@ from numba import njit
 from exudyn_ehd.film.cavitation.linear_film import ColumnLine, column_line
 from exudyn_ehd.film.cavitation.oil_line import OilLine
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, straight
-from exudyn_ehd.film.cavitation.states import CLIPPED, OIL
+from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import DensityField
 from exudyn_ehd.film.reynolds.balance import FilmTerms
@@ -150,6 +150,11 @@ class FilmSystem:
     def film(self) -> tuple[np.ndarray, ...]:
         """Fields of the terms, prescribed vertices, ``late``, and fields of the curves, as kernels take them."""
         return self.term_fields, self.fixed, self.late, self.curve
+
+    @property
+    def base(self) -> float:
+        """Scaled cavity pressure, 0 for a film without cavitation."""
+        return self.cavity_pressure if self.kind != FULL else 0.0
 
     @property
     def floor(self) -> float:

@@ -179,9 +179,9 @@ class DensityField:
         """Return whether scaled transformed pressures (n, m) reach the end of the law's range."""
         return bool(P.max() * self.scale >= (1.0 - ROUNDING) * self.law.kernel_table.highest)
 
-    def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, np.ndarray, np.ndarray, bool]:
-        """All of it as kernels take it; ``floor``: scaled pressure below which the density stays."""
-        return self.scale, floor, self.law.kernel_table, self.known, self.rho, self.rho_P, self.crosses
+    def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, bool]:
+        """Law as kernels take it; ``floor``: scaled pressure below which the density stays."""
+        return self.scale, floor, self.law.kernel_table, self.known, self.crosses
 
     def at(self, pressure: float) -> float:
         """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""

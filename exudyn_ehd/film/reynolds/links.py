@@ -315,15 +315,14 @@ def outflow_of(fx, fz, H, H_t, area, fill):
 
 
 @njit(cache=True)
-def hold_back(film):
-    """No lag where the flows of `FilmTerms` that have grown manifold since the last step would take more than there
-    was."""
-    n, m = film.late.shape
-    for i in range(n):
-        for j in range(m):
-            late = film.late[i, j]
-            if late > 0.0 and late * _leaves(film.fx, film.fz, i, j) > -film.area[i, j] * film.kept[i, j]:
-                film.prompt[i, j], film.late[i, j] = 1.0, 0.0
+def hold_back(fields, content, late):
+    """No lag where the flows of a film's terms (10, n, m) that have grown manifold since the last step would take more
+    than the ``content`` (n, m) that there was, over the step."""
+    fx, fz, area, prompt = fields[2], fields[3], fields[7], fields[8]
+    for i in range(late.shape[0]):
+        for j in range(late.shape[1]):
+            if late[i, j] > 0.0 and late[i, j] * _leaves(fx, fz, i, j) > area[i, j] * content[i, j]:
+                prompt[i, j], late[i, j] = 1.0, 0.0
 
 
 @njit(cache=True)

@@ -5,7 +5,10 @@ Module map
 film            arrays, links, oil and rupture line of one film; flows at prescribed vertices
 answers         its matrix, derivatives and flows
 solver          its solution from the gaps
-liner           its part on an elastic liner, or with conductances that follow the pressure
+sets            which film is solved how, if neither gaps nor conductances follow its pressure; pseudo time
+swift_stieber   Newton's method for films of Swift and Stieber between rigid surfaces
+newton          Newton's method for all others
+liner           film on an elastic liner, or with conductances that follow the pressure
 impedance_map   fitted map for plain bearings
 sor             finite differences and successive over-relaxation
 """

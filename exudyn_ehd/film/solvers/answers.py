@@ -7,8 +7,6 @@ from scipy.sparse import block_array, csc_matrix, diags_array
 
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_lu, solve_lu_transposed
-from exudyn_ehd.film.cavitation.solve import factor_solution
-from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.gradients import Gradients, join, link_rows
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
@@ -17,6 +15,8 @@ from exudyn_ehd.film.reynolds.links import lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
+from exudyn_ehd.film.solvers.sets import factor_solution
+from exudyn_ehd.film.solvers.swift_stieber import refine_factor
 from exudyn_ehd.film.supply.restrictors import Reservoirs, add_border
 
 

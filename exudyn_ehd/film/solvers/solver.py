@@ -11,16 +11,17 @@ from functools import partial
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import Closure, solve_sets
+from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.system import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.links import FluxEffect
+from exudyn_ehd.film.reynolds.links import FluxEffect, hold_back
 from exudyn_ehd.film.solvers.answers import FilmAnswers
 from exudyn_ehd.film.solvers.liner.film import LinerFilm, cold_start, failure, pseudo_transient
 from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.solvers.liner.winkler import Liner
+from exudyn_ehd.film.solvers.sets import solve_sets
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.status import Status
 
@@ -207,6 +208,8 @@ class FilmSolver(FilmAnswers):
         if self.closure.clips:
             np.copyto(s.linear_pressure, s.pressure)
         self.set_times(mass_old, step)
+        if self.lagging:
+            hold_back(s.term_fields, s.inverse_step * s.mass_old, s.late)
         if s.instant:
             s.mass_old *= 1.0 - self.H_t / (s.inverse_step * self.H)
         # where gaps close, cavities of another film may stay dry that fill up from a full one

@@ -12,11 +12,11 @@ from numba import njit
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.cavitation.linear_film import column_gradients, couple_columns, rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import line_gradients, weigh_line
-from exudyn_ehd.film.cavitation.swift_stieber import refine_line
 from exudyn_ehd.film.gradients import add_columns, functional_gradients, link_rows
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gradient
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.solvers.solver import FilmSolver
+from exudyn_ehd.film.solvers.swift_stieber import refine_line
 from exudyn_ehd.joint.plain_film import has_plain_edges
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 

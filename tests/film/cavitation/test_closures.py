@@ -9,8 +9,8 @@ from exudyn_ehd import FullSommerfeld, Gumbel, InputError, Status, SwiftStieber,
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.cavitation.rupture_line import straight
-from exudyn_ehd.film.cavitation.swift_stieber import find_film
 from exudyn_ehd.film.solvers.solver import FilmSolver
+from exudyn_ehd.film.solvers.swift_stieber import find_film
 
 
 def _random_gaps(solver, rng):

@@ -4,7 +4,6 @@ Module map
 ----------
 elements      their kernels: pressure on them, deflection, gaps, derivatives
 winkler       the elements of one film: loads, contact, gaps, mass balances
-film          film on the elements: links, mass balances, derivatives, Newton's method, dry guess, continuation
+film          film on the elements: links, mass balances, derivatives, dry guess, continuation
 line          rupture line inside the cells
-steps         Newton steps, from one residual to the next
 """

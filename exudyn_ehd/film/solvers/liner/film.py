@@ -39,10 +39,9 @@ Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear p
 the liner deflects under the clipped one. No theorem says that such a film exists, and some extreme steady ones are not
 found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
 
-The unknowns are those of `exudyn_ehd.film.cavitation.solve`. Newton's method
-(`exudyn_ehd.film.solvers.liner.steps`) starts from the last film, else from a dry guess. If it fails,
-pseudo-transient continuation follows (`exudyn_ehd.film.solvers.solver`). The rupture line inside the cells
-is that of `exudyn_ehd.film.solvers.liner.line`.
+Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess. If it fails,
+pseudo-transient continuation follows (`exudyn_ehd.film.solvers.sets`). The rupture line inside the cells is that of
+`exudyn_ehd.film.solvers.liner.line`.
 
 Between rigid surfaces (beta 0) it is the film of an oil that thins by shear, whose conductances follow the pressure.
 
@@ -58,17 +57,16 @@ import copy
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import pseudo_time
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
-from exudyn_ehd.film.cavitation.solve import FOUND, GOES_ON, LEFT, base_of, is_exact
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.cavitation.system import has_unfed_row
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, open_gaps, see_curves
-from exudyn_ehd.film.solvers.liner.steps import begin, factor_film, find_slopes, proceed, solve_plain
-from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, liner_residual
+from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, find_slopes, liner_residual
+from exudyn_ehd.film.solvers.newton import FOUND, GOES_ON, begin, factor_film, proceed, solve_film
+from exudyn_ehd.film.solvers.sets import course_from, is_exact, pseudo_time
 from exudyn_ehd.status import Status
 
 
@@ -109,11 +107,9 @@ class LinerFilm(WinklerElements):
         self.fill = s.fill if s.kind == OIL else np.ones(shape)
         # the film at the pressure of the rupture line inside the cells
         self.at_line, self.shut = AtLine((film.H, film.HF), None, None), np.zeros(shape, dtype=np.bool_)
-        self.residual, self.above, steep, u, above = np.zeros((5, *shape))
-        # what the kernels of `exudyn_ehd.film.solvers.liner.steps` take
-        self.state = w.u, self.above, self.fill
-        self.matrix = w.order, w.number, w.lower, w.upper, w.inv_diag, w.slopes, steep
-        self.places = self.P, self.residual, w.unknowns, u, np.zeros(shape, dtype=np.bool_), above
+        # what the kernels of `exudyn_ehd.film.solvers.newton` take
+        self.state, self.places = (w.u, w.above, self.fill), w.places_of(self.P)
+        self.residual = self.places[1]
         self.take_kind(s.kind)
 
     def take_kind(self, kind: int) -> None:
@@ -182,7 +178,7 @@ class LinerFilm(WinklerElements):
         curve = self.film.system.rupture.whole.reshape(self.P.shape)
         np.logical_not(self.film.grid.fixed, out=self.film.work.active)
         self.fill[:] = 1.0
-        np.maximum(self.P, np.minimum(base_of(self.film.system) + curve, most), out=self.P, where=curve > 0.0)
+        np.maximum(self.P, np.minimum(self.film.system.base + curve, most), out=self.P, where=curve > 0.0)
 
     def solve(self) -> tuple[bool, int]:
         """Solve by Newton's method from the present pressures and sets, in place; returns (found, steps)."""
@@ -190,19 +186,18 @@ class LinerFilm(WinklerElements):
         # the film from sliding alone has terms of its own
         s.late *= s.prompt < 1.0
         s.terms.late[:], s.terms.known[:] = s.late, 0.0
-        ready = w.ready and w.warm
+        course, outcome = course_from(w, w.ready and w.warm), GOES_ON
         w.ready = w.exact = False
-        course, outcome = (0, False, -1, 1.0, 0.0, w.count, w.width, (ready, False, False, 0.0, LEFT)), GOES_ON
-        rest = self.kind, base_of(s), w.active, self.state, self.oil_fields, self.film_fields, *self._seen
+        rest = self.kind, s.base, w.active, self.state, self.oil_fields, None, self.film_fields, self._seen
         if self.plain and self.kind != OIL:
             numbers = s.cavity_pressure, f.vx, f.vz, self.beta
             plain = numbers, f.closure.clips, self.rigid, self.true_gap, self.deflection_old, self.known
-            outcome, course = solve_plain(course, *rest, self.matrix, self.places, plain)
+            outcome, course = solve_film(course, *rest, w.matrix, self.places, plain)
         else:
-            begin(self.film_fields, self.kind, base_of(s), w.active, self.state, self.P)
+            begin(self.film_fields, self.kind, s.base, w.active, self.state, self.P)
         while outcome == GOES_ON:
             norm, gap = self.balance()
-            outcome, course = proceed(norm, gap, course, *rest, self._response, self.matrix, self.places)
+            outcome, course = proceed(norm, gap, course, *rest, self._response, w.matrix, self.places)
         steps, *_, w.count, w.width, progress = course
         w.ready, w.exact = outcome == FOUND, is_exact(progress)
         return w.ready, steps
@@ -234,8 +229,8 @@ class LinerFilm(WinklerElements):
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
-        w, fields = self.film.work, (self.kind, self.P, self.oil_fields, self.film_fields, *self._seen)
-        _, w.count, w.width = factor_film(*fields, self._response, self.matrix, w.active)
+        w, fields = self.film.work, (self.kind, self.P, self.oil_fields, None, self.film_fields, self._seen)
+        _, w.count, w.width = factor_film(*fields, self._response, w.matrix, w.active)
 
     def finish(self) -> None:
         """Set the fields of a solution: rupture line, clipped pressure, gap derivatives, rates, right-hand side."""

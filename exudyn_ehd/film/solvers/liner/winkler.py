@@ -15,7 +15,8 @@ from exudyn_ehd.film.cavitation.oil_line import curve_of
 from exudyn_ehd.film.cavitation.states import OIL, take_sink
 from exudyn_ehd.film.lubricant.density import law_at
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
+from exudyn_ehd.film.reynolds.balance import carried_fill, film_balance, terms_of, upstream, violation
+from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.reynolds.links import set_links
 from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.elements import (
@@ -26,6 +27,7 @@ from exudyn_ehd.film.solvers.liner.elements import (
     bend_links,
     deflect,
     drive_elements,
+    element_slopes,
     ends_open,
     gaps_of,
     load_of,
@@ -50,6 +52,22 @@ def density_of_load(load_fields, P, scale, law, rho_out, rho_P_out):
         rho_P[c] = by * scale if x[c] == drive[c] else 0.0
 
 
+@njit(cache=True, nogil=True)
+def find_slopes(P, fill, rho, film, elements, links):
+    """Set the derivatives of the gaps (gap slopes) and of the links' flows (``by``, ``by_speed``) at the present state.
+
+    ``elements``: (gap slopes, gaps, load, rates, beta, by of `link_derivatives`, slope of the undeformed film gap,
+    slope of the contact pressure, ``bend`` of `element_slopes`); ``links``: (`LinkFlux.laws` or None, metric, vx, vz,
+    by_speed).
+    """
+    gap_slopes, gaps, load, rates, beta, by, rigid_slope, contact_G, bend = elements
+    laws, metric, vx, vz, by_speed = links
+    element_slopes(P, load, rigid_slope, contact_G, bend, beta, rates[1], gap_slopes)
+    terms, at = terms_of(film[0], film[1]), gaps_of(gaps)
+    up = upstream(terms.fx, terms.fz, carried_fill(fill, terms), rho)
+    link_derivatives(P, at.H, at.HF, at.E, up, laws, metric, vx, vz, by, by_speed)
+
+
 @njit(cache=True)
 def liner_residual(
     P, fill, rho, load_fields, gap_fields, terms, fixed, known, rates, beta, pc, complementary, curve, out
@@ -72,7 +90,7 @@ def plain_residual(
     """Set gaps, links and residual of a film on a liner without further effects; returns (norm of the residual,
     smallest gap).
 
-    ``film``: that of `exudyn_ehd.film.solvers.liner.steps`; ``numbers``: (pc, vx, vz, beta); ``kinds``: (clips, whether
+    ``film``: that of `exudyn_ehd.film.solvers.newton`; ``numbers``: (pc, vx, vz, beta); ``kinds``: (clips, whether
     vertices in the cavity have no unknown).
     """
     (pc, vx, vz, beta), (clips, chooses), (terms, fixed, _, curve) = numbers, kinds, film

@@ -22,11 +22,11 @@ from exudyn_ehd.film.banded.numbering import first_changed_row, number_along
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
-from exudyn_ehd.film.cavitation.solve import FAR, LEFT, REUSABLE
 from exudyn_ehd.film.cavitation.states import ROUNDING
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.kernels import I0
 from exudyn_ehd.film.reynolds.links import lacks
+from exudyn_ehd.film.solvers.newton import FAR, LEFT, REUSABLE
 
 # s that a vertex starts from whose pressure says nothing of it; a smaller one costs steps.
 START = 1e-3
