@@ -39,6 +39,7 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
 from exudyn_ehd.film.reynolds.balance import upstream
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
+    hold_back,
     lag_void,
     link_flux,
     link_metric,
@@ -344,6 +345,11 @@ class FilmArrays:
         elif self.lagging:
             s.prompt[:], s.late[:] = 1.0, 0.0
             self.lagging = False
+
+    def hold_back(self) -> None:
+        """Let no flow lag that would take more than there was at the start of the step, for the links now stored."""
+        if self.lagging:
+            hold_back(self.system.term_fields, self.system.inverse_step * self.system.mass_old, self.system.late)
 
     def outflow(self) -> np.ndarray:
         """Fields (3, n, m) of the last solution that `exudyn_ehd.film.reynolds.links` needs in the next step.

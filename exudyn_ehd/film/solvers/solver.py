@@ -16,7 +16,7 @@ from exudyn_ehd.film.cavitation.system import status_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.links import FluxEffect, hold_back
+from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.answers import FilmAnswers
 from exudyn_ehd.film.solvers.liner.film import LinerFilm, cold_start, failure, pseudo_transient
 from exudyn_ehd.film.solvers.liner.line import FilmLine
@@ -208,8 +208,7 @@ class FilmSolver(FilmAnswers):
         if self.closure.clips:
             np.copyto(s.linear_pressure, s.pressure)
         self.set_times(mass_old, step)
-        if self.lagging:
-            hold_back(s.term_fields, s.inverse_step * s.mass_old, s.late)
+        self.hold_back()
         if s.instant:
             s.mass_old *= 1.0 - self.H_t / (s.inverse_step * self.H)
         # where gaps close, cavities of another film may stay dry that fill up from a full one
@@ -230,6 +229,8 @@ class FilmSolver(FilmAnswers):
         e.take_rigid()
         self.set_times(mass_old, step)
         e.set_rates(step)
+        if self.lagging:
+            e.hold_back()
         work.warm = work.warm and not s.closes
         if not e.set_known_loads():
             return Status.NO_PRESSURE, 0

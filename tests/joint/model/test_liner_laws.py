@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -261,3 +262,48 @@ def test_drag_of_unequally_rough_surfaces_on_a_liner(closure, contact):
             model.evaluate(at + d, history, step).wrench - model.evaluate(at - d, history, step).wrench
         ) / 2e-6
     assert np.all(np.abs(tangent * scale - difference) < 1e-6 * np.abs(difference).max(axis=1, keepdims=True))
+
+
+OILS = {
+    "constant": {},
+    "compressible": {"density_law": ehd.DowsonHigginson()},
+    "thinning": {"shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7, residual=0.5)},
+}
+
+
+@pytest.mark.parametrize("oil", OILS)
+@pytest.mark.parametrize("line_in_cells", [False, True], ids=["vertices", "cells"])
+def test_films_with_a_memory_on_a_stiff_liner_are_those_of_the_rigid_bore(oil, line_in_cells):
+    """Random histories, calm and with speeds that grow manifold from step to step; from a cold start too."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=25e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02, **OILS[oil]),
+        film=ehd.FiniteLength(n_theta=32, n_z=4),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=line_in_cells),
+    )
+    stiff = ehd.ElasticLiner(thickness=1e-4, youngs_modulus=2e12, poisson_ratio=0.3)
+    models = [build_model(bearing), build_model(dataclasses.replace(bearing, bush=stiff))]
+    rng = np.random.default_rng(7)
+    for _ in range(4):
+        angle, place, speed = rng.uniform(0, 6.3), rng.uniform(7e-6, 22e-6), rng.uniform(5.0, 50.0)
+        histories = [None, None]
+        for step in range(14):
+            wild = step in (0, 9, 10, 12)
+            turn = angle + 0.3 * math.sin(step)
+            motion = np.zeros(10)
+            motion[:2] = place * math.cos(turn), place * math.sin(turn)
+            motion[4:6] = 2e-3 * math.cos(step), 1e-3
+            motion[8] = speed * (rng.uniform(20.0, 60.0) * (-1) ** step if wild and step else 1.0)
+            forces = []
+            for k, model in enumerate(models):
+                histories[k] = model.initial_history(motion) if step == 0 else histories[k]
+                found = model.evaluate(motion, histories[k], 2e-3)
+                model.forget()
+                cold = model.evaluate(motion, histories[k], 2e-3)
+                size = np.abs(found.wrench[:2]).max()
+                assert np.abs(cold.wrench - found.wrench)[:2].max() <= 1e-9 * size
+                histories[k] = cold.history()
+                forces.append(cold.wrench[:2])
+            assert np.abs(forces[1] - forces[0]).max() <= 1e-2 * np.abs(forces[0]).max()

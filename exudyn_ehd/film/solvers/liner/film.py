@@ -63,7 +63,7 @@ from exudyn_ehd.film.cavitation.system import has_unfed_row
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.film import FilmArrays
-from exudyn_ehd.film.solvers.liner.line import AtLine, FilmLine, GapChain, open_gaps, see_curves
+from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain, open_gaps, see_curves
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, find_slopes, liner_residual
 from exudyn_ehd.film.solvers.newton import FOUND, GOES_ON, begin, factor_film, proceed, solve_film
 from exudyn_ehd.film.solvers.sets import course_from, is_exact, pseudo_time
@@ -129,6 +129,15 @@ class LinerFilm(WinklerElements):
             self.thin.see(P)
         f.set_links()
 
+    def hold_back(self) -> None:
+        """`FilmArrays.hold_back` with the deflection at the start of the step, so that it does not depend on where
+        Newton's method starts."""
+        f, D = self.film, self.film.nothing if self.delta_old is None else self.delta_old
+        np.maximum(self.rigid[0] + D, TOUCHING, out=f.H)
+        np.maximum(self.rigid[1] + 0.5 * (D + np.roll(D, -1, 0)), TOUCHING, out=f.HF)
+        self._set_links(f.nothing)
+        f.hold_back()
+
     def balance(self) -> tuple[float, float]:
         """Update gaps, links and residual; returns (norm of the residual, smallest film gap), (inf, -1) if the oil's
         law has no such pressure."""
@@ -184,7 +193,6 @@ class LinerFilm(WinklerElements):
         """Solve by Newton's method from the present pressures and sets, in place; returns (found, steps)."""
         f, w, s = self.film, self.film.work, self.film.system
         # the film from sliding alone has terms of its own
-        s.late *= s.prompt < 1.0
         s.terms.late[:], s.terms.known[:] = s.late, 0.0
         course, outcome = course_from(w, w.ready and w.warm), GOES_ON
         w.ready = w.exact = False
