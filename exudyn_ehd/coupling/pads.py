@@ -3,8 +3,8 @@
 The film of a pad is a joint whose housing is the pad: its frame has the pad's centre of curvature as origin and turns
 with the pad. Geometry and forces: `exudyn_ehd.joint.static.pads`.
 
-`CreateTiltingPadThrustBearing`: pads as bodies of a model that tilt about pivots, each with a film under the collar.
-
+`CreateTiltingPadThrustBearing`: pads that tilt about pivots, each with a film under the collar
+-----------------------------------------------------------------------------------------------
 To a solver the film of a pad is that of a joint between the pad and the shaft with one end face and no film around its
 journal: the pad's face lies at the upper end of the joint's length, under the collar.
 """

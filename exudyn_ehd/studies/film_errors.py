@@ -1,7 +1,7 @@
 """Results of a steady film of a bearing, and the difference of two grids in them.
 
-A converged reference and an estimate of its own error from three levels of refinement.
-
+Converged reference, and an estimate of its own error from three levels of refinement
+-------------------------------------------------------------------------------------
 With values f1, f2, f3 on levels that are each ``ratio`` times finer than the one before and an error ~ h^p,
 
     p = log(|f2 - f1| / |f3 - f2|) / log(ratio),    |f3 - f| = |f3 - f2| / (ratio^p - 1).

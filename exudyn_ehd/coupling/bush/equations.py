@@ -4,8 +4,8 @@ Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a 
 With u = T(q) the reduced equations are T^T (M u_tt + f_int - f_load) = 0, and u_tt = T q_tt + (velocity accelerations).
 A bush that the carrier's own mass contains is taken off it again as a rigid body (`RigidPart`).
 
-Inertia of a bush as a rigid part, which the mass of its carrier already contains.
-
+Inertia of a bush as a rigid part, which the mass of its carrier already contains
+---------------------------------------------------------------------------------
 With its mass m, first moment s = A int rho X dV and inertia I about the carrier's frame (position p, rotation A,
 velocity v, angular velocity omega), the carrier's kinetic energy contains
 

@@ -1,8 +1,6 @@
 """Put the items of a flexible bush into an Exudyn system, and make the film element of any joint.
 
 Flexible bores start in equilibrium with the films of the initial configuration; several on one body together.
-
-Films on the end faces for the element of a joint, with a check of its start.
 """
 
 from __future__ import annotations

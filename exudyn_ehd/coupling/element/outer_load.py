@@ -16,8 +16,8 @@ its whole mass on each of them, errors of 0.2 % in seven films were told as 20 t
 has films inside and outside at the same place: with its mass, errors of 18 % in the inner film were told as 14 000 %,
 without as 10 %.
 
-Loads of a system that are functions of time, and their impulse within a step.
-
+Loads of a system that are functions of time, and their impulse within a step
+-----------------------------------------------------------------------------
 Accepted states know a load f at both ends of a step h only. The user functions of the loads are called within it where
 the load departs from the line through the two states before, by d at the end of the step. Their impulse beyond that of
 the chord, over d h,

@@ -9,8 +9,8 @@ Exudyn asks for the picture only while a renderer runs, or for an image of its r
 hand over the pressure of every accepted step; before that nothing is stored. Within a run, drawing never evaluates the
 film, whose last evaluation belongs to the solver; outside of one it shows the film of the present state.
 
-Exudyn sensors that read a joint: quantities of its film, and what Exudyn's own joints give.
-
+Sensors of Exudyn that read a joint: quantities of its film, and what Exudyn's own joints give
+----------------------------------------------------------------------------------------------
 The latter are those of a joint whose first marker is on the housing and whose second is on the journal: what is local
 is in the housing's joint frame A0, loads are those that the journal hands on to the housing (minus those on the
 journal), of films, thrust faces and constraint together. Torques are vectors about the bearing's centre, as Exudyn's

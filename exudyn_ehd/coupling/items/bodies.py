@@ -1,6 +1,6 @@
 """Nodes and bodies of a scene, rigid and flexible, as items of a joint.
 
-One entry of itemNumbers, resolved: where it is, how it moves, and which side it makes.
+Each entry of itemNumbers is resolved to where it is, how it moves, and which side it makes.
 """
 
 from __future__ import annotations

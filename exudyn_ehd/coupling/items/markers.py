@@ -1,7 +1,7 @@
 """Rigid markers as items of a joint, those on finite elements in absolute coordinates too; items by their number.
 
-The frame of a finite-element body in absolute coordinates: the best rigid fit of some of its nodes, at any rotation.
-
+Frame of a finite-element body in absolute coordinates: the best rigid fit of some of its nodes
+-----------------------------------------------------------------------------------------------
 Nodes i with weights w_i, which add up to one, lie at Y_i against their mean C in the reference configuration, and at
 y_i against their mean c now. The rotation R minimises ``sum w_i |y_i - R Y_i|^2``: it is the orthogonal factor of the
 polar decomposition of ``sum w_i y_i Y_i^T``. With r_i = R Y_i the minimum says ``sum w_i r_i x y_i = 0``, and its

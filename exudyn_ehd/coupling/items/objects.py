@@ -1,13 +1,12 @@
-"""Mass matrices of Exudyn's objects, also of those that don't return them; whether a housing contains its bush.
+"""Mass matrices of Exudyn's objects, also of those that don't return them; whether a housing contains its bush,
+and whether the items of a joint still exist.
 
-The equations of a user's ObjectFFRFreducedOrder, with an exact Jacobian.
-
+Equations of a user's ObjectFFRFreducedOrder, with an exact Jacobian
+--------------------------------------------------------------------
 Exudyn differentiates that object by differences, by each of its coordinates and rates. Without its own terms
 (``computeFFRFterms=False``) it has neither forces nor mass, and its differences cost next to nothing, while its
 markers, sensors, loads and drawing go on. An ObjectGenericODE2 on the same two nodes has the equations instead
 (`exudyn_ehd.coupling.kinematics.flexible_bodies`).
-
-Check that the items of a joint still exist in its system, under the same numbers.
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@ The body's modal node serves twice in the film's object: in the body's side, for
 the modes cause, and as the surface's coordinates, for the rest. Exudyn adds up what an object hands to a node that it
 lists twice, forces and Jacobians alike.
 
-Carrier of a bush's slaved nodes: points that move with the rigid frame of any side of a joint.
-
+Carrier of a bush's slaved nodes: points that move with the rigid frame of a side of a joint
+--------------------------------------------------------------------------------------------
 With the frame's position p, rotation A, velocity v, angular velocity omega and Jacobians Jp, Jr (see `kinematics`), a
 point X of the bush's frame has the arm s = A X and
 

@@ -1,7 +1,7 @@
 """Sides on beams whose kinematics are known in closed form: geometrically exact beams, and cables.
 
-The frame on a cable that knows its position and slope only, with exact variations: array kernels.
-
+Frame on a cable that knows its position and slope only, with exact variations
+------------------------------------------------------------------------------
 Legend: S, Sx (3, n) maps from coordinates to the centreline r = S (q_ref + q) and its slope s = Sx (q_ref + q); t = s /
 |s|; d0 a fixed global unit vector, the director, normal to t in the reference configuration; d = d0 - (d0 t) t
 normalised, b = t x d. The cable's frame is [t, d, b]: t is what the cable knows, its roll about t is chosen such that d
@@ -11,8 +11,8 @@ a_loc joint frame to cable frame.
 With tau = t d0 and c = t x d0, the frame turns with omega = G ds/dt, G = (skew(t) - tau / (1 - tau^2) t c^T) (I - t
 t^T) / |s|.
 
-Equations of motion of a body in a floating frame with modes: mass matrix, forces and exact derivatives.
-
+Equations of motion of a body in a floating frame with modes
+------------------------------------------------------------
 A point X of the body stands at ``r + A (X + Psi z)``, with r, A and the local angular velocity ``w = G q_t`` of a rigid
 node and modes z. In the frame's components, with alpha the angular acceleration at zero second derivatives of the
 coordinates, the left-hand side beside ``M q_tt`` is

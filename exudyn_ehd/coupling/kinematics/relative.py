@@ -3,8 +3,8 @@
 Frames, Jacobians and legend as in `kinematics`; index h: housing, j: journal. The journal's axis is z of its frame, the
 joint frame that of the housing.
 
-Place of a journal along its bearing's axis, the eleventh entry of its motion, which films on end faces need.
-
+Place of a journal along its bearing's axis: the eleventh entry of its motion, for films on end faces
+-----------------------------------------------------------------------------------------------------
 It is that of the journal's centre, the point of its axis at the housing's joint point in the reference configuration,
 
     z = e_z . (p_J - z_0 a - p_H),
@@ -20,8 +20,8 @@ socket's frame
 
 and where the socket turns by dphi a vector A^T g fixed in space changes by -A^T (dphi x g).
 
-Smallest gap between a journal and its rigid bore, circular or not.
-
+Smallest gap between a journal and its rigid bore, circular or not
+------------------------------------------------------------------
 With the journal's axis at (x, y) + z (b_x, b_y) the gap is c - (x + z b_x) cos theta - (y + z b_y) sin theta and what
 the bore's profiles add. Its smallest value in a circular bore is c less the larger eccentricity of the two ends.
 """

@@ -4,8 +4,8 @@ A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid 
 `flexible_bodies` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
 marker Jacobians. The side of finite elements in absolute coordinates is in `exudyn_ehd.coupling.items.markers`.
 
-Two sides on the nodes of rigid bodies, or ground: their kernels and those of `relative` in one call.
-
+Two sides on the nodes of rigid bodies, or ground, in one call
+--------------------------------------------------------------
 On small films the calls from Python take longer than what they call. A side is (kind, reference, rho, rotation, frame,
 jac) of `rigid_nodes`, the housing's first; q and q_t (n,) hold both sides' coordinates.
 """

@@ -8,8 +8,8 @@ To drop steps they are put into spans. Of each the last one is kept, and those w
 pressure and the largest load across the axis: every row is an accepted step as it was, and the extremes of the rows
 are those of the run.
 
-Rows of a record on disk, for runs whose records are too long for memory.
-
+Rows on disk, of records that are too long for memory
+-----------------------------------------------------
 A file begins with a line of JSON that says what it is, padded to `HEAD` bytes; rows of doubles follow, each written
 whole and in order. What is there can be read at any time, also after the program was killed: a row that was cut off
 does not count.

@@ -24,15 +24,15 @@ the next as m g / (beta h^2): from one start to the other m v^2 / L at any step 
 Newton's method goes on where the opening jumps. Exudyn takes that for a contact that has opened or closed, and begins
 again at zero accelerations; here each further pass of a step starts where the last one has ended.
 
-Steps that converge to a film that none bears, refused before Exudyn accepts them.
-
+Steps that converge to a film that no bearing has
+-------------------------------------------------
 Newton's method may well converge where there is no film: behind the end of a pressure law, where forces only lead its
 iterates back, or at a pressure that no steel bears, into which too large a step has thrown the journal. Its iterates
 may pass there; its result may not. After Newton's method Exudyn asks for an error and a step size: a step with such a
 result is repeated with half its size, down to the smallest one, where it ends the run.
 
-Newton's method kept within the films, and its tolerances.
-
+Newton's method kept within the films
+-------------------------------------
 Exudyn's Newton method takes its steps whole. A film hardens towards the wall as 1 / gap^3 and more, and where it is
 hollow, or opens, it has hardly any stiffness: a step from there goes through the wall, where the film can't be
 evaluated or pushes back with 1e12 N, and the time step is halved for no fault of its own. From the thin side Newton's
@@ -52,8 +52,8 @@ The law's line behind that end is flatter than the law in front of it, so that N
 the other and back for ever. Where it was behind the end, at v_b, and has come back to v, a step goes no more than half
 of the way there, d (v_b - v) <= |v_b - v|^2 / 2: a bisection, until Newton's method converges.
 
-Newton's tolerances in the measure of the films' and bushes' forces.
-
+Newton's tolerances in the measure of the films' and bushes' forces
+-------------------------------------------------------------------
 Exudyn's Newton method ends where the residual is a share of the step's first one, or below an absolute tolerance. A
 start close to the solution makes the first residual so small that a share of it is below what positions resolve: metres
 from the origin, or under meganewtons, a film's force has the rounding of the position times its stiffness, 1e-9 of

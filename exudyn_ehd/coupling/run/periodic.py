@@ -1,10 +1,8 @@
-"""Runs that end when the orbits of all joints have closed.
+"""Runs that end when the orbits of all joints have closed, and how far a run is, for its line of progress.
 
 A cycle is compared with the one before at the same phases. What two cycles in a row differ by is not yet how far the
 last one is from the limit: differences d_1, d_2, ... that shrink by a factor q = d_k / d_(k-1) leave d q / (1 - q),
 99 times the difference where a film warms up by 1 % of the rest in a cycle. So a run goes on until both are small.
-
-How far a run is, where somebody looks: steps per second, time left, the thinnest film so far.
 """
 
 from __future__ import annotations

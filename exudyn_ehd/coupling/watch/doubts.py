@@ -1,7 +1,7 @@
 """Steps that are too long for what they integrate.
 
-Explicit integrators beyond their stability limit, recognised from the accepted steps of a joint.
-
+Explicit integrators beyond their stability limit
+-------------------------------------------------
 A film is a damper C between masses: beyond h C / m = 2 (forward Euler), 2.51 (RK33) or 2.79 (RK44) the journal's
 velocity is a product of the step size h. The film's stiffening keeps it finite, so that the journal chatters about a
 wrong place. What tells is that velocities are no longer the rates of the positions: with the displacement d of a step
@@ -19,8 +19,8 @@ Far beyond the limit a step throws the journal out of the thin film, where its d
 some well resolved steps and is thrown again, each time by another amount. Film and walls slow a journal down: a step
 that is not resolved and makes it faster is such a kick, and kicks in short succession count however unequal they are.
 
-Bodies on absolute coordinates that turn too far in a step: finite elements on points, ANCF beams and cables.
-
+Bodies on absolute coordinates that turn too far in a step
+----------------------------------------------------------
 Their nodes move on circles that an integrator's formulas leave: in the first turn a free ring of any wall and material
 loses the share
 
@@ -41,13 +41,13 @@ those at 0.6. Runs with a wrong growth or hundreds of halved steps, counted by e
 0.99, 3 of 11 at 1. A whirl of 80 steps per period loses 2e-7 of its amplitude per period at 0.9. `TrapezoidalIndex2`
 has the radius 1.
 
-Summary of a run, one line per joint, through the logger of this package.
-
+Summary of a run, one line per joint, in the log
+------------------------------------------------
 ``logging.getLogger("exudyn_ehd").setLevel("WARNING")`` turns the lines off. Where a program has not configured logging,
 the lines go to the standard error stream.
 
-Films that run dry, are too thin for their surfaces, too steep for their grid, or carry too little.
-
+Films that run dry, are too thin for their surfaces, too steep for their grid, or carry too little
+--------------------------------------------------------------------------------------------------
 Films that run dry conserve mass, oil leaves them through the ends, and nothing brings it back.
 
 In a flooded film the cavity's void takes some 0.4 of ``1 - smallest gap / mean gap``, as a share of the film's volume.

@@ -1,8 +1,7 @@
 """State of the calling Exudyn solver: its kind, and whether it can reject a step.
 
-User options for the steps, and the rejection of steps too coarse for a film, through Exudyn's own control.
-
-`exudyn_ehd.coupling.run.step_size` chooses steps by their error.
+`StepControl` is what a user asks of the steps. Those that are too coarse for a film are rejected here, through Exudyn's
+own control; `exudyn_ehd.coupling.run.step_size` chooses steps by their error.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Banded factors of the film's systems: L D L^T for symmetric ones, L U for the others, with vectors of four numbers.
 
-L D L^T of symmetric systems.
-
+L D L^T of symmetric systems
+----------------------------
 Storage: ``band[r, d] = A[r, r + d]`` with zeros behind the bandwidth, so that four pivots and vectors may read past it.
 Factor: ``A = U^T D^-1 U`` with ``U = D L^T`` stored in place of ``band`` and ``inv_diag = 1 / diag(U)``.
 
@@ -13,8 +13,8 @@ Four neighbouring numbers at once, written out as vectors.
 The rows of a film's bands are some ten numbers long: too short for the compiler's vector loops, and numba does not let
 it join single numbers into vectors. On processors without such vectors LLVM makes smaller ones of them.
 
-Banded L U without pivoting for the film's non-symmetric systems (mass-conserving cavitation, elastic liner).
-
+L U without pivoting of the others
+----------------------------------
 The matrices are column diagonally dominant with non-positive off-diagonals, or close to it, so that no pivoting is
 needed. Storage: ``lower[r, d] = A[r + d, r]`` and ``upper[r, d] = A[r, r + d]``, d = 0 .. w, zeros behind;
 ``lower[:, 0]`` is not used. After the factorisation ``A = L U`` with unit L: ``lower`` holds L's columns, ``upper`` U's

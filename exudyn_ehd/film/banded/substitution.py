@@ -10,8 +10,8 @@ triangles, or both, come with the diagonal ``1 / inverse``, else with ones:
 Four right-hand sides are carried along at once. All indices are flat and unsigned, which spares the slices and sign
 checks that would outweigh the arithmetic of short rows.
 
-Dozens of right-hand sides at once with a stored band factor, as columns of a matrix.
-
+Dozens of right-hand sides, as columns of a matrix
+--------------------------------------------------
 A tile holds TILE of them; its rows are taken by fours, so that a step of a solve subtracts a 4 x 4 block of the factor
 times four known rows from four others, 16 products for 8 rows read and 4 written, in loops of constant length.
 Coefficients are packed by such blocks first. Faster than rows (`substitution`) from some ten right-hand sides on: the

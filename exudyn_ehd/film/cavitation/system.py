@@ -3,8 +3,8 @@
 Symbols: kx, kz conductances of the links, b right-hand side, P pressure, all scaled (see
 `exudyn_ehd.film.reynolds.links`).
 
-Steady mass-conserving films that their equations alone do not determine.
-
+Steady mass-conserving films that their equations alone do not determine
+------------------------------------------------------------------------
 Let u be the pressure above the cavity's at full vertices and fill - 1 at cavitated ones, and R(u) the balances of
 `exudyn_ehd.film.cavitation.closures`. The derivatives dR_i / du_j are <= 0 for i not j. The sum s_j of column j is
 what leaves the film for good: conductances to prescribed vertices, Couette flow to those downstream, and ``area dH/dt``

@@ -22,8 +22,8 @@ In theta T_link is the temperature upstream. In z, where oil that turns with the
 suck in, that would leak as much heat to the sides as the bearing gives off: there it is of second order, by a limiter
 that makes no extrema. What a link carries leaves one side and reaches the other, so that the balance holds.
 
-Heat from a film's mean temperature through both of its surfaces.
-
+Heat from a film's mean temperature through both of its surfaces
+----------------------------------------------------------------
 Across the film lies a parabola with the mean T and the surfaces' s_1, s_2. It passes
 
     q_1 = kappa (6 T - 4 s_1 - 2 s_2),    q_2 = kappa (6 T - 4 s_2 - 2 s_1),    kappa = k / h,

@@ -7,8 +7,8 @@ flow under pressure times the drop of ``integral of dp / (rho(p) / rho)``. Heat 
 pressure p is warmer there by ``alpha_T T p / (rho c_p)``, with 7e-4 1/K and 320 K by 1.3 K per 10 MPa, and cools down
 as it leaves. Nor does the density follow the temperature.
 
-Heat in the wall of a bush or of a journal: rings of finite volumes around the axis, a column for each of the film's.
-
+Heat in the wall of a bush or of a journal: rings of finite volumes, a column for each of the film's
+----------------------------------------------------------------------------------------------------
     rho c dT/dt = k (1/r d/dr (r dT/dr) + 1/r^2 d2T/dtheta2) - loss
 
 Vertices lie evenly from the film's surface to the far one, with half a ring at either. The conductance between two of

@@ -1,7 +1,7 @@
 """The lubricant: viscosity and density at the reference state, and the laws by which they depart from it.
 
-Named oils: ISO viscosity grades, SAE single grades and multigrades from two viscosity points.
-
+Named oils: ISO grades, SAE single grades and multigrades from two viscosity points
+-----------------------------------------------------------------------------------
 ISO VG: mid-point kinematic viscosity at 40 degrees Celsius by definition (ISO 3448); at 100 degrees Celsius, and the
 density at 15, typical figures of paraffinic mineral oils with a viscosity index (ASTM D2270) of 95 to 102, as hydraulic
 and gear oils have; VG 220 is Shell's Omala S2 G 220. Other makers' oils of these grades lie within 6 % at 100 degrees

@@ -6,8 +6,8 @@ the 1.
 
 Symbols: pose = (x, y, bx, by) scaled, cos_x / sin_x at vertices, cos_f / sin_f at the links i -> i+1, z (m,) vertices.
 
-Gaps with steps (pockets, textures, grooves' edges): constant gap around each vertex, steps on the faces between.
-
+Gaps with steps (pockets, textures, edges of grooves)
+-----------------------------------------------------
 Between two vertices lie two halves of a link with gaps h1 and h2. The same flow passes both,
 
     q = V h1 - h1^3 (pf - p1) / (ds / 2) = V h2 - h2^3 (p2 - pf) / (ds / 2),

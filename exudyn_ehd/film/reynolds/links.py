@@ -13,8 +13,8 @@ An effect (flow factors of rough surfaces, shear thinning, a temperature field) 
 Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx /
 fz Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 
-Couette flows out of a cavity, averaged over the step: what makes its transport of second order in time.
-
+Couette flows out of a cavity, averaged over the step: transport of second order in time
+----------------------------------------------------------------------------------------
 The balance of a film that the flows carry along at a speed U is, in terms of the void ``v = H - fill H``,
 
     dv/dt + div (U v) = dH/dt + div (U H) + div (pressure flow).

@@ -19,8 +19,6 @@ out likewise. A flooded start holds oil of ambient density, so that its film bui
 Rupture lines lie inside the cells where the closure says so, with f and the pressure at s = 1 (symbols of
 `exudyn_ehd.film.cavitation.rupture_line` and `exudyn_ehd.film.cavitation.oil_line`) times the density of oil at the
 cavity's pressure. Oil that no pressure of the law's range carries has no film.
-
-Flows at prescribed vertices, where the film beside them ends within a link; shear at the ends beside a cavity.
 """
 
 from __future__ import annotations

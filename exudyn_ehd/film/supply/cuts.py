@@ -8,15 +8,15 @@ columns. Where such an edge passes a vertex, its link becomes infinitely short a
 either side: forces and flows are continuous. The control volumes stay those of the grid, so that flows balance as
 without supply.
 
-Shares of the grid's control volumes that supply areas cover.
-
+Shares of the grid's control volumes that supply areas cover
+------------------------------------------------------------
 The function that is one at a vertex and falls to zero at its neighbours in theta and z, integrated over an area, is the
 part of the area that belongs to the vertex; its integral over the whole surface is the control volume. So the parts add
 up to the area to rounding, what is linear between the vertices is integrated exactly, and nothing steps where an edge
 of a turning area passes a column. Along z an area has the grid's finer integration weights on the rows inside.
 
-Shear of the oil in supply areas: flow that returns within a recess.
-
+Shear of the oil in supply areas: flow that returns within a recess
+-------------------------------------------------------------------
 Between the sliding surface at y = d, the recess's depth, and its bottom at y = 0 the oil that the surface takes along
 comes back, as the lands beside let far less of it through. Laminar flow with no net flow, ``int u dy = 0``, is
 

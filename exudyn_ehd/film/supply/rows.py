@@ -6,8 +6,6 @@ at least where no area lies, which is the film between areas or at an end.
 
 In a cavity that conserves its oil the band behind an area is as wide as the control volumes of its rows: there they
 meet on its edges (`meeting_rows`), and on those of a hole.
-
-Checks of a bearing's supply areas: places outside, sizes for which the grid has no column, no film beside them.
 """
 
 from __future__ import annotations

@@ -13,8 +13,8 @@ F_5/2 comes from cubic Hermite interpolation on 1/64 sigma with the exact values
 the series ``(-u)^(5/2) (1 + 15/8 u^-2 - 15/128 u^-4 - 75/1024 u^-6)``, so that surfaces pressed into each other still
 push back. Below u = -64 the first cubic goes on, 0.5 % too stiff at -128.
 
-Average gap of rough surfaces: what a film sees between asperities, positive and smooth wherever surfaces touch.
-
+Average gap of rough surfaces: what a film sees between asperities
+------------------------------------------------------------------
 Two rough surfaces with a nominal gap h and Gaussian combined roughness s of standard deviation sigma leave, where peaks
 that would overlap are flattened, the average gap (Patir and Cheng, J. Lubrication Technology 100 (1978) 12, with a
 Gaussian)

@@ -5,8 +5,8 @@ convex, ends at its last knot with zero slope, and goes on as its first cubic be
 
 Fields are (n, m) arrays on the film grid; gaps are divided by the clearance, contact pressures in Pa.
 
-The wall, stiff and smooth, takes over before the gap vanishes.
-
+Wall: stiff and smooth, before the gap vanishes
+-----------------------------------------------
 For a gap h below the onset h0, with s = h / h0:
 
 * contact pressure ``p_w = pressure (1 - s)^2`` (continuous first derivative, still rising for h < 0), and
@@ -19,8 +19,8 @@ acts, the film sees another gap than the one on whose slope its pressure rests. 
 which the journal meets along its normal, without a torque on it: see closed gaps in
 `exudyn_ehd.film.surfaces.patir_cheng`.
 
-Wear of the bore after Archard: what asperities rub off deepens the gap.
-
+Wear of the bore after Archard: what asperities rub off deepens the gap
+-----------------------------------------------------------------------
 ``dh/dt = k p v`` with the asperity contact's pressure p, the sliding speed v and the specific wear rate k in m2/N (k =
 K / H with Archard's dimensionless K and the softer surface's hardness H). Source: J. F. Archard, J. Applied Physics 24
 (1953) 981.
@@ -29,8 +29,8 @@ The depth belongs to the accepted history: a step sees the depth at its start, a
 the pressure and speed found there (explicit in the gap, first order in the step; wear per step is a tiny share of the
 roughness).
 
-Wrench of contact pressures and of their friction, and its gradient.
-
+Wrench of contact pressures and of their friction, and its gradient
+-------------------------------------------------------------------
 The wrench is linear in the integrals of the pressure times `FilmGrid.moments`: cos, sin, z cos, z sin and 1. The
 pressures do no work on the journal's spin, so that their torque about O is e x F. Friction acts at the bore's points
 against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.

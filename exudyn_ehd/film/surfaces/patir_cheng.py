@@ -37,8 +37,8 @@ phi = phi_x h^3 / h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction
 ``h_T E[1 / local gap] + Phi_fs h_T / h``. Below the smallest H that the fits are meant for (0.5 to 1) their logarithms
 run on smoothly, in ``L tanh(s / L)`` of s = ln(h_T), to a constant: an extrapolation.
 
-Drag of a pressure gradient on the two surfaces, where they share it unevenly.
-
+Drag of a pressure gradient on the two surfaces, where they share it unevenly
+-----------------------------------------------------------------------------
 Between rough surfaces the relative speed V of the journal (1) carries ``V/2 (h_T + sigma phi_s)`` in the bore's
 (2) frame. Stokes flow is reciprocal (H. A. Lorentz): with the wall force as flux of V and the volume flow as flux of
 the pressure gradient, the cross terms are each other's opposite, since together they neither dissipate nor produce

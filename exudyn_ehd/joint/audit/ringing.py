@@ -1,7 +1,7 @@
 """Forces that alternate from step to step.
 
-A time integration that rings, recognised from the accepted steps of a joint.
-
+Time integration that rings, recognised from the accepted steps of a joint
+--------------------------------------------------------------------------
 With d_k = F_k - L_k, where L_k is the value at t_k of the line through the forces before and behind, an alternation
 F = F_0 + (-1)^k A has d_k = 2 (-1)^k A, and an oscillation with n steps per period d_k = (1 - cos(2 pi / n)) times its
 value: d changes its sign from step to step below some three steps per period only, which no step resolves. A force

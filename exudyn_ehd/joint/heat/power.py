@@ -1,6 +1,7 @@
 """Mechanical power that film and contacts keep or store, and the friction behind it.
 
-Oil that a film takes in, holds and gives off, and the heat of its motion: what the temperature's balances are made of.
+The balances of the temperature are made of these, of the oil that a film takes in, holds and gives off, and of the heat
+of its motion.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Kinds of elements: 20-node hexahedron, 10-node tetrahedron, and which of them a connectivity has.
 
-The 20-node serendipity hexahedron: nodes, shape functions, faces and quadratures.
-
+20-node serendipity hexahedron
+------------------------------
 Legend: (xi, eta, zeta) natural coordinates in [-1, 1]^3; N_a shape function of node a. The node order is that of the
 Abaqus element C3D20, which Exudyn's ``FEMinterface`` uses too: corners 0-3 at zeta = -1 and 4-7 at zeta = +1, both
 counter-clockwise seen from +zeta, then the mid-edge nodes of the lower face (8-11), of the upper face (12-15) and of
@@ -18,8 +18,8 @@ rule           force  tangent  displacement error
 8 points       0.4    2.2      0.5 %
 =============  =====  =======  ==================
 
-The 10-node tetrahedron: nodes, shape functions, faces and quadratures.
-
+10-node tetrahedron
+-------------------
 Legend: (xi, eta, zeta) natural coordinates >= 0 with xi + eta + zeta <= 1; L_i barycentric coordinates of the corners,
 L_0 = 1 - xi - eta - zeta. The node order is that of the Abaqus element C3D10, of VTK and of Exudyn's ``FEMinterface``:
 corners 0-3, the first three counter-clockwise seen from the fourth, then the nodes on the edges 0-1, 1-2, 2-0, 0-3,

@@ -45,8 +45,8 @@ pseudo-transient continuation follows (`exudyn_ehd.film.solvers.sets`). The rupt
 
 Between rigid surfaces (beta 0) it is the film of an oil that thins by shear, whose conductances follow the pressure.
 
-Start of a film on a liner without a usable last film; see `exudyn_ehd.film.solvers.liner.film`.
-
+Start of a film without a usable last film
+------------------------------------------
 Newton's method starts from a dry guess. If it fails, pseudo-transient continuation follows: an additional storage at
 every vertex slows the film down and is reduced step by step.
 """
