@@ -31,9 +31,8 @@ MOST_STEPS = 200
 FIRST, HOPELESS, LAST, LEAST = 100.0, 1e6, 1e-3, 1e-7
 # Factors of the storage after a film that is found, and after one that is not.
 FADES, GROWS = 0.3, 8.0
-# ``course`` and ``progress`` of `exudyn_ehd.film.solvers.newton`.
-Progress: TypeAlias = tuple[bool, bool, bool, float, float]
-Course: TypeAlias = tuple[int, bool, int, float, float, int, int, Progress]
+# ``course`` of `exudyn_ehd.film.solvers.newton`.
+Course: TypeAlias = tuple[int, bool, int, float, float, int, int, tuple[bool, bool, bool, float, float]]
 # Share of its compressibility with which an oil counts as nearly incompressible.
 SOFTEST = 1e-9
 
@@ -127,9 +126,9 @@ def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
 
 
-def is_exact(progress: Progress) -> bool:
+def is_exact(course: Course) -> bool:
     """Return whether the factor at the end is that of the solved film."""
-    _, own, done, drift, _ = progress
+    _, own, done, drift, _ = course[-1]
     return done and own and drift <= LEFT
 
 
@@ -151,9 +150,9 @@ def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
         course_from(work, ready), s.kind, pc, work.active, (work.u, work.above, s.fill), *_film_of(s, work),
         work.places_of(P), None,
     )  # fmt: skip
-    steps, *_, work.count, work.width, progress = course
+    steps, *_, work.count, work.width, _ = course
     ok = work.warm = work.ready = outcome == FOUND
-    work.exact = ok and is_exact(progress)
+    work.exact = ok and is_exact(course)
     if ok and s.density is not None:
         scale, floor, law, known, _ = s.density.fields(s.floor)
         know_at(P, scale, floor, law, known)

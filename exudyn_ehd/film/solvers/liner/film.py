@@ -63,7 +63,7 @@ from exudyn_ehd.film.cavitation.system import has_unfed_row
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.film import FilmArrays
-from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain, open_gaps, see_curves
+from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain, open_gaps
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, find_slopes, liner_residual
 from exudyn_ehd.film.solvers.newton import FOUND, GOES_ON, begin, factor_film, proceed, solve_film
 from exudyn_ehd.film.solvers.sets import course_from, is_exact, pseudo_time
@@ -169,13 +169,15 @@ class LinerFilm(WinklerElements):
         if self.thin is not None and flux is not None:
             s.kx *= self.thin.slide(flux, f.vx)
         density = 1.0 if f.law is None else float(f.rho[~g.fixed].min(initial=np.inf))
-        gaps, shut = self.gap_fields[:2].copy(), (self.shut, g.fixed)
+        gaps = self.gap_fields[:2].copy()
         f.set_right_hand_side()
-        rest = s.b, g.width_z, density, (self.beta, f.vx)
-        if isinstance(f.line, FilmLine):
-            f.line.see(self.gap_fields, self.term_fields, shut, *rest, gaps)
-        elif f.oil_line is not None:
-            see_curves(f.oil_line, self.gap_fields, s.terms, shut, *rest)
+        s.kx[self.shut] = 0.0
+        line = f.line if isinstance(f.line, FilmLine) else f.oil_line
+        assert line is not None
+        line.lift_by_speed = 0.5 * self.beta * np.sign(f.vx) * g.width_z
+        if isinstance(line, FilmLine):
+            line.liner = self.beta, gaps[1]
+        line.take(s.terms, s.b, density, f.vx)
         if self.limiter is not None or self.contact is not None:
             a, follow = self.gap_slopes, 1.0 / (1.0 - self.beta * self.contact_G) - 1.0
             chain = GapChain(a.rate_t.copy(), self.bend.copy(), a.link.copy(), follow)
@@ -206,8 +208,8 @@ class LinerFilm(WinklerElements):
         while outcome == GOES_ON:
             norm, gap = self.balance()
             outcome, course = proceed(norm, gap, course, *rest, self._response, w.matrix, self.places)
-        steps, *_, w.count, w.width, progress = course
-        w.ready, w.exact = outcome == FOUND, is_exact(progress)
+        steps, *_, w.count, w.width, _ = course
+        w.ready, w.exact = outcome == FOUND, is_exact(course)
         return w.ready, steps
 
     @property

@@ -30,7 +30,6 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.oil_line import OilLine
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_gradients, line_terms, weigh_line
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.reynolds.balance import FilmTerms
@@ -50,30 +49,15 @@ def open_gaps(gap_fields, touching_out):
 
 
 @njit(cache=True)
-def see_line(
-    gap_fields, terms, touching, b, width_z, fixed, density, liner, line_out, gaps_out, lean_out
-):  # fmt: skip
-    """Set f, k and s = 1 of a film at the cavity pressure everywhere, t (``lean_out``) of its liner, and its gaps.
-
-    ``liner``: (compliance, vx); ``touching``: of `open_gaps`.
-    """
-    (beta, vx), m, flat = liner, b.shape[1], b.reshape(-1)
-    f, k, whole, s = line_out[0], line_out[1], line_out[4], line_out[6]
-    H, HF, kx, shut = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1), terms[0].reshape(-1), touching.reshape(-1)
-    at_vertices, at_links, lean = gaps_out[0].reshape(-1), gaps_out[1].reshape(-1), lean_out.reshape(-1)
-    for c in range(s.size):
-        kx[c] = 0.0 if shut[c] else kx[c]
-        flat[c] *= density
-        at_vertices[c], at_links[c], s[c] = H[c], HF[c], 1.0
-    line_terms(terms[0], b, fixed, True, line_out)
-    for c in range(s.size):
-        k[c] += 0.5 * beta * abs(vx) * width_z[c % m]
-        lean[c] = 0.0
-        if f[c] > 0.0:
-            t = beta * f[c] / (k[c] * (HF[c - m] + HF[c]))
-            lean[c] = t
-            f[c] /= 1.0 + t * t
-            whole[c] = 0.5 * f[c] / k[c]
+def lean_line(line, HF, beta, lift, lean_out):
+    """Let a liner of compliance ``beta``, whose deflection adds ``lift`` (m,) to k, lower f by t, which is set."""
+    f, k, whole, gap, lean, m = line[0], line[1], line[4], HF.reshape(-1), lean_out.reshape(-1), HF.shape[1]
+    for c in range(f.size):
+        k[c] += lift[c % m]
+        t = beta * f[c] / (k[c] * (gap[c - m] + gap[c])) if f[c] > 0.0 else 0.0
+        lean[c] = t
+        f[c] /= 1.0 + t * t
+        whole[c] = 0.5 * f[c] / k[c] if f[c] > 0.0 else 0.0
 
 
 @njit(cache=True)
@@ -85,13 +69,11 @@ def _by_bare(t):
 
 
 @njit(cache=True)
-def yielding_rows(line, lean, density, liner, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
-    """Return `exudyn_ehd.film.cavitation.rupture_line.line_rows`, through t too, and through the liner's conductance.
-
-    ``liner``: compliance, vx, and widths (m,) of the vertices in z.
-    """
+def yielding_rows(line, lean, density, lift, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
+    """Return `exudyn_ehd.film.cavitation.rupture_line.line_rows`, through t too, and through the liner's conductance
+    ``lift`` (m,) times the speed."""
     rows, places, weights = weigh_line(line, number)
-    (beta, sliding, width), gap, t, m = liner, HF.reshape(-1), lean.reshape(-1), HF.shape[1]
+    gap, t, m = HF.reshape(-1), lean.reshape(-1), HF.shape[1]
     f, k, s, by = line[0], line[1], line[6], np.zeros((10, places.size))
     for q in range(places.size):
         c = places[q]
@@ -100,7 +82,7 @@ def yielding_rows(line, lean, density, liner, number, H, HF, slopes, by_speed, v
         weights[1, q] -= short * turned * f[c] / k[c]
         weights[0, q] = density * short * by_f
         by[0, q] = by[1, q] = -short * turned * f[c] / (gap[c - m] + gap[c])
-        by[6, q] = short * (s[c] - turned) * f[c] / k[c] * 0.5 * beta * np.sign(sliding) * width[c % m]
+        by[6, q] = short * (s[c] - turned) * f[c] / k[c] * lift[c % m]
     line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by)
     return rows, places, by
 
@@ -134,24 +116,6 @@ class AtLine(NamedTuple):
     chain: GapChain | None
 
 
-def see_curves(
-    line: OilLine,
-    gap_fields: np.ndarray,
-    film: FilmTerms,
-    shut: tuple[np.ndarray, np.ndarray],
-    b: np.ndarray,
-    width_z: np.ndarray,
-    density: float,
-    liner: tuple[float, float],
-) -> None:
-    """Set the curves of a mass-conserving film from its fields at the cavity pressure; parameters as for
-    `FilmLine.see`."""
-    (beta, vx), (touching, _) = liner, shut
-    line.lift_by_speed = 0.5 * beta * np.sign(vx) * width_z
-    film.kx[touching] = 0.0
-    line.take(film, b, density, vx)
-
-
 class FilmLine(RuptureLine):
     """Rupture line of a film on a liner, or of one whose conductances or density follow the pressure.
 
@@ -161,41 +125,23 @@ class FilmLine(RuptureLine):
         Density in the cavity over that at ambient pressure.
     lean : (n, m) array
         t of the module.
-    liner : (float, float, (m,) array)
-        Compliance, vx and widths in z.
+    lift_by_speed : (m,) array
+        Conductance that a liner's deflection adds to k, over vx.
+    liner : (float, (n, m) array)
+        Compliance, and gaps on the links at the cavity pressure.
     """
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
         super().__init__(block, shape)
-        self.density, self.lean = 1.0, np.zeros(shape)
-        self.liner = 0.0, 0.0, np.zeros(shape[1])
+        self.density, self.lean, self.lift_by_speed = 1.0, np.zeros(shape), np.zeros(shape[1])
+        self.liner = 0.0, self.lean
 
     def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
-        """Set f and k from the terms and the right-hand side b (n, m) of a film between rigid surfaces."""
-        self.density, self.s[:] = density, 1.0
+        """Set f, k and t from the terms and the right-hand side b (n, m) of a film at the cavity pressure."""
+        (beta, gaps), self.density, self.s[:] = self.liner, density, 1.0
         line_terms(film.kx, density * b, film.fixed, True, self.block)
-
-    def see(
-        self,
-        gap_fields: np.ndarray,
-        term_fields: np.ndarray,
-        shut: tuple[np.ndarray, np.ndarray],
-        b: np.ndarray,
-        width_z: np.ndarray,
-        density: float,
-        liner: tuple[float, float],
-        gaps_out: np.ndarray,
-    ) -> None:
-        """Set f, k, t and the gaps (2, n, m) from the fields of `LinerFilm` at the cavity pressure.
-
-        ``shut``: links on which surfaces touch there, and prescribed vertices (n, m); ``width_z`` (m,) of the vertices;
-        ``liner``: its scaled compliance, and vx.
-        """
-        self.density, self.liner, (touching, fixed) = density, (*liner, width_z), shut
-        see_line(
-            gap_fields, term_fields, touching, b, width_z, fixed, density, liner, self.block, gaps_out,
-            self.lean,
-        )  # fmt: skip
+        if beta > 0.0:
+            lean_line(self.block, gaps, beta, self.lift_by_speed * vx, self.lean)
 
     def gradients(
         self,
@@ -209,7 +155,7 @@ class FilmLine(RuptureLine):
     ) -> Gradients:
         """Return `RuptureLine.gradients`, with what the liner adds, for gaps and flux at the cavity's pressure."""
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        rest = self.block, self.lean, self.density, self.liner, work.number
+        rest = self.block, self.lean, self.density, self.lift_by_speed, work.number
         return Gradients(*yielding_rows(*rest, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
 
 
