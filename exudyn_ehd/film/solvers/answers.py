@@ -13,6 +13,7 @@ from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_
 from exudyn_ehd.film.cavitation.solve import factor_solution
 from exudyn_ehd.film.cavitation.swift_stieber import refine_factor
 from exudyn_ehd.film.gradients import Gradients, join, link_rows
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
@@ -70,22 +71,18 @@ class FilmAnswers(FilmArrays):
         if law is None and shear is None:
             return OilFields(self.pressure)
         P, P_q, ratio, ratio_q, beyond = self.pressure, self.ones, self.ones, self.ones, False
-        if self.law is not None:
-            P, P_q, ratio, ratio_q = np.empty((4, *shape))
-            beyond = not self.viscosity(P, ratio, ratio_q, P_q)
-            if self.law.viscosity is None and shear is None:
-                return None if beyond else OilFields(P, P_q)
-        elif law is not None:
+        if law is not None:
             P, ratio, ratio_q = np.empty((3, *shape))
-            P_q, beyond = ratio, not law.inverse(self.pressure * scale, P, ratio, ratio_q)
+            beyond = not law.inverse(self.pressure * scale, P, ratio, ratio_q)
+            P_q = ratio if self.law is None else ratio / self._density_at(P, self.law)
             P /= scale
             ratio_q *= scale
+            if self.law is not None and self.law.viscosity is None and shear is None:
+                return None if beyond else OilFields(P, P_q)
         if beyond and law is not None:
             share = min(1.0, FARTHEST * law.largest_pressure / (P.max() * scale))
-            P *= share
-            ratio *= share
-            if self.law is not None:
-                P_q *= share
+            for field in (P, ratio) if P_q is ratio else (P, ratio, P_q):
+                field *= share
         if shear is None:
             return OilFields(P, P_q, ratio, ratio_q, self.nothing, self.nothing, beyond)
         factor, ratio_h, ratio_v = np.empty((3, *shape))
@@ -97,6 +94,11 @@ class FilmAnswers(FilmArrays):
                 by *= ratio
         ratio_q *= factor
         return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v, beyond, slopes)
+
+    def _density_at(self, p: np.ndarray, law: CompressibleLaw) -> np.ndarray:
+        """Density ratio (n, m) at the pressures p, Pa, of the last solution."""
+        # pressures that were cut off inside the cells are others than those that the film was solved for
+        return law.density.ratio(np.minimum(p, law.largest_pressure)) if self.closure.clips else self.rho
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""

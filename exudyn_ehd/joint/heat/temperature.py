@@ -142,6 +142,9 @@ class LumpedTemperature(OilTemperature):
         self.housing = self._or_supply(spec.housing_temperature)
         around = sum(arc.extent for arc in bearing.bore_arcs) or 2.0 * math.pi
         volume = around * bearing.journal_radius * bearing.length * bearing.radial_clearance
+        if (faces := bearing.thrust) is not None:
+            ring = math.pi * (faces.outer_radius**2 - faces.inner_radius**2) * faces.clearance
+            volume += (faces.lower + faces.upper) * ring
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
         self.field: ViscosityField | None = None

@@ -217,7 +217,8 @@ class SteadyResult(FilmRecord, FilmPictures):
     peak_temperature : float or None
         Highest temperature of the film, K; None for an isothermal bearing.
     heat_by_oil, heat_to_walls : float or None
-        Heat that the oil carries out of the bearing, and that its walls give off, W; None for an isothermal bearing.
+        Heat that the oil carries out of the bearing, and that its walls give off, W; with `LumpedThermal` that of the
+        films on end faces, too. None for an isothermal bearing.
     supply_temperature : float or None
         Temperature of the oil that enters, K: the given one, or that of a `Sump`; None for an isothermal bearing. The
         oil leaves at this temperature plus ``heat_by_oil`` over ``oil_flow`` times density and specific heat.
@@ -229,7 +230,7 @@ class SteadyResult(FilmRecord, FilmPictures):
     bore_coordinates : (k,) array or None
         Coordinates of a flexible bore (amplitudes of its modes), m; None for a rigid one.
     faces : ThrustResult or None
-        Films on the end faces, which all other values leave out; None without ``bearing.thrust``.
+        Films on the end faces, which all other values but the heat leave out; None without ``bearing.thrust``.
     bearing : JournalBearing
     motion : (10,) array
         Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates

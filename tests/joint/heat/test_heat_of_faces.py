@@ -134,6 +134,20 @@ def test_steps_lead_to_the_steady_temperature(thermal, error):
     assert first.quantities()["thrust_power_loss"] > 1.05 * beside.quantities()["thrust_power_loss"]
 
 
+def test_oil_between_collars_warms_up_too():
+    """dT/dt of a cold start is the power of all films over the heat capacity of all of their oil, and of the metal."""
+    bearing = _bearing(dataclasses.replace(LUMPED, capacity=0.3))
+    model, faces, step = build_model(bearing), ThrustModel(bearing), 1e-8
+    motion = np.array([0.6 * 40e-6, 0, 0, 0, 0, 0, 0, 0, SPEED, 0])
+    history = model.initial_history(motion)
+    evaluation, beside = model.evaluate(motion, history, step), faces.evaluate(np.append(motion, 0.0), history)
+    evaluation.heat_with(beside.heat)
+    oil = 2 * math.pi * 0.025 * 0.03 * 40e-6 + 2 * math.pi * (0.045**2 - 0.026**2) * 40e-6
+    power = evaluation.quantities()["power_loss"] + beside.quantities()["thrust_power_loss"]
+    rate = (evaluation.history().temperature - COLD) / step
+    assert rate == pytest.approx(power / (_heat_capacity() * oil + 0.3), rel=1e-4)
+
+
 @pytest.mark.parametrize("given", ({"axial_position": 5e-6}, {"axial_load": 800.0}))
 def test_equilibrium(given):
     """Forces and heat balance together; K that the temperature follows is that of solved positions beside."""
