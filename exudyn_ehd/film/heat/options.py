@@ -115,8 +115,8 @@ class LumpedThermal(Checked):
     Films on end faces (``thrust``) have the same T. Bore and faces lie in series: what leaves the bore at an end, L,
     enters the gap of the face there, which takes in I at its inner radius, with what its cavities find, and B at its
     outer radius. So ``Q = Q_bore + sum of max(I - L, 0) + B`` is replaced by supply oil, P is that of all films, and V
-    contains the gaps between bush and collars.
-    Without pads and pressures a face takes in nothing, and its heat leaves with the oil of the bore and by G.
+    contains the gaps between bush and collars. Without pads and pressures a face takes in nothing, and its heat leaves
+    with the oil of the bore and by G.
 
     In time: backward Euler over the accepted steps, first order. The force of a step uses the temperature at its start;
     so does P, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium` use the steady

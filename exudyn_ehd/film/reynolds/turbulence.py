@@ -78,7 +78,7 @@ class _Transition(Checked):
         ----------
         radius, clearance : float
             Of the journal, and radial, m.
-        plane : bool
+        plane : bool, default False
             True: of a thrust face, whose sliding makes no vortices of Taylor's.
 
         Returns

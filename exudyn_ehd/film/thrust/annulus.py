@@ -160,7 +160,8 @@ class ThrustFaces(Checked):
     Temperature. With `LumpedThermal` faces have the one temperature of the bearing, and their power is part of the heat
     that sets it. With `FilmEnergy` each face has the temperature of the oil that leaves the bore at its end, the mean
     over the flow. Its own heat is omitted: with a power P of a face and an oil flow Q through it, its film is warmer by
-    about P / (2 rho c Q) in the mean, with some 3 % less viscosity per kelvin. The audit of a joint estimates it.
+    about P / (2 rho c Q) in the mean, with some 3 % less viscosity per kelvin: 5 K and 14 % for six tapered pads of 26
+    to 45 mm, 40 um and ISO VG 46 at 300 rad/s. The audit of a joint has an estimate.
 
     Largest error of the default grid, against a grid four times as fine in both directions (Swift-Stieber, inner over
     outer radius 0.35 to 0.85, 3 to 16 pads, share 0.2 to 0.9, depth 0.3 to 3 times the gap of the land, axial position
