@@ -463,8 +463,10 @@ ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6, profile=l
 faces = ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.05, clearance=50e-6)
 ehd.JournalBearing(**plain, thrust=faces)
 
-heat = ehd.LumpedThermal(supply_temperature=313.0)
-ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thrust=faces, thermal=heat)
+ehd.JournalBearing(**plain, cavitation=ehd.ElrodAdams(), thrust=faces)
+
+yielding = type("Yielding", (), {"onset": 1e6, "bound": lambda self, radius, clearance: None})()
+ehd.JournalBearing(**size, lubricant=ehd.Lubricant(viscosity=0.02, shear_law=yielding), thrust=faces)
 
 faces = ehd.ThrustFaces(inner_radius=0.03, outer_radius=0.05, clearance=50e-6, outer_pressures=(-2e5, 0.0))
 ehd.JournalBearing(**plain, thrust=faces)

@@ -11,6 +11,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.joint.thrust import ThrustEvaluation
@@ -89,6 +90,8 @@ class Trial:
     def take(self, evaluation: JointEvaluation, faces: ThrustEvaluation | None = None) -> None:
         """Store the evaluations of the journal's film and of the end faces."""
         self.evaluation, self.faces = evaluation, faces
+        if faces is not None and faces.status is Status.CONVERGED and isinstance(evaluation, Evaluation):
+            evaluation.heat_with(faces.heat)
         self.status = evaluation.status if faces is None else max(evaluation.status, faces.status)
 
     @property

@@ -7,6 +7,7 @@ import numpy as np
 from exudyn_ehd.film.heat.options import FilmEnergy, Sump, known_supply
 from exudyn_ehd.film.lubricant.temperature_viscosity import require_covered
 from exudyn_ehd.film.models import FiniteLength, LongBearing
+from exudyn_ehd.film.reynolds.turbulence import FOLLOWING, check_turbulence
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.restrictors import GivenFlow
@@ -14,8 +15,6 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.annulus import BearingOptions
 from exudyn_ehd.status import InputError
 
-# Laws of an oil whose conductances or density follow the pressure.
-_FOLLOWING = ("pressure_law", "density_law", "shear_law")
 # Pa s; of a gas far from cold, and of pitch.
 LEAST_VISCOSITY, LARGEST_VISCOSITY = 1e-7, 1e9
 
@@ -31,7 +30,7 @@ def check_combinations(bearing: BearingOptions) -> None:
     _check_film(bearing)
     if bearing["arcs"]:
         _check_arcs(bearing)
-    _check_turbulence(bearing)
+    check_turbulence("JournalBearing", bearing)
     _check_restrictors(bearing)
     if bearing["end_seals"] is not None:
         _check_seals(bearing)
@@ -121,7 +120,7 @@ def _check_restrictors(bearing: BearingOptions) -> None:
 def _check_seals(bearing: BearingOptions) -> None:
     """Refuse films that take their pressure at an end as given, and those without any pressure that is given."""
     seals, supply = bearing["end_seals"], bearing["supply"]
-    others = [f"Lubricant.{law}" for law in _FOLLOWING if getattr(bearing["lubricant"], law) is not None]
+    others = [f"Lubricant.{law}" for law in FOLLOWING if getattr(bearing["lubricant"], law) is not None]
     others += [f"JournalBearing.{name}" for name in ("arcs", "bush", "journal") if bearing[name]]
     others += [] if isinstance(bearing["film"], FiniteLength) else ["JournalBearing.film"]
     others += ["JournalBearing.thermal"] if isinstance(bearing["thermal"], FilmEnergy) else []
@@ -137,20 +136,6 @@ def _check_seals(bearing: BearingOptions) -> None:
         raise InputError(
             "JournalBearing.end_seals: with a conductance of 0 at both ends nothing gives the film a pressure; give "
             "the bearing a supply with a pressure or an Orifice, or one of the seals a conductance."
-        )
-
-
-def _check_turbulence(bearing: BearingOptions) -> None:
-    """Refuse what has no turbulent form: properties by the pressure, and factors of a laminar profile."""
-    oil = bearing["lubricant"]
-    others = [f"Lubricant.{law}" for law in _FOLLOWING if getattr(oil, law) is not None]
-    others += [] if bearing["roughness"] is None else ["JournalBearing.roughness"]
-    others += [] if getattr(bearing["thermal"], "conductivity", None) is None else ["FilmEnergy.conductivity"]
-    if bearing["turbulence"] is not None and others:
-        raise InputError(
-            f"JournalBearing.turbulence={type(bearing['turbulence']).__name__}() does not go with {', '.join(others)}: "
-            "its Reynolds number takes viscosity and density at ambient pressure, its walls are smooth, and its eddies "
-            "carry heat across the film; leave one out."
         )
 
 

@@ -14,10 +14,11 @@ from exudyn_ehd.film.cavitation.linear_film import extend_film
 from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
+from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.solvers.swift_stieber import find_film
 from exudyn_ehd.joint.seams import Effects
-from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, OilFields, Scales, SolvedFilm
+from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, Scales, SolvedFilm
 
 _NO_CONTACT = np.zeros(6)
 

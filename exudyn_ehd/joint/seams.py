@@ -6,7 +6,7 @@ and pressure laws are in Pa.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -53,9 +53,11 @@ class ThermalEffect(Protocol):
 
     The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it
     will become. ``initial_sump``: temperature of the sump at the start of a motion, K; None without one.
+    ``initial_leaving`` (2,): what `leaving` returns, at the start of a motion of a bearing with films on end faces.
     """
 
     initial_sump: float | None
+    initial_leaving: np.ndarray | None
 
     def initial_temperature(self, shape: tuple[int, int]) -> float | np.ndarray:
         """K, at the start of a motion, on a grid of this shape."""
@@ -72,6 +74,9 @@ class ThermalEffect(Protocol):
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """Viscosity at a temperature, K, over the reference."""
 
+    def leaving(self, film: SolvedFilm, temperature: float | np.ndarray) -> np.ndarray | None:
+        """Temperature (2,), K, of the oil that leaves a film of a temperature at both ends; None where all has one."""
+
     def advance(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature at the end of a solved film's step, K."""
 
@@ -80,6 +85,13 @@ class ThermalEffect(Protocol):
 
     def steady_temperature(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature in balance with the heat of a solved film, K; not finite if there is none."""
+
+
+def seen_by_faces(film: SolvedFilm | None, heat: ThermalEffect | None) -> History:
+    """Memory from which films on end faces take their temperature beside a steady film."""
+    if film is None or film.temperature is None or heat is None:
+        return History()
+    return replace(film.history or History(), leaving=heat.leaving(film, film.temperature))
 
 
 class ShearProduct:

@@ -27,6 +27,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
+from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.solver import FilmSolver
@@ -63,6 +64,9 @@ class History:
         Pressure of every supply area with a restrictor, Pa (restrictors with a compressible volume).
     sump : float or None
         Temperature of the sump that feeds the film, K.
+    leaving : (2,) array or None
+        Temperature of the oil that leaves at the lower and at the upper end, K (a temperature field beside films on end
+        faces).
     """
 
     void: np.ndarray | None = None
@@ -74,6 +78,7 @@ class History:
     density: np.ndarray | None = None
     pockets: np.ndarray | None = None
     sump: float | None = None
+    leaving: np.ndarray | None = None
 
 
 class ContactFields:
@@ -239,27 +244,6 @@ class BoreState(NamedTuple):
     load: np.ndarray
 
 
-class OilFields(NamedTuple):
-    """Pressure, and the viscosity ratio that shear sees; fields (n, m).
-
-    P : scaled pressure
-    P_q : its derivative to the solver's unknown, the transformed pressure; None if they are the same
-    ratio : viscosity over the reference; None where that is one
-    ratio_q, ratio_h, ratio_v : derivatives to the unknown, H and vx; None where the ratio does not depend on it
-    ratio_g : (2, n, m), derivatives to the unknown's gradients along theta and z, of a film that thins
-    beyond : whether the pressure law ends before the solution somewhere; there it goes on in a line, and all is reduced
-    """
-
-    P: np.ndarray
-    P_q: np.ndarray | None = None
-    ratio: np.ndarray | None = None
-    ratio_q: np.ndarray | None = None
-    ratio_h: np.ndarray | None = None
-    ratio_v: np.ndarray | None = None
-    beyond: bool = False
-    ratio_g: np.ndarray | None = None
-
-
 class Loads(NamedTuple):
     """Loads of a film on the journal.
 
@@ -279,6 +263,18 @@ class Loads(NamedTuple):
     s_theta: float
     recess: RecessShear | None = None
     drag: np.ndarray | None = None
+
+
+class FacesHeat(NamedTuple):
+    """Heat of the films on end faces, W, and oil that they take in, m3/s.
+
+    inner : (2,) array, at the inner radius of the lower and of the upper face, 0 without one
+    outer : at the outer radii
+    """
+
+    heat: float
+    inner: np.ndarray
+    outer: float
 
 
 class SolvedFilm(NamedTuple):
@@ -308,6 +304,8 @@ class SolvedFilm(NamedTuple):
         ``parts.evaluations`` at this evaluation.
     walls : Walls or None
         None where no wall conducts.
+    beside : FacesHeat or None
+        Films on end faces that take part in the balance of heat.
     """
 
     parts: FilmParts
@@ -327,6 +325,7 @@ class SolvedFilm(NamedTuple):
     bore: BoreState | None
     serial: int
     walls: Walls | None = None
+    beside: FacesHeat | None = None
 
     def require_current(self) -> None:
         """Raise RuntimeError if the buffers belong to another evaluation by now."""

@@ -23,6 +23,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
+from exudyn_ehd.joint.heat.temperature import OilTemperature
+from exudyn_ehd.joint.solved_film import FacesHeat, History
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
 from exudyn_ehd.status import FilmError, Status
 
@@ -61,7 +63,7 @@ class ThrustEvaluation:
         """d wrench / d motion (6, 11), exact; only until the model's next evaluation."""
         if self.serial != self.model.serial:
             raise RuntimeError("ThrustEvaluation.tangent: the model has evaluated another state since.")
-        if self.status is not Status.CONVERGED:
+        if not np.isfinite(self.wrench.sum()):
             return np.full((6, SIZE), np.nan)
         out = np.zeros((6, SIZE))
         for face in self.model.faces:
@@ -75,6 +77,14 @@ class ThrustEvaluation:
         damping = -float(self.tangent()[2, 9])
         uneven = sum(face.side * float(face.tangent()[2, 3]) for face in self.model.faces if is_at_rest(face))
         return math.nan if abs(uneven) > 2.0 * LARGEST_SPREAD * damping else damping
+
+    def heat(self) -> FacesHeat:
+        """Heat of all faces and the oil that they take in; only until the model's next evaluation."""
+        heat, inner, outer = 0.0, np.zeros(2), 0.0
+        for face in self.model.faces:
+            own, inner[(face.side + 1) // 2], back = face.heat()
+            heat, outer = heat + own, outer + back
+        return FacesHeat(heat, inner, outer)
 
     def require_film(self, where: str) -> None:
         """Raise `FilmError` in the name of ``where`` if a face has no film."""
@@ -111,15 +121,17 @@ class ThrustModel:
         assert faces is not None
         self.bearing, self.serial = bearing, 0
         closure = place_line(bearing.cavitation, True)
+        self.oil = None if bearing.thermal is None else OilTemperature(bearing.thermal, bearing.lubricant)
         inner = bearing.end_pressures if faces.inner_pressures is None else faces.inner_pressures
         self.faces = [
             FaceFilm(
                 faces,
                 side,
                 closure,
-                bearing.lubricant.viscosity,
+                bearing.lubricant,
                 (inner[k], faces.outer_pressures[k]),
                 bearing.squeeze,
+                bearing.turbulence,
             )
             for k, (side, present) in enumerate(((-1, faces.lower), (1, faces.upper)))
             if present
@@ -131,14 +143,29 @@ class ThrustModel:
         """z of a face, m."""
         return 0.5 * face.side * self.bearing.length
 
-    def evaluate(self, motion: np.ndarray) -> ThrustEvaluation:
-        """The films at a motion (11,)."""
+    def viscosities(self, history: History | None) -> np.ndarray:
+        """Viscosity (2,) of the lower and of the upper face over the oil's own, for a memory of the bore's film.
+
+        One temperature is that of all films; of a temperature field a face gets the oil that leaves the bore there.
+        """
+        if self.oil is None:
+            return np.ones(2)
+        known = None if history is None else history.temperature if history.leaving is None else history.leaving
+        T = self.oil.initial if known is None or np.ndim(known) == 2 else known
+        return np.broadcast_to(self.oil.viscosity_ratio(np.asarray(T)), 2)
+
+    def evaluate(self, motion: np.ndarray, history: History | None = None) -> ThrustEvaluation:
+        """The films at a motion (11,) and a memory of the bore's film at the start of the step."""
         self.serial += 1
         motion = np.array(motion, dtype=float)
         if not np.isfinite(motion.sum()):
             state = FaceState(Status.NOT_FINITE, np.full(6, np.nan), np.nan)
             return ThrustEvaluation(state.status, motion, state.wrench, (state,), self, self.serial)
-        states = tuple(face.evaluate(face_motion(motion, self.height(face))) for face in self.faces)
+        ratios = self.viscosities(history)
+        states = tuple(
+            face.evaluate(face_motion(motion, self.height(face)), float(ratios[(face.side + 1) // 2]))
+            for face in self.faces
+        )
         wrench = np.zeros(6)
         for face, state in zip(self.faces, states, strict=True):
             wrench += about_origin(state.wrench, self.height(face))
@@ -150,17 +177,22 @@ class ThrustModel:
 
         Of a collar that turns about the bearing's axis; its shift changes this by clearance over radius.
         """
-        motion, key = face.motion, (face.side, float(face.motion[0]), float(face.motion[6]))
+        motion, key = face.motion, (face.side, float(face.motion[0]), float(face.motion[6]), face.ratio)
         if key not in self._changes:
             still, spin = motion * np.eye(FACE_SIZE)[[0, 6]].sum(axis=0), abs(key[2]) or 1.0
             lengths = face.scales.c / np.array([1.0, face.scales.R, face.scales.R])
             steps = BESIDE * np.array([0.0, *lengths[1:], *(spin * lengths), spin, 0.0, 0.0])
-            sides = quotients(lambda there: face.evaluate(there).wrench, still, steps)
-            face.evaluate(still)
+            sides = quotients(lambda there: face.evaluate(there, key[3]).wrench, still, steps)
+            face.evaluate(still, key[3])
             change = np.where(steps > 0.0, sides.mean(axis=0) - face.tangent(), 0.0)
-            face.evaluate(motion)
+            face.evaluate(motion, key[3])
             self._changes = {key: change} | {k: v for k, v in self._changes.items() if k[0] != face.side}
         return self._changes[key]
+
+
+def faces_of(bearing: JournalBearing) -> ThrustModel | None:
+    """Model of the films on the end faces of a bearing; None without ``thrust``."""
+    return None if bearing.thrust is None else ThrustModel(bearing)
 
 
 def is_at_rest(face: FaceFilm) -> bool:

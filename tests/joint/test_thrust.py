@@ -12,9 +12,19 @@ from tests.recorded.draw import FACTORS
 from tests.sampling import sample
 
 CLOSURES = {name: level["cavitation"] for name, level in FACTORS["closure"].items()}
-# Effects of the journal's film beside which faces keep their own; with the others they are refused.
-CARRIED = ("supply", "surfaces", "profile", "wall")
-OTHERS = ("pressure", "density", "shear", "roughness", "asperity", "turbulence", "thermal")
+# Effects of the journal's film beside which faces keep their own.
+CARRIED = ("supply", "surfaces", "profile", "wall", "roughness", "asperity")
+
+
+@dataclasses.dataclass(frozen=True)
+class ByGapAndSpeed:
+    """A law of one's own that changes links by their gap and the sliding speed."""
+
+    onset = 1e6
+
+    def bound(self, radius, clearance):
+        raise NotImplementedError
+
 
 C = 40e-6
 PADS = ehd.TaperLand(pads=4, depth=30e-6)
@@ -127,14 +137,30 @@ def _effects(names):
                 yield pytest.param(level(0.04) if callable(level) else level, id=f"{factor} {name}")
 
 
-@pytest.mark.parametrize("options", list(_effects(OTHERS)))
-def test_refused_with_effects_that_faces_do_not_have(options):
-    laws = {name: value for name, value in options.items() if name.endswith("_law")}
-    others = {name: value for name, value in options.items() if name not in laws}
-    if "thermal" in others:
-        laws["temperature_law"] = ehd.ReynoldsTemperature(point=(320.0, 0.03), coefficient=0.03)
-    with pytest.raises(ehd.InputError, match=r"thrust=ThrustFaces\(\.\.\.\) does not go with "):
-        _bearing(lubricant=laws, **others)
+LAWS = {
+    "pressure_law": ehd.BarusPressure(coefficient=1e-7),
+    "density_law": ehd.DowsonHigginson(),
+    "shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6),
+}
+
+
+@pytest.mark.parametrize("name", (*LAWS, "turbulence", "thermal"))
+def test_effects_that_faces_share_with_the_journal_s_film(name):
+    """They change both films; d wrench / d motion is exact with them."""
+    options = {"lubricant": {name: LAWS[name]}} if name in LAWS else {}
+    if name == "turbulence":
+        options["turbulence"] = ehd.Hirs(onset=2.0, full=4.0, coefficient=5.0)
+    if name == "thermal":
+        law = ehd.ReynoldsTemperature(point=(320.0, 0.03), coefficient=0.03)
+        options = {"lubricant": {"temperature_law": law}, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}
+    bearing = _bearing(_faces(profile=PADS), **options)
+    model, state = ThrustModel(bearing), 0.4 * SCALE
+    found = model.evaluate(state, build_model(bearing).initial_history(state[:10]))
+    tangent = found.tangent() * SCALE
+    assert not np.allclose(found.wrench, ThrustModel(_bearing(_faces(profile=PADS))).evaluate(state).wrench, rtol=1e-6)
+    d = np.random.default_rng(3).normal(size=11)
+    plus, minus = (model.evaluate(state + k * 1e-6 * d * SCALE).wrench for k in (1, -1))
+    assert np.all(np.abs(tangent @ d - (plus - minus) / 2e-6) < 1e-6 * np.abs(tangent).max(axis=1))
 
 
 OF_JOURNALS = list(_effects(CARRIED))
@@ -162,6 +188,7 @@ def test_refused():
             "cavity_pressure",
         ),
         ({"film": ehd.ImpedanceMap()}, "thrust must be None"),
+        ({"lubricant": {"shear_law": ByGapAndSpeed()}}, "by the gap and the sliding speed of a bore"),
     ):
         with pytest.raises(ehd.InputError, match=names):
             _bearing(**options)

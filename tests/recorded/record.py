@@ -53,7 +53,7 @@ QUANTITIES = (
     "supply_flow",
 )
 # of a film's memory; no bearing here has pockets behind restrictors, or a sump
-FIELDS = tuple(f.name for f in dataclasses.fields(History) if f.name not in ("pockets", "sump"))
+FIELDS = tuple(f.name for f in dataclasses.fields(History) if f.name not in ("pockets", "sump", "leaving"))
 LOADS = tuple(f"force {x}" for x in "xyz") + tuple(f"moment {x}" for x in "xyz") + ("load 1", "load 2")
 COLUMNS = (
     ("status",)

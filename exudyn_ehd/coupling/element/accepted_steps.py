@@ -27,8 +27,7 @@ from exudyn_ehd.coupling.record.record import FilmRecorder, Record
 from exudyn_ehd.coupling.watch import doubts, solver_state
 from exudyn_ehd.coupling.watch.solver_state import GapWatch
 from exudyn_ehd.joint.audit import ringing
-from exudyn_ehd.joint.balance.limits import HOT
-from exudyn_ehd.joint.balance.newton import lacks_oil
+from exudyn_ehd.joint.balance.limits import HOT, lacks_oil
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start

@@ -5,7 +5,8 @@ reference values) and q_t of those nodes, housing's first, and return the genera
 the derivative of -Q. The film is evaluated once per state. What was accepted is kept by `accepted_steps`, from the
 force user function alone; what can't be evaluated is explained by `failures`.
 
-Films on end faces are evaluated beside the journal's. They remember nothing and take the velocities as rates. Their
+Films on end faces are evaluated beside the journal's. They have the temperature that its film remembers, remember
+nothing else, and take the velocities as rates. Their heat is part of the balance of heat of the accepted steps. Their
 wrench acts on journal and housing, also where a bush yields under the journal's film.
 """
 
@@ -170,7 +171,8 @@ class FilmElement:
         if math.isfinite(trial.motion.dot(trial.motion)):
             spin = relative.angle_of(self.sides[0].frame, self.sides[1].frame) if self.model.needs_spin else 0.0
             found = self.model.evaluate(trial.motion, trial.memory, trial.step, spin)
-            trial.take(found, None if self.faces is None else self.faces.evaluate(self.faces_motion(trial.bodies)))
+            bodies, memory = trial.bodies, trial.memory
+            trial.take(found, None if self.faces is None else self.faces.evaluate(self.faces_motion(bodies), memory))
             self.evaluations += 1
         self.last = trial
         return trial

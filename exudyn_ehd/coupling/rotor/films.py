@@ -29,6 +29,7 @@ from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.seams import seen_by_faces
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmMemory, response_of, slow_motions
 from exudyn_ehd.joint.static.equilibrium import NO_LOAD
@@ -129,7 +130,12 @@ class RotorFilm:
         self.motion = relative.motion_of(*self.frames)
         if self.faces is not None:
             self.centre = centre_of(*self.frames, self.offset)
-            self._on_faces = self.faces.evaluate(np.append(self.motion, self.centre[2]))
+            self._on_faces = self.faces.evaluate(self._place, self._near)
+
+    @property
+    def _place(self) -> np.ndarray:
+        """Motion (11,) of the journal with its place along the axis."""
+        return np.append(self.motion, self.centre[2])
 
     def evaluate(self) -> Evaluation | None:
         """The film at the motion; None if there is none, or none on an end face."""
@@ -137,10 +143,13 @@ class RotorFilm:
         if not np.all(np.isfinite(self.motion)) or (found is not None and found.status is not Status.CONVERGED):
             return None
         try:
-            self._near = settled_history(self.model, self.motion, self._near, WHERE)
+            self._near = settled_history(self.model, self._place, self._near, WHERE, self.faces)
         except FilmError:
             return None
         evaluation = self.model.evaluate_steady(self.motion, self._near)
+        if self.faces is not None and self._near is not None and evaluation.film is not None:
+            seen = seen_by_faces(evaluation.film, self.model.effects.thermal)
+            self._on_faces = self.faces.evaluate(self._place, seen)
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def memory(self, evaluation: Evaluation, free: np.ndarray) -> FilmMemory | None:

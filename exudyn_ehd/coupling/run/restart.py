@@ -22,9 +22,11 @@ from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.seams import seen_by_faces
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.step_rates import StepStart
+from exudyn_ehd.joint.thrust import ThrustModel
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 from exudyn_ehd.storage import read_arrays, replacing, require_path
 
@@ -256,11 +258,14 @@ def place(
     mbs.systemData.SetODE2Coordinates_t(rates.tolist(), INITIAL)
     at_rest = motion.copy()
     at_rest[:2], at_rest[4:8] = result.position, 0.0
-    element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), _memory(element.model, at_rest, result))
+    memory = _memory(element.model, at_rest, result, element.faces)
+    element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), memory)
     return result
 
 
-def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) -> History | None:
+def _memory(
+    model: JointModel, motion: np.ndarray, result: EquilibriumResult, faces: ThrustModel | None
+) -> History | None:
     """Return the memory of the steady film at ``motion`` (10,); None without effects that need memory."""
     if not model.remembers:
         return None
@@ -268,8 +273,11 @@ def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) ->
     bore = result.film.bore_coordinates
     whole = motion if bore is None else np.concatenate((motion, bore, np.zeros_like(bore)))
     first = model.initial_history(whole)
-    settled = settled_history(model, whole)
+    place = motion if result.film.faces is None else np.append(motion, result.film.faces.axial_position)
+    settled = settled_history(model, whole if faces is None else place, faces=faces)
     evaluation = model.evaluate(whole, settled)
+    if faces is not None:
+        evaluation.heat_with(faces.evaluate(place, seen_by_faces(evaluation.film, model.effects.thermal)).heat)
     if first is None or evaluation.status is not Status.CONVERGED:
         return first
     last = evaluation.history()
@@ -284,4 +292,5 @@ def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) ->
         density=last.density,
         pockets=last.pockets,
         sump=last.sump,
+        leaving=last.leaving,
     )

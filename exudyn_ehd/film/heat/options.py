@@ -107,10 +107,16 @@ class LumpedThermal(Checked):
 
     ``C dT/dt = P - rho c_p Q (T_out - T_supply) - G (T - T_housing)``, with the mechanical and pumping power P that the
     film dissipates, the flow Q that leaves the film and is replaced by supply oil, its temperature T_out, and
-    ``C = rho c_p 2 pi R L c + capacity``, rho at ambient pressure and 2 pi the angle of all arcs where there are any.
-    The film is mixed, T_out = T, or warms up along its way: ``T - T_supply = effective_rise (T_out - T_supply)``. Of a
-    supply area Q counts the net flow: an area is a well-mixed volume, see `FilmEnergy`. Heat of compression is omitted:
-    some 1.3 K per 10 MPa, reversible.
+    ``C = rho c_p V + capacity``, rho at ambient pressure and V = 2 pi R L c, with the angle of all arcs for 2 pi where
+    there are any. The film is mixed, T_out = T, or warms up along its way: ``T - T_supply = effective_rise (T_out -
+    T_supply)``. Of a supply area Q counts the net flow: an area is a well-mixed volume, see `FilmEnergy`. Heat of
+    compression is omitted: some 1.3 K per 10 MPa, reversible.
+
+    Films on end faces (``thrust``) have the same T. Bore and faces lie in series: what leaves the bore at an end, L,
+    enters the gap of the face there, which takes in I at its inner radius, with what its cavities find, and B at its
+    outer radius. So ``Q = Q_bore + sum of max(I - L, 0) + B`` is replaced by supply oil, P is that of all films, and V
+    contains the gaps between bush and collars. Without pads and pressures a face takes in nothing, and its heat leaves
+    with the oil of the bore and by G.
 
     In time: backward Euler over the accepted steps, first order. The force of a step uses the temperature at its start;
     so does P, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium` use the steady

@@ -142,10 +142,15 @@ class ShearThinning(LinkLaw):
     ----------
     field : Fluidity or None
         Viscosity over that of the film's scale, if it varies over the film.
+    radii : pair of arrays (m,) or floats
+        Of rows of vertices and of links in z over the film's radius, where the sliding grows with them and distances
+        around too, as on a face: with x = r R the rate of sliding is ``k vx / (H / r)``, and gradients act as in the
+        gap H / r.
     """
 
     changes_carriers = False
     depends_on_speed = True
+    radii: tuple[np.ndarray | float, np.ndarray | float] = (1.0, 1.0)
 
     def __init__(self, law: RateLaw, radius: float, clearance: float) -> None:
         if not abs(rest := float(law.ratio(np.zeros(1))[0]) - 1.0) < 1e-9:
@@ -185,12 +190,12 @@ class ShearThinning(LinkLaw):
             (gap_z, one if f is None else f.inverse_z, flux.gz, flux.gz_h, flux.gz_v),
         )
         for axis, (gap, fluid, g, g_h, g_v) in enumerate(parts):
-            found = self.found[axis]
+            found, r = self.found[axis], self.radii[axis]
             thin_links(
-                gap, self.slopes[axis], self.cross[axis], fluid, k * vx, k, axis, self.oil, self.flow_points,
+                gap / r, self.slopes[axis], self.cross[axis], fluid, k * vx, k, axis, self.oil, self.flow_points,
                 self.last[axis], found,
             )  # fmt: skip
-            g_h[:] = g_h * found[0] + g * found[1]
+            g_h[:] = g_h * found[0] + g * (found[1] / r)
             g_v[:] = g_v * found[0] + g * found[2]
             g *= found[0]
 
@@ -200,8 +205,8 @@ class ShearThinning(LinkLaw):
         Their ratio is the law's inverse slope dS/dT, which `apply` interpolates and leaves without derivatives, since
         nothing flows there. Returns what it multiplies the conductances by (n, m).
         """
-        gap = flux.gap_x
-        law, S = self.law, self.per_speed * vx / gap
+        gap, k = flux.gap_x, self.per_speed * self.radii[0]
+        law, S = self.law, k * vx / gap
         rate = np.abs(S) / law.relaxation_time
         thins = law.ratio_slope(rate)
         slope = law.ratio(rate) + rate * thins
@@ -209,7 +214,7 @@ class ShearThinning(LinkLaw):
         exact, by_rate = 1.0 / (slope * self.found[0, 0]), -bend / slope
         flux.gx[:] *= exact
         flux.gx_h[:] = flux.gx_h * exact - flux.gx * by_rate * S / gap
-        flux.gx_v[:] = flux.gx_v * exact + flux.gx * by_rate * self.per_speed / gap
+        flux.gx_v[:] = flux.gx_v * exact + flux.gx * by_rate * k / gap
         return exact
 
     def response(self) -> tuple[np.ndarray, ...]:
@@ -230,10 +235,10 @@ class ShearThinning(LinkLaw):
         Returns those (2, n, m) to the gradients along theta and z.
         """
         fluid = np.ones((1, 1)) if self.field is None else 1.0 / self.field.ratio
-        out = np.empty((5, *H.shape))
+        out, r = np.empty((5, *H.shape)), self.radii[0]
         k = self.per_speed
-        thin_shear(H, self.vertex, fluid, k * vx, k, self.oil, self.stress_points, self.last[2], out)
-        ratio_out[:], ratio_h_out[:], ratio_v_out[:] = out[:3]
+        thin_shear(H / r, self.vertex, fluid, k * vx, k, self.oil, self.stress_points, self.last[2], out)
+        ratio_out[:], ratio_h_out[:], ratio_v_out[:] = out[0], out[1] / r, out[2]
         return out[3:]
 
     def gather(self, weights: np.ndarray) -> np.ndarray:

@@ -27,6 +27,7 @@ pressure flow, which must be slow beside it; the carrier h of the Couette flow i
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
@@ -37,6 +38,8 @@ from numba import njit
 from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
+# Laws of an oil whose conductances or density follow the pressure.
+FOLLOWING = ("pressure_law", "density_law", "shear_law")
 # Taylor number Re sqrt(c / R) at which vortices set in between concentric cylinders; G. I. Taylor, Phil. Trans. R. Soc.
 # A 223 (1923) 289.
 TAYLOR = 41.2
@@ -49,6 +52,9 @@ class _Transition(Checked):
 
     onset: float | None
     full: float | None
+    # U h / nu at which turbulence lasts between planes that slide, 4 times the 360 by half the speed and half the gap;
+    # N. Tillmark and P. H. Alfredsson, J. Fluid Mech. 235 (1992) 89.
+    plane_onset: ClassVar[float] = 1440.0
 
     checks: ClassVar = {
         **dict.fromkeys(("onset", "full"), partial(POSITIVE, hint="it is a Reynolds number.")),
@@ -65,13 +71,15 @@ class _Transition(Checked):
                 "to the one and turbulent from the other on."
             )
 
-    def transition(self, radius: float, clearance: float) -> tuple[float, float]:
+    def transition(self, radius: float, clearance: float, plane: bool = False) -> tuple[float, float]:
         """Reynolds numbers up to which a film is laminar, and from which on it is turbulent.
 
         Parameters
         ----------
         radius, clearance : float
             Of the journal, and radial, m.
+        plane : bool, default False
+            True: of a thrust face, whose sliding makes no vortices of Taylor's.
 
         Returns
         -------
@@ -79,15 +87,17 @@ class _Transition(Checked):
         """
         if self.onset is not None:
             return self.onset, 2.0 * self.onset if self.full is None else self.full
-        onset = TAYLOR * math.sqrt(radius / clearance)
+        onset = self.plane_onset if plane else TAYLOR * math.sqrt(radius / clearance)
         if self.full is None:
             return onset, 2.0 * onset
         return min(onset, 0.5 * self.full), self.full
 
-    def bound(self, radius: float, clearance: float, density: float, viscosity: float) -> TurbulentFlow:
+    def bound(
+        self, radius: float, clearance: float, density: float, viscosity: float, plane: bool = False
+    ) -> TurbulentFlow:
         """The law as flux effect and shear factor of a bearing of this radius and clearance, m; kg/m3 and Pa s."""
         per_speed = 2.0 * density * radius * clearance / viscosity
-        return TurbulentFlow(self._powers(), self.transition(radius, clearance), per_speed)
+        return TurbulentFlow(self._powers(), self.transition(radius, clearance, plane), per_speed)
 
     def _powers(self) -> np.ndarray:
         """(3, 4) array for k_x / 12, k_z / 12 and t: factor, exponent, what is subtracted, and its rounding."""
@@ -108,7 +118,8 @@ class NgPan(_Transition):
     Parameters
     ----------
     onset : float or None, default None
-        Reynolds number up to which the film is laminar; None: 41.2 sqrt(R / c), where Taylor's vortices begin.
+        Reynolds number up to which the film is laminar; None: 41.2 sqrt(R / c), where Taylor's vortices begin, and 1440
+        on thrust faces, where turbulence of plane Couette flow begins to last.
     full : float or None, default None
         Reynolds number from which on the film is fully turbulent; None: twice the onset.
 
@@ -172,6 +183,20 @@ class Hirs(_Transition):
         z = self.coefficient * 0.5**power
         factors = (1.0 + power) * z / 12.0, z / 12.0, 0.25 * z
         return np.array([(factor, power, 1.0, ROUNDING) for factor in factors])
+
+
+def check_turbulence(name: str, bearing: Mapping[str, object]) -> None:
+    """Refuse what has no turbulent form: properties by the pressure, and factors of a laminar profile."""
+    oil = bearing["lubricant"]
+    others = [f"Lubricant.{law}" for law in FOLLOWING if getattr(oil, law) is not None]
+    others += [] if bearing["roughness"] is None else ["JournalBearing.roughness"]
+    others += [] if getattr(bearing["thermal"], "conductivity", None) is None else ["FilmEnergy.conductivity"]
+    if bearing["turbulence"] is not None and others:
+        raise InputError(
+            f"{name}.turbulence={type(bearing['turbulence']).__name__}() does not go with {', '.join(others)}: "
+            "its Reynolds number takes viscosity and density at ambient pressure, its walls are smooth, and its eddies "
+            "carry heat across the film; leave one out."
+        )
 
 
 class TurbulentFlow(LinkLaw):

@@ -1,6 +1,9 @@
-"""Answers of a solved film: its factor, derivatives of its balances, and flows at prescribed vertices."""
+"""Answers of a solved film: pressure and viscosity by the oil's laws, factor, derivatives of its balances, and flows at
+prescribed vertices."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import block_array, csc_matrix, diags_array
@@ -8,16 +11,44 @@ from scipy.sparse import block_array, csc_matrix, diags_array
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.gradients import Gradients, join, link_rows
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
-from exudyn_ehd.film.reynolds.links import lacks
+from exudyn_ehd.film.reynolds.links import ShearFactor, lacks
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
 from exudyn_ehd.film.solvers.sets import factor_solution
 from exudyn_ehd.film.solvers.swift_stieber import refine_factor
 from exudyn_ehd.film.supply.restrictors import Reservoirs, add_border
+
+# Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
+# they meet, and one too large would let them take the next states for solutions. Force and tangent are reduced
+# alike, and so lead to where they would have led.
+FARTHEST = 10.0
+
+
+class OilFields(NamedTuple):
+    """Pressure, and the viscosity ratio that shear sees; fields (n, m).
+
+    P : scaled pressure
+    P_q : its derivative to the solver's unknown, the transformed pressure; None if they are the same
+    ratio : viscosity over the reference; None where that is one
+    ratio_q, ratio_h, ratio_v : derivatives to the unknown, H and vx; None where the ratio does not depend on it
+    ratio_g : (2, n, m), derivatives to the unknown's gradients along theta and z, of a film that thins
+    beyond : whether the pressure law ends before the solution somewhere; there it goes on in a line, and all is reduced
+    """
+
+    P: np.ndarray
+    P_q: np.ndarray | None = None
+    ratio: np.ndarray | None = None
+    ratio_q: np.ndarray | None = None
+    ratio_h: np.ndarray | None = None
+    ratio_v: np.ndarray | None = None
+    beyond: bool = False
+    ratio_g: np.ndarray | None = None
 
 
 class FilmAnswers(FilmArrays):
@@ -33,6 +64,41 @@ class FilmAnswers(FilmArrays):
     _fills: tuple[Gradients, Gradients] | None = None
     # of `reduced`: areas with a balance, B^T, C A^-1 and S
     _reduced: tuple[np.ndarray, ...] | None = None
+
+    def oil_fields(self, law: PressureTransform | None, shear: ShearFactor | None) -> OilFields | None:
+        """Pressure and viscosity ratio of the last solution; None where it has no pressure."""
+        shape, scale = self.grid.shape, self.pressure_scale
+        if law is None and shear is None:
+            return OilFields(self.pressure)
+        P, P_q, ratio, ratio_q, beyond = self.pressure, self.ones, self.ones, self.ones, False
+        if law is not None:
+            P, ratio, ratio_q = np.empty((3, *shape))
+            beyond = not law.inverse(self.pressure * scale, P, ratio, ratio_q)
+            P_q = ratio if self.law is None else ratio / self._density_at(P, self.law)
+            P /= scale
+            ratio_q *= scale
+            if self.law is not None and self.law.viscosity is None and shear is None:
+                return None if beyond else OilFields(P, P_q)
+        if beyond and law is not None:
+            share = min(1.0, FARTHEST * law.largest_pressure / (P.max() * scale))
+            for field in (P, ratio) if P_q is ratio else (P, ratio, P_q):
+                field *= share
+        if shear is None:
+            return OilFields(P, P_q, ratio, ratio_q, self.nothing, self.nothing, beyond)
+        factor, ratio_h, ratio_v = np.empty((3, *shape))
+        slopes = shear.factor(self.H, self.vx, factor, ratio_h, ratio_v)
+        if law is None:
+            return OilFields(P, ratio=factor, ratio_h=ratio_h, ratio_v=ratio_v, ratio_g=slopes)
+        for by in (ratio_h, ratio_v, slopes):
+            if by is not None:
+                by *= ratio
+        ratio_q *= factor
+        return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v, beyond, slopes)
+
+    def _density_at(self, p: np.ndarray, law: CompressibleLaw) -> np.ndarray:
+        """Density ratio (n, m) at the pressures p, Pa, of the last solution."""
+        # pressures that were cut off inside the cells are others than those that the film was solved for
+        return law.density.ratio(np.minimum(p, law.largest_pressure)) if self.closure.clips else self.rho
 
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""

@@ -374,22 +374,6 @@ class FilmArrays:
         """Pressures (n, m) that drive flows at prescribed vertices, and where the film is full."""
         return flow_pressures(self.system, self.work.active, self.closure.clips)
 
-    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed
-        pressure.
-
-        False where that has no pressure; there the law goes on in a line.
-        """
-        assert self.law is not None
-        scale = self.pressure_scale
-        inside = self.law.inverse(self.system.pressure * scale, p_out, ratio_out, ratio_P_out)
-        ratio_P_out *= scale
-        # pressures that were cut off inside the cells are others than those that the film was solved for
-        rho = self.law.density.ratio(np.minimum(p_out, self.law.largest_pressure)) if self.closure.clips else self.rho
-        np.divide(ratio_out, rho, out=p_P_out)
-        p_out /= scale
-        return inside
-
     def flow_work(self, P: np.ndarray) -> np.ndarray:
         """Scaled integral of dp over the density ratio up to scaled pressures P; see `DensityLaw.flow_work`."""
         assert self.law is not None

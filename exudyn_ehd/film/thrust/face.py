@@ -19,7 +19,14 @@ and the opposite on the bush, so that force and moment of both cancel exactly. W
 ``-int f . U - int s p v_z = int mu U^2 / h + h^3 / (12 mu) |grad p|^2`` for p = 0 at the edges.
 
 Motion of a face: m = (zeta, bx, by, zeta_t, bx_t, by_t, omega, u_x, u_y). Integrals: N, X, Y of the pressure times 1, x
-and y; E = -int h u . grad p for the turn and the shifts along x and y.
+and y; E = -int h u . grad p for the turn and the shifts along x and y; S = int mu / mu_0 U . u / h for these three.
+
+Laws of the oil. With a pressure or density law the solver's unknown is q, dq = dp (rho / rho_0) / (mu / mu_0)
+(`exudyn_ehd.film.lubricant.density`), whose balance is that of a film of constant viscosity; N to E take p(q), S the
+viscosity of every vertex. Turbulence and shear thinning follow the sliding at their radius, omega r: a turbulent link
+has the Reynolds number rho omega r h / mu, and with x = r / R a shear rate is that of a film of the gap h / x at the
+radius R, in gradients along theta and s too. The shift u, smaller by clearance over radius, meets their shear factor
+and adds nothing to them. The mean of the shear on both walls is their factor times mu U / h, its difference h grad p.
 """
 
 from __future__ import annotations
@@ -30,7 +37,14 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
+from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.loads import end_flows
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.lubricant import Lubricant, transform_of
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
+from exudyn_ehd.film.reynolds.differences import to_ends
+from exudyn_ehd.film.reynolds.links import LinkLaw
+from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
@@ -82,12 +96,21 @@ class FaceFilm:
         1 for the upper face and for a pad, -1 for the lower face.
     closure : Closure
         One that does not conserve mass; Swift-Stieber's line lies on vertices where there are pads.
-    viscosity : float
-        Pa s.
+    oil : Lubricant
     pressures : (float, float)
         At the inner and the outer radius, Pa.
     squeeze : bool
         False leaves out the rate of the gap.
+    turbulence : NgPan, Hirs or None
+
+    Attributes
+    ----------
+    pressures : (3,) array
+        At the inner and the outer radius, and of a cavity, Pa.
+    known : (3,) array
+        The same as the solver's scaled unknowns.
+    fields : OilFields
+        Of the last solution.
     """
 
     def __init__(
@@ -95,32 +118,36 @@ class FaceFilm:
         faces: ThrustFaces | TiltingThrustPads,
         side: int,
         closure: Closure,
-        viscosity: float,
+        oil: Lubricant,
         pressures: tuple[float, float],
         squeeze: bool = True,
+        turbulence: NgPan | Hirs | None = None,
     ) -> None:
-        self.side, self.closure, self.squeeze = side, closure, float(squeeze)
+        self.side, self.closure, self.squeeze, self.oil = side, closure, float(squeeze), oil
         # columns of pads are not equal
         has_pads = faces.profile is not None or faces.grid[3] is not None
         if has_pads and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
             # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
             self.closure = closure = replace(closure, line_in_cells=False)  # type: ignore[type-var]
         self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *faces.grid)
-        self.scales = FaceScales(viscosity, faces.clearance, a.scale)
         self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)
-        self.known = np.array([*pressures, closure.cavity_pressure]) / self.scales.pressure
-        shape, grid = a.grid.shape, a.grid
+        self.pressures = np.array([*pressures, closure.cavity_pressure])
+        shape, grid, c = a.grid.shape, a.grid, faces.clearance
         # on the links, and of the half control volumes behind and ahead of the vertices
         link, sides = np.zeros((shape[0], 1)), np.zeros((2, shape[0], 1))
         if faces.profile is not None:
             # crowns of sectors have no steps
             apart = np.array([-0.5, 0.5]) if faces.grid[3] is None else np.zeros(2)
             quarters = a.sides * grid.width_x[:, None] * apart[:, None, None]
-            link = faces.profile.depth_at(grid.x_face)[:, None] / faces.clearance
-            sides = faces.profile.depth_at(grid.x[:, None] + quarters) / faces.clearance
+            link = faces.profile.depth_at(grid.x_face)[:, None] / c
+            sides = faces.profile.depth_at(grid.x[:, None] + quarters) / c
         self.link_depth, self.depth = link, (a.sides * sides).sum(axis=0)
         self.steps = sides - self.depth
-        self.solver = FilmSolver(grid, closure, flux_effects=(AnnularFlow(a.square, a.sides, self.steps),))
+        self.law, self.sliding = transform_of(oil), sliding_law(oil, turbulence, a, c)
+        effects = AnnularFlow(a.square, a.sides, self.steps), *(() if self.sliding is None else (self.sliding,))
+        density = self.law if isinstance(self.law, CompressibleLaw) else None
+        self.solver = FilmSolver(grid, closure, flux_effects=effects, density=density)
+        self._scale(c, 1.0)
         around = (link - np.roll(link, 1, axis=0)) / grid.width_x[:, None] / a.r
         # u . grad d / 2 for the shifts along x and y
         self.shifted = 0.5 * np.array([-around * np.sin(grid.x)[:, None], around * np.cos(grid.x)[:, None]])
@@ -128,18 +155,33 @@ class FaceFilm:
         sign = side * np.array([1.0, -1.0, -1.0])[:, None, None]
         self.shape, self.link_shape = sign * a.moments, sign * a.link_moments[:3]
 
-    def evaluate(self, motion: np.ndarray) -> FaceState:
-        """The film at a motion (9,), SI units."""
+    def _scale(self, clearance: float, ratio: float) -> None:
+        """Scale the film to ``ratio`` times the oil's viscosity."""
+        a, self.ratio = self.annulus, ratio
+        self.scales = FaceScales(ratio * self.oil.viscosity, clearance, a.scale)
+        self.solver.pressure_scale = self.scales.pressure
+        known = self.pressures if self.law is None else self.law.transform(self.pressures)
+        self.known = known / self.scales.pressure
+        if self.sliding is not None and isinstance(self.sliding.field, ViscosityField):
+            self.sliding.field.set(np.full(a.grid.shape, ratio / a.r))
+
+    def evaluate(self, motion: np.ndarray, ratio: float = 1.0) -> FaceState:
+        """The film at a motion (9,), SI units, with ``ratio`` times the oil's viscosity."""
+        if ratio != self.ratio:
+            self._scale(self.scales.c, ratio)
         s, k = self.solver, self.scales
         smallest = k.c * self._set_gap(motion)
         if smallest <= 0.0 and self.wall is None:
             return FaceState(Status.NO_FILM, np.full(6, np.nan), smallest)
         s.pressure[:, 0], s.pressure[:, -1] = self.known[:2]
         status, _ = s.solve(0.5 * motion[6], 0.0, float(self.known[2]))
-        if status is not Status.CONVERGED:
+        oil = s.oil_fields(self.law, self.sliding) if status is Status.CONVERGED else None
+        status = Status.NO_PRESSURE if status is Status.CONVERGED and (oil is None or oil.beyond) else status
+        if oil is None:
             return FaceState(status, np.full(6, np.nan), smallest)
-        self._integrate(motion)
-        peak, contact = float(s.pressure.max()) * k.pressure, float((self.annulus.weight * self.contact).sum())
+        self.fields = oil
+        self._integrate()
+        peak, contact = float(oil.P.max()) * k.pressure, float((self.annulus.weight * self.contact).sum())
         return FaceState(status, self._wrench(), smallest, peak, self._power(), contact * k.R**2)
 
     def flows(self) -> tuple[float, float]:
@@ -148,6 +190,20 @@ class FaceFilm:
         (fx, fz, rate), (P, full) = s.couette_flows(), s.flow_pressures()
         inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
         return -unit * inner, unit * outer
+
+    def heat(self) -> tuple[float, float, float]:
+        """Heat of the last solution, W, and oil that it takes in at the inner and at the outer radius, m3/s.
+
+        The heat is ``power_loss`` and the work of the pressures above the cavity's on the oil that comes and goes. Oil
+        that a cavity finds beyond what it has lost is taken in at the inner radius.
+        """
+        s, k, (inner, outer), P = self.solver, self.scales, self.flows(), self.solver.flow_pressures()[0]
+        unit, out = k.c * k.R**2, s.system.kz[:, [0, -2]] * (P[:, [0, -2]] - P[:, [1, -1]])
+        widened = unit * float((self.annulus.weight * self.true_rate).sum())
+        into, back = unit * float(out[:, 0].clip(0.0).sum()), unit * float((-out[:, 1]).clip(0.0).sum())
+        p_in, p_out, cavity = np.where(np.isfinite(self.pressures), self.pressures, 0.0).tolist()
+        work = (p_in - cavity) * inner - (p_out - cavity) * outer + cavity * widened
+        return self._power() + work, into + max(outer - inner + widened, 0.0), back
 
     def flows_along(self) -> tuple[float, float]:
         """Flows of the last solution in at the first edge of a sector and out at the last one, m3/s."""
@@ -159,7 +215,7 @@ class FaceFilm:
     @property
     def pressure(self) -> np.ndarray:
         """Pressure of the last solution (n, m), Pa."""
-        return self.solver.pressure * self.scales.pressure
+        return self.fields.P * self.scales.pressure
 
     @property
     def gap(self) -> np.ndarray:
@@ -197,14 +253,16 @@ class FaceFilm:
         wall.limit(s.H, s.HF, s.H_t, self.slope, self.bend, self.face_slope)
         self.true_rate *= self.slope
 
-    def _integrate(self, motion: np.ndarray) -> None:
+    def _integrate(self) -> None:
         """Integrals of the last solution: N, X, Y (3,) and E (3,), scaled; shear matrix (3, 3) in SI units."""
-        s, k, a = self.solver, self.scales, self.annulus
-        pressed = a.weight * (s.pressure + self.contact / k.pressure)
+        s, k, a, oil = self.solver, self.scales, self.annulus, self.fields
+        pressed = a.weight * (oil.P + self.contact / k.pressure)
         self.loads = products(a.moments, pressed[None])[:, 0]
         self.rows = a.link_rows(s.H, s.HF)
-        self.carried = products(self.rows, s.pressure[None])[:, 0]
-        share = shear_share(s.system, s.work.active, self.closure)
+        self.carried = products(self.rows, oil.P[None])[:, 0]
+        self.share = share = shear_share(s.system, s.work.active, self.closure)
+        if oil.ratio is not None:
+            share = share * oil.ratio
         # on the links, whose gaps lie on one side of a step
         self.sheared = a.link_weight * 0.5 * (share + np.roll(share, -1, axis=0)) / s.HF
         self.shear = self._shear_matrices(self.sheared[None])[0]
@@ -235,16 +293,16 @@ class FaceFilm:
         return np.asarray(out)
 
     def _power(self) -> float:
-        s, k, sliding = self.solver, self.scales, self.motion[6:]
+        k, sliding = self.scales, self.motion[6:]
         half = 0.5 * k.pressure * k.c * k.R * np.array([k.R, 1.0, 1.0])
-        squeezed = k.force * k.c * float((self.annulus.weight * s.pressure * self.true_rate).sum())
+        squeezed = k.force * k.c * float((self.annulus.weight * self.fields.P * self.true_rate).sum())
         return float(sliding @ self.shear @ sliding - sliding @ (half * self.carried)) - squeezed
 
     def tangent(self) -> np.ndarray:
         """d wrench / d motion (6, 9) of the last evaluation, exact for its active set."""
         k, n, R = self.scales, self.side, self.scales.R
         gradient = self._gradients()
-        out = self._weights() @ gradient
+        out = self._weights() @ gradient[:6]
         N, X, Y = (k.force * self.loads * np.array([1.0, R, R])).tolist()
         # the weights' own dependence on the tilt
         out[0, 1] += n * N
@@ -256,30 +314,56 @@ class FaceFilm:
         scale = np.array([1.0, R, R]) / k.c
         thinner = -self.sheared * self.face_slope / self.solver.HF
         out[rows, :3] -= (self._shear_matrices(thinner * self.link_shape) @ sliding).T * scale
+        if len(gradient) > 6:
+            out[rows] -= k.shear * gradient[6:]
         return np.asarray(out)
 
     def _gradients(self) -> np.ndarray:
-        """Gradients (6, 9) of N, X, Y and E to the motion, SI units; contact included."""
-        a = self.annulus
-        rows = self._adjoint(np.concatenate((a.moments * a.weight, self.rows)))
+        """Gradients (6, 9) of N, X, Y and E to the motion, SI units; contact included.
+
+        Behind them those of S (3, 9) through the viscosity where it follows the film.
+        """
+        a, oil = self.annulus, self.fields
+        fields = np.concatenate((a.moments * a.weight, self.rows)) * (1.0 if oil.P_q is None else oil.P_q)
+        drag = None if oil.ratio_q is None and oil.ratio_h is None else self._drag_of_viscosity()
+        if drag is not None:
+            fields = np.append(fields, drag * (0.0 if oil.ratio_q is None else oil.ratio_q), axis=0)
+        rows = self._adjoint(fields, drag)
         cell, face, rate, speed = self.solver.gradients().fields(rows, a.weight.shape)
-        by_gap, by_link = a.link_gradients(self.solver.pressure)
-        cell[3:] += by_gap
-        face[3:] += by_link
+        by_gap, by_link = a.link_gradients(oil.P)
+        cell[3:6] += by_gap
+        face[3:6] += by_link
+        if drag is not None and oil.ratio_h is not None and oil.ratio_v is not None:
+            cell[6:] += drag * oil.ratio_h
+            speed[6:, 0] += (drag * oil.ratio_v).sum(axis=(1, 2))
         # from the film's gap and weighed rate to the surfaces' gap and rate
         rate *= a.square
         cell = cell * self.slope + rate * self.bend
         cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
         return self._by_motion(cell, face * self.face_slope, rate * self.slope, speed)
 
-    def _adjoint(self, fields: np.ndarray) -> np.ndarray:
-        """Adjoint rows (k, count) of sums over the pressure with the weights ``fields`` (k, n, m)."""
+    def _drag_of_viscosity(self) -> np.ndarray:
+        """Derivatives (3, n, m) of S to the viscosity ratio at the vertices, scaled as `_shear_matrices`."""
+        a, R, (turn, u_x, u_y) = self.annulus, self.scales.R, self.motion[6:]
+        _, x, y, _ = a.link_moments
+        U_x, U_y = u_x - turn * R * y, u_y + turn * R * x
+        on_links = np.array([R * (x * U_y - y * U_x), U_x, U_y]) * a.link_weight / self.solver.HF
+        return to_ends(on_links, 1) * self.share
+
+    def _adjoint(self, fields: np.ndarray, drag: np.ndarray | None) -> np.ndarray:
+        """Adjoint rows (k, count) of sums over the pressure with the weights ``fields`` (k, n, m).
+
+        The last three also follow the gradients of the pressure, by ``drag`` times the viscosity's slopes.
+        """
         s, w, y = self.solver, self.solver.work, self.solver.system
         unknown = w.order[: w.count]
         rows = fields.reshape(len(fields), -1)[:, unknown]
         rows *= w.active.reshape(-1)[unknown]
         if y.continued is not None:
             rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        if drag is not None and self.fields.ratio_g is not None and isinstance(self.sliding, ShearThinning):
+            by_gradient = [self.sliding.gather(self.fields.ratio_g * own) for own in drag]
+            rows[6:] += np.reshape(by_gradient, (3, -1))[:, unknown]
         s.solve_transposed(rows)
         return rows
 
@@ -293,3 +377,17 @@ class FaceFilm:
         shift = products(rate, self.shifted) - 0.5 * self.side * np.outer(whole, self.pose[1:])
         scale = np.array([1.0, k.R, k.R]) / k.c
         return np.concatenate((pose * scale, self.squeeze * through * scale, 0.5 * speed[:, :1], shift / k.R), axis=1)
+
+
+def sliding_law(oil: Lubricant, turbulence: NgPan | Hirs | None, annulus: Annulus, clearance: float) -> LinkLaw | None:
+    """Return turbulence or shear thinning of a face, by the sliding at every radius; None of a plain oil."""
+    R, r = annulus.scale, annulus.r
+    if turbulence is not None:
+        turbulent = turbulence.bound(R, clearance, oil.density, oil.viscosity, plane=True)
+        # a Reynolds number is one at the radius R in an oil that is thinner by r
+        turbulent.field = ViscosityField()
+        return turbulent
+    if (thinning := oil.shear_law and oil.shear_law.bound(R, clearance)) is not None:
+        assert isinstance(thinning, ShearThinning)
+        thinning.radii = r, np.append(np.sqrt(r[1:] * r[:-1]), 1.0)
+    return thinning

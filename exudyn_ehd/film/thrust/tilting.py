@@ -22,8 +22,9 @@ import numpy as np
 from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.grid import axial_vertices
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan, check_turbulence
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
-from exudyn_ehd.film.thrust.annulus import STRETCH
+from exudyn_ehd.film.thrust.annulus import STRETCH, check_shear_law
 from exudyn_ehd.status import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -43,9 +44,9 @@ class TiltingThrustPads(Checked):
     """Pads of a thrust bearing, sectors that tilt about pivots, for `equilibrium` and `CreateTiltingPadThrustBearing`.
 
     All pads are equal and evenly spaced. Every pad tilts about the radial and about the tangential line through its
-    pivot, which lies in the plane of its face; it does not turn about the bearing's axis. Its film has the lubricant's
-    constant viscosity and the ambient pressure at all four edges. The leading edge is the one at which oil enters if
-    the collar turns about +z, the axis from the pads to the collar.
+    pivot, which lies in the plane of its face; it does not turn about the bearing's axis. Its film has one temperature,
+    that of the lubricant, and the ambient pressure at all four edges. The leading edge is the one at which oil enters
+    if the collar turns about +z, the axis from the pads to the collar.
 
     Plane pads carry a load if the film converges: the pivot must lie behind the middle of the pad in the sense of
     rotation, at about 0.6 of the extent. Pads for both senses have the pivot in the middle and need a ``crown``.
@@ -70,7 +71,7 @@ class TiltingThrustPads(Checked):
         Gap between untilted pads and the collar in the reference configuration, at the pads' middle, m. An equilibrium
         does not depend on it.
     lubricant : Lubricant
-        Without ``pressure_law``, ``density_law`` and ``shear_law``.
+        With any law; a ``shear_law`` by the shear rate, such as `CarreauShear`.
     pad_mass : float
         Mass of one pad, kg, its centre in the pivot.
     pad_inertia : (float, float)
@@ -85,6 +86,8 @@ class TiltingThrustPads(Checked):
         One that does not conserve mass, with a ``cavity_pressure`` not above 0. The rupture line lies on vertices.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before a gap vanishes; None: a vanishing gap ends the run with an error.
+    turbulence : NgPan, Hirs or None, default None
+        Turbulent flow by the Reynolds number at every radius; None: laminar.
     n_theta, n_r : int, default 24, 20
         Intervals of the grid of a pad from edge to edge and from inner to outer radius, at least 8 and 6.
 
@@ -116,11 +119,12 @@ class TiltingThrustPads(Checked):
     crown: float = 0.0
     cavitation: SwiftStieber | Gumbel | FullSommerfeld | Closure = SwiftStieber()
     contact: RegularisedWall | None = None
+    turbulence: NgPan | Hirs | None = None
     n_theta: int = 24
     n_r: int = 20
 
     # Attributes that a joint asks of every bearing and of faces: one face, and a bore that no shaft ever reaches.
-    bush = yielding = journal = thermal = asperity = roughness = wear = film = turbulence = inlet = arc = None
+    bush = yielding = journal = thermal = asperity = roughness = wear = film = inlet = arc = None
     profiles = supply = ()
     end_pressures, inner_pressures, outer_pressures, squeeze = (0.0, 0.0), None, (0.0, 0.0), True
     lower, upper, radial_clearance = False, True, 1e6
@@ -166,14 +170,15 @@ class TiltingThrustPads(Checked):
         require_type(f"{_NAME}.lubricant", self.lubricant, Lubricant)
         require_type(f"{_NAME}.contact", self.contact, RegularisedWall, type(None))
         require_type(f"{_NAME}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld, Closure)
-        laws = ("pressure_law", "density_law", "shear_law")
-        left_out = [f"Lubricant.{law}" for law in laws if getattr(self.lubricant, law) is not None]
-        left_out += ["cavitation=ElrodAdams(...)"] if self.cavitation.conserves_mass else []
+        require_type(f"{_NAME}.turbulence", self.turbulence, NgPan, Hirs, type(None))
+        check_shear_law(_NAME, self.lubricant)
+        check_turbulence(_NAME, vars(self) | {"roughness": None, "thermal": None})
+        left_out = ["cavitation=ElrodAdams(...)"] if self.cavitation.conserves_mass else []
         left_out += ["a cavity_pressure above 0 Pa"] if self.cavitation.cavity_pressure > 0.0 else []
         if left_out:
             raise InputError(
-                f"{_NAME} does not go with {', '.join(left_out)}: its films have the lubricant's constant viscosity, "
-                "cavities without a memory and ambient pressure at their edges; leave it out."
+                f"{_NAME} does not go with {', '.join(left_out)}: its films have cavities without a memory and ambient "
+                "pressure at their edges; leave it out."
             )
         if self.contact is not None and not self.contact.onset < self.clearance:
             raise InputError(

@@ -207,9 +207,9 @@ class Case:
         def settled(motion: np.ndarray) -> Evaluation:
             """Evaluate the film at its own temperature, which that of the film before helps to find."""
             nonlocal near
-            evaluation, found = evaluate_at(other, motion, "audit", near)
-            near = found.history
-            return evaluation
+            found = evaluate_at(other, motion, "audit", near)
+            near = found.film.history
+            return found.evaluation
 
         return settled
 

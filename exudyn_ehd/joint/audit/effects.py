@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.options import FilmEnergy, known_supply
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, known_supply
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
 from exudyn_ehd.joint.audit.samples import adiabatic_rise, time_mean
@@ -302,7 +302,7 @@ def faces_share(case: Case) -> Finding | None:
 def faces_heat(case: Case) -> Finding | None:
     """Change of the viscosity by the faces' own heat, in the oil that they carry around."""
     record, faces, oil = case.record, case.faces, case.bearing.lubricant
-    if record is None or faces is None:
+    if record is None or faces is None or isinstance(case.bearing.thermal, LumpedThermal):
         return None
     carried = 0.25 * (faces.lower + faces.upper) * faces.clearance * (faces.outer_radius**2 - faces.inner_radius**2)
     flow = carried * time_mean(record.time, case.slide(record.motion))
@@ -314,5 +314,5 @@ def faces_heat(case: Case) -> Finding | None:
         f"{TEMPERATURE_COEFFICIENT:.3g} 1/K x rise of {rise:.3g} K in a turn",
         TEMPERATURE_COEFFICIENT * rise,
         None,
-        mattering="films on faces are isothermal here: give the lubricant the viscosity at their temperature.",
+        mattering="the faces' own heat is omitted: give thermal=LumpedThermal(...), whose balance contains it.",
     )

@@ -12,7 +12,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import known_supply
 from exudyn_ehd.joint.audit.switches import STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.solved_film import History, SolvedFilm
+from exudyn_ehd.joint.solved_film import FacesHeat, History, SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import Status
 
@@ -141,6 +141,9 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
         for i, after in itertools.pairwise(_replayed(turned, reached, k)):
             if step > 0.0:
                 passed = model.evaluate_steady(motions[i], history, step, float(spin[i]))
+                if passed.film is not None and record.thrust_power_loss[i] > 0.0:
+                    beside = FacesHeat(float(record.thrust_power_loss[i]), np.zeros(2), 0.0)
+                    passed.film = passed.film._replace(beside=beside)
                 history = passed.history() if passed.status is Status.CONVERGED else history
             step = float(record.time[after] - record.time[i])
         reached, motion = k, motions[k]

@@ -19,7 +19,7 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.reynolds.turbulence import NgPan
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
-from exudyn_ehd.joint.balance.newton import is_fed
+from exudyn_ehd.joint.balance.limits import is_fed
 
 # Mineral oils under pressure and by temperature, 1/K (ISO VG 46 near 70 degrees Celsius); multigrade oils.
 PIEZOVISCOSITY = RoelandsPressure(coefficient=2e-8)

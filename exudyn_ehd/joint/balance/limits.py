@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.supply.restrictors import Reservoirs
@@ -232,3 +232,15 @@ def _without_a_shape(evaluation: ElasticEvaluation) -> str:
         "an end of the bearing, where no pressure opens the gap, they do so first. Name contact=RegularisedWall(...) "
         "or asperity=GreenwoodTripp(...), refine the film's grid, or move the journal back."
     )
+
+
+def lacks_oil(bearing: JournalBearing) -> bool:
+    """Return whether the film conserves mass and has no source of oil, unless the journal slides axially."""
+    closure = bearing.cavitation
+    return closure.conserves_mass and not is_fed(bearing, closure.cavity_pressure)
+
+
+def is_fed(bearing: JournalBearing, cavity_pressure: float) -> bool:
+    """Return whether ends, supply areas or an open inlet feed oil into cavities of this pressure, Pa."""
+    supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap) or bool(bearing.bore_arcs)
+    return supplied or max(bearing.end_pressures) > cavity_pressure

@@ -30,9 +30,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.linalg import norm
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, outside_table, require_oil_bears, seized
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.seams import seen_by_faces
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
@@ -154,6 +154,11 @@ class Balance:
         film = evaluation.film
         if film is None or evaluation.status is not Status.CONVERGED:
             raise FilmError(no_film(evaluation, self.where))
+        beside = None
+        if self.faces is not None:
+            beside = self.faces.evaluate(motion, seen_by_faces(film, self.model.effects.thermal))
+            beside.require_film(self.where)
+            film = evaluation.heat_with(beside.heat) or film
         thinner, change = 1.0, np.zeros(0)
         if thermal is not None:
             change = thermal.steady_temperature(film) - T
@@ -164,18 +169,16 @@ class Balance:
                 raise FilmError(f"{self.where}: the film is beyond {DIVERGED:g} K, {NO_OIL}")
             after = T + change * min(1.0, LARGEST_CHANGE / max(size, 1e-300))
             thinner = float(thermal.viscosity_ratio(after).mean() / thermal.viscosity_ratio(T).mean())
-        unbalance, slope, beside = self.share * self.load, np.zeros((k, k)), None
+        unbalance, slope = self.share * self.load, np.zeros((k, k))
         if k:
             carried = float(np.hypot(*evaluation.wrench[:2]))
             ratio = float(np.hypot(*motion[:2])) / self.model.bearing.radial_clearance
             self.strongest = max(self.strongest, (carried, ratio))
             unbalance += thinner * evaluation.wrench[:k]
             slope[:, :2] = thinner * evaluation.steady_tangent()[:k, :2]
-        if self.faces is not None:
-            beside = self.faces.evaluate(motion)
-            beside.require_film(self.where)
+        if beside is not None:
             unbalance += beside.wrench[:k]
-            slope += beside.tangent()[:k, self.free]
+            slope += beside.tangent()[:k, self.free] if k else 0.0
             if k > 2:  # plane faces at rest press nowhere: a step goes to the face that is to carry
                 slope[2, 2] = min(slope[2, 2], -SMALL * self._sizes[2] / self.model.bearing.radial_clearance)
         return Place(motion.copy(), T, change, evaluation, film, unbalance, slope, beside)
@@ -353,20 +356,12 @@ def limited_shift(faces: ThrustEvaluation, step: float) -> float:
     return min(max(step, -longest), longest)
 
 
-def lacks_oil(bearing: JournalBearing) -> bool:
-    """Return whether the film conserves mass and has no source of oil, unless the journal slides axially."""
-    closure = bearing.cavitation
-    return closure.conserves_mass and not is_fed(bearing, closure.cavity_pressure)
-
-
-def is_fed(bearing: JournalBearing, cavity_pressure: float) -> bool:
-    """Return whether ends, supply areas or an open inlet feed oil into cavities of this pressure, Pa."""
-    supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap) or bool(bearing.bore_arcs)
-    return supplied or max(bearing.end_pressures) > cavity_pressure
-
-
 def settled_history(
-    model: BearingModel, motion: np.ndarray, near: History | None = None, where: str = "steady"
+    model: BearingModel,
+    motion: np.ndarray,
+    near: History | None = None,
+    where: str = "steady",
+    faces: ThrustModel | None = None,
 ) -> History | None:
     """History whose temperature is in balance with the steady film at a motion; None for an isothermal bearing.
 
@@ -374,18 +369,20 @@ def settled_history(
     ----------
     model : BearingModel
     motion : (10,) array
-        As for `BearingModel.evaluate_steady`.
+        As for `BearingModel.evaluate_steady`; (11,) with faces, as for them.
     near : History, optional
         Memory of a film nearby, whose temperature is the initial guess; it saves time.
     where : str
         Name of the caller, for error messages.
+    faces : ThrustModel, optional
+        Films on the end faces, which take part in the balance of heat.
 
     Raises
     ------
     FilmError
         Without a film, if the heat has no way out, or the temperature does not settle.
     """
-    balance = Balance(model, where)
+    balance = Balance(model, where, faces=faces)
     if balance.thermal is None:
         return None
     found = balance.solve(motion, balance.temperature_of(near))
@@ -398,31 +395,33 @@ def settled_history(
     return found.film.history
 
 
-def history_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> History | None:
+def history_at(
+    model: BearingModel, motion: np.ndarray, where: str, near: History | None = None, faces: ThrustModel | None = None
+) -> History | None:
     """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there.
 
     None if nothing remembers. ``near``: history of a film nearby, whose temperature saves time.
     """
-    history = settled_history(model, motion, near, where)
+    history = settled_history(model, motion, near, where, faces)
     if not model.remembers_mass or not np.any(motion[4:8]):
         return history
     at_rest = motion.copy()
     at_rest[4:8] = 0.0
-    content = evaluate_at(model, at_rest, where)[0].history()
+    content = evaluate_at(model, at_rest, where, None, faces).evaluation.history()
     assert content is not None
     return replace(content, temperature=None if history is None else history.temperature, pockets=None)
 
 
 def evaluate_at(
-    model: BearingModel, motion: np.ndarray, where: str, near: History | None = None
-) -> tuple[Evaluation, SolvedFilm]:
+    model: BearingModel, motion: np.ndarray, where: str, near: History | None = None, faces: ThrustModel | None = None
+) -> Place:
     """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none that is oil.
 
-    ``near`` as for `history_at`.
+    ``near`` as for `history_at`, ``motion`` and ``faces`` as for `settled_history`.
     """
-    balance = Balance(model, where, held=history_at(model, motion, where, near))
+    balance = Balance(model, where, faces=faces, held=history_at(model, motion, where, near, faces))
     found = balance.at(motion, balance.cold)
     require_oil_bears(found.film.temperature, model.grid, where)
     if message := seized(found.film.walls) or outside_table(found.film):
         raise FilmError(f"{where}: {message}")
-    return found.evaluation, found.film
+    return found

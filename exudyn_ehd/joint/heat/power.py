@@ -226,7 +226,7 @@ def conductances_of(film: SolvedFilm) -> np.ndarray:
 
 
 def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float]:
-    """Power that film and contacts turn into heat, W, and `OilFlows.exchanged`.
+    """Power that film and contacts turn into heat, W, and `OilFlows.exchanged`, of films on end faces too.
 
     What a link carries dissipates its own power: what sliding puts in, and what the flow loses of its pressure. Summed
     over the links by parts, with the cavity's pressure pc, the inflow S from outside and the content's rate,
@@ -237,6 +237,9 @@ def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float
     work on the oil, to rounding. Oil that cavities find or lose has their pressure and does no work, also where a
     rupture line crosses a cell. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows and
     content are masses.
+
+    Oil that leaves the bore at an end flows into the gap between bush and collar. A face takes that in first, and fresh
+    oil in place of what it lacks there and at its outer radius.
     """
     flows, oil = OilFlows(film, carry_over), film.parts.compressible
     P, cavity = film.oil.P, np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
@@ -246,7 +249,12 @@ def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float
         entering[area] += flows.found[area] - flows.lost[area]
     work = float(np.sum(pressure * entering))
     power = film.scales.pressure * film.parts.flow_scale
-    return powers(film).sliding + power * (work + _end_work(film)), flows.exchanged
+    heat, exchanged = powers(film).sliding + power * (work + _end_work(film)), flows.exchanged
+    if film.beside is not None:
+        own, unit = film.beside, film.parts.flow_scale
+        lacking = own.inner / unit - np.maximum(flows.leaving[:, [0, -1]], 0.0).sum(axis=0)
+        heat, exchanged = heat + own.heat, exchanged + float(np.maximum(lacking, 0.0).sum()) + own.outer / unit
+    return heat, exchanged
 
 
 def _end_work(film: SolvedFilm) -> float:

@@ -66,6 +66,8 @@ def temperature_of(film: SolvedFilm) -> np.ndarray:
 class OilTemperature:
     """Common part of both kinds of film temperature."""
 
+    initial_leaving: np.ndarray | None = None
+
     def __init__(self, spec: LumpedThermal | FilmEnergy, lubricant: Lubricant) -> None:
         self.law, self.density = lubricant.temperature_law, lubricant.density
         if self.law is not None:
@@ -95,6 +97,10 @@ class OilTemperature:
     def split(self, temperature: Field) -> tuple[Field, Walls | None]:
         """The film's own temperature and that of walls, of which there are none."""
         return temperature, None
+
+    def leaving(self, film: SolvedFilm, temperature: Field) -> np.ndarray | None:
+        """Temperature (2,) of the oil that leaves a film at both ends, K; None where all of it has one."""
+        return None
 
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """mu(T) / mu at the lubricant's own temperature."""
@@ -136,6 +142,9 @@ class LumpedTemperature(OilTemperature):
         self.housing = self._or_supply(spec.housing_temperature)
         around = sum(arc.extent for arc in bearing.bore_arcs) or 2.0 * math.pi
         volume = around * bearing.journal_radius * bearing.length * bearing.radial_clearance
+        if (faces := bearing.thrust) is not None:
+            ring = math.pi * (faces.outer_radius**2 - faces.inner_radius**2) * faces.clearance
+            volume += (faces.lower + faces.upper) * ring
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
         self.field: ViscosityField | None = None

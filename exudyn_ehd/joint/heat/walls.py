@@ -91,6 +91,8 @@ class FilmTemperature(OilTemperature):
                 self.transfer += wall.conductance  # more than nothing: a way out for the heat
         self.conducting = [wall for wall in self.sides if wall is not None]
         self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
+        if bearing.thrust is not None:
+            self.initial_leaving = np.full(2, float(self.initial))
         self.grows = any(wall.expands > 0.0 for wall in self.conducting)
         self._last: np.ndarray | None = None
         self._last_split: np.ndarray | None = None
@@ -149,6 +151,12 @@ class FilmTemperature(OilTemperature):
         """State at the end of a solved film's step."""
         old = self.state_of(film.history)
         return old if film.step <= 0.0 else self._with_supply(film, film.step)
+
+    def leaving(self, film: SolvedFilm, temperature: np.ndarray | float) -> np.ndarray:
+        """Mean temperature (2,) of the oil that leaves at both ends, K, by its flow; of all of it where none leaves."""
+        out = np.maximum(OilFlows(film, self.carry_over).leaving[:, [0, -1]], 0.0)
+        weights = np.where(out.sum(axis=0) > 0.0, out, 1.0)
+        return np.asarray(np.average(np.asarray(temperature)[:, [0, self.shape[1] - 1]], axis=0, weights=weights))
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """State in balance with the heat of a solved film; not finite without a way out for the heat."""

@@ -25,6 +25,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent
 from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
@@ -36,7 +37,6 @@ from exudyn_ehd.joint.solved_film import (
     ContactFields,
     History,
     JournalMotion,
-    OilFields,
     SolvedFilm,
 )
 from exudyn_ehd.joint.tangent.bore import elastic_tangent

@@ -1,4 +1,4 @@
-"""Pressure and viscosity from the solver's unknowns by the oil's laws, and the loads on the journal."""
+"""Loads of a film on the journal."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ import math
 import numpy as np
 
 from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
+from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.supply.cuts import RecessShear, recess_shear
 from exudyn_ehd.film.surfaces.contact import add_contact
-from exudyn_ehd.joint.seams import Effects, ThermalEffect
+from exudyn_ehd.joint.seams import ThermalEffect
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
     ExtraGap,
@@ -18,55 +19,11 @@ from exudyn_ehd.joint.solved_film import (
     JournalMotion,
     LimiterFields,
     Loads,
-    OilFields,
     Scales,
 )
 from exudyn_ehd.joint.tangent.true_gap import drag_weights, pulls_unevenly
 
 _NO_CONTACT = np.zeros(6)
-# Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
-# they meet, and one too large would let them take the next states for solutions. Force and tangent are reduced
-# alike, and so lead to where they would have led.
-FARTHEST = 10.0
-
-
-def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> OilFields | None:
-    """Pressure and viscosity ratio of the film that ``parts.solver`` holds; None where its solution has no pressure.
-
-    ``pressure_scale`` in Pa.
-    """
-    s, film, shape = parts.solver, parts.compressible, parts.grid.shape
-    law, shear = effects.pressure_law, effects.shear_factor
-    if law is None and shear is None:
-        return OilFields(s.pressure)
-    P, P_q, ratio, ratio_q, beyond = s.pressure, s.ones, s.ones, s.ones, False
-    if film is not None:
-        P, P_q, ratio, ratio_q = np.empty((4, *shape))
-        beyond = not film.viscosity(P, ratio, ratio_q, P_q)
-        if film.law is not None and film.law.viscosity is None and shear is None:
-            return None if beyond else OilFields(P, P_q)
-    elif law is not None:
-        P, ratio, ratio_q = np.empty((3, *shape))
-        P_q, beyond = ratio, not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q)
-        P /= pressure_scale
-        ratio_q *= pressure_scale
-    if beyond and law is not None:
-        share = min(1.0, FARTHEST * law.largest_pressure / (P.max() * pressure_scale))
-        P *= share
-        ratio *= share
-        if film is not None:
-            P_q *= share
-    if shear is None:
-        return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing, beyond)
-    factor, ratio_h, ratio_v = np.empty((3, *shape))
-    slopes = shear.factor(s.H, s.vx, factor, ratio_h, ratio_v)
-    if law is None:
-        return OilFields(P, ratio=factor, ratio_h=ratio_h, ratio_v=ratio_v, ratio_g=slopes)
-    for by in (ratio_h, ratio_v, slopes):
-        if by is not None:
-            by *= ratio
-    ratio_q *= factor
-    return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v, beyond, slopes)
 
 
 def film_loads(

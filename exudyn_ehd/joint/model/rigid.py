@@ -10,6 +10,7 @@ reads the history at the start of the step and the time since, and ``evaluation.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,9 +18,10 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.reynolds.gap import add_gap, rigid_gaps
+from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.joint.model.centre import is_central, tangents_beside
 from exudyn_ehd.joint.model.effects import film_parts
-from exudyn_ehd.joint.model.loads import film_loads, oil_fields, recess_of
+from exudyn_ehd.joint.model.loads import film_loads, recess_of
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
 from exudyn_ehd.joint.plain_film import is_plain, solve_plain
 from exudyn_ehd.joint.seams import Effects
@@ -28,10 +30,10 @@ from exudyn_ehd.joint.solved_film import (
     BoreState,
     ContactFields,
     ExtraGap,
+    FacesHeat,
     History,
     JournalMotion,
     LimiterFields,
-    OilFields,
     Scales,
     SolvedFilm,
 )
@@ -112,6 +114,12 @@ class Evaluation:
             raise RuntimeError(f"Evaluation.history: {self.status.name}, without a film there is no history to keep.")
         return self.model.next_history(film)
 
+    def heat_with(self, heat_of_faces: Callable[[], FacesHeat]) -> SolvedFilm | None:
+        """Return the film with the heat of films on end faces in its balance, for which alone they are asked."""
+        if self.film is not None and self.model.effects.thermal is not None:
+            self.film = self.film._replace(beside=heat_of_faces())
+        return self.film
+
     def _current(self) -> SolvedFilm | None:
         if self.film is not None:
             self.film.require_current()
@@ -188,6 +196,7 @@ class BearingModel:
             density=s.ones if self.remembers_density else None,
             pockets=s.pockets if found else None,
             sump=None if thermal is None else thermal.initial_sump,
+            leaving=None if thermal is None else thermal.initial_leaving,
         )
 
     def next_history(self, film: SolvedFilm) -> History | None:
@@ -199,6 +208,9 @@ class BearingModel:
         void, mass = s.stored(old.mass, film.step) if self.remembers_mass else (None, None)
         temperature = None if heat is None else heat.advance(film)
         sump = None if heat is None or heat.initial_sump is None else heat.balance(film, temperature)
+        leaving = (
+            None if heat is None or temperature is None or film.beside is None else heat.leaving(film, temperature)
+        )
         new = History(
             void=void,
             mass=mass,
@@ -209,6 +221,7 @@ class BearingModel:
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
             pockets=s.pockets,
             sump=None if sump is None else sump["supply_temperature"],
+            leaving=leaving,
         )
         if void is not None and film.history is not None:
             for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
@@ -256,7 +269,8 @@ class BearingModel:
         if smallest <= 0.0 and not self.effects.contacts and p.liner is None:
             return self._result(Status.NO_FILM, journal, np.full(6, np.nan), 0, c * smallest, None)
         status, iterations = self._solve(journal, history, step)
-        oil = oil_fields(p, self.effects, self.scales.pressure) if status is Status.CONVERGED else None
+        laws = self.effects.pressure_law, self.effects.shear_factor
+        oil = self.solver.oil_fields(*laws) if status is Status.CONVERGED else None
         status = Status.NO_PRESSURE if status is Status.CONVERGED and (oil is None or oil.beyond) else status
         if oil is None:
             return self._result(status, journal, np.full(6, np.nan), iterations, c * smallest, None)

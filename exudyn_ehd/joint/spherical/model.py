@@ -193,7 +193,7 @@ class SphericalModel:
         self.grid: FilmGrid = p.grid
         self.solver = FilmSolver(p.grid, b.cavitation)
         self.limiter = None if b.contact is None else WallContact(b.contact, c)
-        self.pressure_scale = 12.0 * mu * R**2 / c**2
+        self.pressure_scale = self.solver.pressure_scale = 12.0 * mu * R**2 / c**2
         self.force_scale, self.shear_scale = self.pressure_scale * R**2, mu * R**2 / c
         self.law, self._cavity = transform_of(b.lubricant), b.cavitation.cavity_pressure
         if self.law is not None:
@@ -278,12 +278,14 @@ class SphericalModel:
 
     def _oil(self) -> tuple[np.ndarray, np.ndarray | float, np.ndarray | float] | None:
         """Scaled pressure, viscosity ratio and its derivative to the unknown; None where no pressure is high enough."""
-        q = self.solver.pressure
-        if self.law is None:
-            return q, 1.0, 0.0
-        p, ratio, ratio_q = np.empty((3, *q.shape))
-        known = self.law.inverse(q * self.pressure_scale, p, ratio, ratio_q)
-        return (p / self.pressure_scale, ratio.ravel(), ratio_q.ravel() * self.pressure_scale) if known else None
+        oil = self.solver.oil_fields(self.law, None)
+        if oil is None or oil.beyond:
+            return None
+        return (
+            oil.P,
+            1.0 if oil.ratio is None else oil.ratio.ravel(),
+            0.0 if oil.ratio_q is None else oil.ratio_q.ravel(),
+        )
 
     def _loads(
         self, motion: np.ndarray, P: np.ndarray, ratio: np.ndarray | float, ratio_q: np.ndarray | float

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, overload
 
@@ -38,13 +38,20 @@ from exudyn_ehd.joint.static.dynamic_stiffness import (
 )
 from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult, pad_equilibrium
 from exudyn_ehd.joint.static.pads import TiltingPads
-from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, model_at, require_rest, result_at, result_of
+from exudyn_ehd.joint.static.steady import (
+    SPEEDS,
+    SteadyResult,
+    model_at,
+    require_faces,
+    require_rest,
+    result_at,
+)
+from exudyn_ehd.joint.thrust import ThrustModel, faces_of
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult
-    from exudyn_ehd.joint.thrust import ThrustModel
 
 
 # Step of the difference quotients between converged films, as a share of the minimum film thickness.
@@ -146,15 +153,19 @@ class EquilibriumResult:
         b, motion = self.film.bearing, self.film.motion[:MOTION_SIZE]
         if b.thermal is None:
             return self.stiffness if self.response is None else self.response.at(0.0).real[:2, :2]
-        model = model_at(b, motion)
+        model, faces = model_at(b, motion), faces_of(b)
+        if self.film.faces is not None:
+            motion = np.append(motion, self.film.faces.axial_position)
         step = SETTLED_STEP * max(self.film.minimum_gap, 1e-3 * b.radial_clearance)
         near = remembered(self.film)
 
         def force(shift: np.ndarray) -> np.ndarray:
             there = model_at(b, motion + shift) if isinstance(b.inlet, MaximumGap) else model
-            return evaluate_at(there, motion + shift, "settled_stiffness", near)[0].wrench[:2]
+            found = evaluate_at(there, motion + shift, "settled_stiffness", near, faces)
+            beside = 0.0 if found.faces is None else found.faces.wrench[:2]
+            return np.asarray(found.evaluation.wrench[:2] + beside)
 
-        return np.array([force(-s) - force(s) for s in step * np.eye(2, MOTION_SIZE)]).T / (2.0 * step)
+        return np.array([force(-s) - force(s) for s in step * np.eye(2, motion.size)]).T / (2.0 * step)
 
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
         """Z = K + i nu C: the force's amplitude is -Z x for a motion x exp(i nu t).
@@ -343,9 +354,7 @@ def _result(
     there = Z.real, Z.imag / frequency
     if not model.remembers_mass:
         frequency = 0.0
-    film = result_at(model, found.motion[:MOTION_SIZE], "equilibrium", found.film.history)
-    if found.faces is not None:
-        film = replace(film, faces=result_of(found.faces, found.faces.tangent()))
+    film = result_at(model, found.motion, "equilibrium", found.film.history, search.faces)
     return EquilibriumResult(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
@@ -387,19 +396,13 @@ def _small_motions(found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse |
 def _faces(bearing: JournalBearing, position: float, load: float | None) -> tuple[ThrustModel | None, list[float]]:
     """The films on end faces in the search, and what they are to carry along z, N; an empty list if they are held."""
     along = [] if load is None else [require_number("equilibrium: axial_load", load, "N")]
-    if bearing.thrust is None and position == 0.0 and not load:
-        return None, []
-    # imported here: a bearing without faces needs none of it
-    from exudyn_ehd.joint.static.steady import require_faces
-    from exudyn_ehd.joint.thrust import ThrustModel
-
     require_faces(bearing, "equilibrium", axial_position=position, axial_load=load)
     if along and position != 0.0:
         raise InputError(
             f"equilibrium: axial_position = {position!r} m and axial_load = {load!r} N exclude each other: the journal "
             "is held along the axis, or finds its place under a load; leave one out."
         )
-    return ThrustModel(bearing), along
+    return faces_of(bearing), [] if bearing.thrust is None else along
 
 
 def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping: np.ndarray) -> float:

@@ -15,15 +15,21 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.samples import FilmState
-from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_heat, warn_of_overload, warn_of_starved
-from exudyn_ehd.joint.balance.newton import evaluate_at, history_at, lacks_oil
+from exudyn_ehd.joint.balance.limits import (
+    lacks_oil,
+    refuse_pressed_through,
+    warn_of_heat,
+    warn_of_overload,
+    warn_of_starved,
+)
+from exudyn_ehd.joint.balance.newton import evaluate_at, history_at
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record, remembered
 from exudyn_ehd.joint.model.quantities import passing_flows, pocket_pressures, refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
+from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, faces_of
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import FilmRecord, shown
 from exudyn_ehd.solid.bush import BoreModes
@@ -106,13 +112,6 @@ class ThrustResult:
         return f"<ThrustResult: axial force {force}, {film}>"
 
 
-def faces_at(bearing: JournalBearing, motion: np.ndarray, where: str) -> ThrustResult:
-    """Films on the faces of a bearing with ``thrust`` at a motion (11,); `FilmError` if there are none."""
-    found = ThrustModel(bearing).evaluate(motion)
-    found.require_film(where)
-    return result_of(found, found.tangent())
-
-
 def require_faces(bearing: JournalBearing, where: str, **arguments: float | None) -> None:
     """Refuse arguments that only faces give a meaning to, of a bearing without them."""
     given = [f"{name} = {value!r}" for name, value in arguments.items() if value]
@@ -124,8 +123,9 @@ def require_faces(bearing: JournalBearing, where: str, **arguments: float | None
         )
 
 
-def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
-    """Result of the last evaluation of its model, with its tangent (6, 11)."""
+def result_of(found: ThrustEvaluation) -> ThrustResult:
+    """Result of the last evaluation of its model."""
+    tangent = found.tangent()
     model, values, first = found.model, found.quantities(), found.model.faces[0]
     inflow, outflow = np.array([face.flows() for face in model.faces]).T
     return ThrustResult(
@@ -140,7 +140,7 @@ def result_of(found: ThrustEvaluation, tangent: np.ndarray) -> ThrustResult:
         peak_pressure=values["thrust_peak_pressure"],
         power_loss=values["thrust_power_loss"],
         contact_load=values["thrust_contact_load"],
-        edge_pressures=np.array([face.known[0] * face.scales.pressure for face in model.faces]),
+        edge_pressures=np.array([face.pressures[0] for face in model.faces]),
         inflow=inflow,
         outflow=outflow,
         theta=first.annulus.grid.x,
@@ -217,7 +217,8 @@ class SteadyResult(FilmRecord, FilmPictures):
     peak_temperature : float or None
         Highest temperature of the film, K; None for an isothermal bearing.
     heat_by_oil, heat_to_walls : float or None
-        Heat that the oil carries out of the bearing, and that its walls give off, W; None for an isothermal bearing.
+        Heat that the oil carries out of the bearing, and that its walls give off, W; with `LumpedThermal` that of the
+        films on end faces, too. None for an isothermal bearing.
     supply_temperature : float or None
         Temperature of the oil that enters, K: the given one, or that of a `Sump`; None for an isothermal bearing. The
         oil leaves at this temperature plus ``heat_by_oil`` over ``oil_flow`` times density and specific heat.
@@ -229,7 +230,7 @@ class SteadyResult(FilmRecord, FilmPictures):
     bore_coordinates : (k,) array or None
         Coordinates of a flexible bore (amplitudes of its modes), m; None for a rigid one.
     faces : ThrustResult or None
-        Films on the end faces, which all other values leave out; None without ``bearing.thrust``.
+        Films on the end faces, which all other values but the heat leave out; None without ``bearing.thrust``.
     bearing : JournalBearing
     motion : (10,) array
         Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates
@@ -300,7 +301,9 @@ class SteadyResult(FilmRecord, FilmPictures):
         near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
-        state = FilmState(self.motion, history_at(model, self.motion, "audit", near))
+        # with faces the heat is not that of this film alone
+        settled = near if self.faces is not None and near is not None else history_at(model, self.motion, "audit", near)
+        state = FilmState(self.motion, settled)
         return audit_of(Case(model, [state], liner=liner, measure_time=measure_time))
 
 
@@ -386,11 +389,8 @@ def steady(
     start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
     model = build_study_model(bearing, start)
     motion = np.array([*position, *b, *v, 0.0, 0.0, omega, w])
-    if bearing.thrust is None and place == 0.0:
-        return result_at(model, motion, "steady")
     require_faces(bearing, "steady", axial_position=place)
-    faces = faces_at(bearing, np.append(motion, place), "steady")
-    return replace(result_at(model, motion, "steady"), faces=faces)
+    return result_at(model, np.append(motion, place), "steady", faces=faces_of(bearing))
 
 
 def model_at(bearing: JournalBearing, motion: np.ndarray) -> BearingModel:
@@ -444,9 +444,12 @@ def _warn_of_strain(model: BearingModel, film: SolvedFilm, where: str) -> None:
         )
 
 
-def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> SteadyResult:
-    """The steady film at ``motion``; `FilmError` and ``near`` as for `evaluate_at`."""
-    evaluation, film = evaluate_at(model, motion, where, near)
+def result_at(
+    model: BearingModel, motion: np.ndarray, where: str, near: History | None = None, faces: ThrustModel | None = None
+) -> SteadyResult:
+    """The steady film at ``motion``; arguments and `FilmError` as for `evaluate_at`."""
+    found = evaluate_at(model, motion, where, near, faces)
+    evaluation, film = found.evaluation, found.film
     _warn_of_strain(model, film, where)
     warn_of_heat(film.temperature, film.grid, where)
     q, wrench = evaluation.quantities(), evaluation.wrench
@@ -497,4 +500,5 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         heat_to_walls=heat.get("conducted"),
         supply_temperature=heat.get("supply_temperature"),
         bore_coordinates=None if film.bore is None else film.bore.coordinates.copy(),
+        faces=None if found.faces is None else result_of(found.faces),
     )

@@ -152,7 +152,7 @@ class ThrustPadSearch:
 
     def __init__(self, pads: TiltingThrustPads, speed: float, load: float) -> None:
         self.pads, self.speed, self.load, self.count = pads, speed, load, 0
-        self.film = FaceFilm(pads, 1, pads.cavitation, pads.lubricant.viscosity, (0.0, 0.0))
+        self.film = FaceFilm(pads, 1, pads.cavitation, pads.lubricant, (0.0, 0.0), True, pads.turbulence)
         # (zeta, bx, by) by v, and force on the collar and moments on the pad by the wrench
         self.by_v = np.array([[1.0, 0.0, -pads.pivot_radius], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
         self.by_wrench = np.zeros((3, 6))
@@ -240,7 +240,7 @@ def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndar
     K, C = search.matrices()
     Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
     (inner, outer), (first, last) = film.flows(), film.flows_along()
-    peak, _, _ = refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.link_x, grid.z)
+    peak, _, _ = refined_peak(film.fields.P, grid.fixed, grid.x, grid.link_x, grid.z)
     return ThrustPadsResult(
         film_thickness=float(v[0]),
         inclination=np.array([v[2], -v[1]]),

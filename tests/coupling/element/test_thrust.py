@@ -280,3 +280,40 @@ def test_refused():
     mbs, _, _ = _rotor(_bearing(profile=ehd.TaperLand(pads=4, depth=3e-5)), load=(0, 0, 1e9))
     with pytest.raises(ehd.FilmError, match="thrust faces have a film"):
         _run(mbs, 1e-3, 10)
+
+
+OIL = ehd.oil("ISO VG 46")
+THERMAL = {
+    "lumped": ehd.LumpedThermal(supply_temperature=313.15, housing_conductance=5.0),
+    "field": ehd.FilmEnergy(supply_temperature=313.15),
+}
+
+
+@pytest.mark.parametrize("kind", THERMAL)
+def test_heated_faces_in_a_run(kind, tmp_path):
+    """Faces thin out as the joint warms up; a run from a file ends as the whole one; a rotor has its steady film."""
+    bearing = dataclasses.replace(
+        _bearing(profile=ehd.TaperLand(pads=4, depth=3e-5)), lubricant=OIL, thermal=THERMAL[kind]
+    )
+    load = (0.0, -800.0, 300.0)
+    whole, joint, _ = _rotor(bearing, load=load, mass=30.0)
+    _run(whole, 0.02, 80)
+    loss = joint.history.thrust_power_loss
+    assert joint.history.film_temperature[-1] > 316.0 and loss[-1] < 0.9 * loss[0]
+    half, _, _ = _rotor(bearing, load=load, mass=30.0)
+    _run(half, 0.01, 40)
+    ehd.SaveState(half, tmp_path / "half.npz")
+    rest, again, _ = _rotor(bearing, load=load, mass=30.0)
+    settings = exu.SimulationSettings()
+    ehd.ConfigureSolver(settings)
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.02, 40
+    ehd.SolveDynamic(rest, settings, restart=tmp_path / "half.npz")
+    # a restart's steps are as long to 1e-14 of a second
+    assert again.history.film_temperature[-1] == pytest.approx(joint.history.film_temperature[-1], rel=1e-9)
+    assert again.history.thrust_force[-1] == pytest.approx(joint.history.thrust_force[-1], rel=1e-6)
+    ends = ehd.SolveEquilibrium(rest, 200.0)
+    motion = ends.motion[0, 0]
+    tilt = tuple(motion[2:4])
+    known = ehd.equilibrium(bearing, speed=200.0, load=load[:2], axial_load=load[2], tilt=tilt)
+    assert motion[:2] == pytest.approx(known.position, abs=1e-6 * C)
+    assert ends.coordinates[0, 2] == pytest.approx(known.film.faces.axial_position, abs=1e-5 * C)

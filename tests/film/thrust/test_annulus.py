@@ -37,7 +37,7 @@ def _draw(rng, pads=True):
 
 def _found(faces, motion):
     """Force, stiffness, damping, torque, power, inflow and outflow of a face."""
-    film = FaceFilm(faces, 1, ehd.SwiftStieber(line_in_cells=True), MU, (0.0, 0.0))
+    film = FaceFilm(faces, 1, ehd.SwiftStieber(line_in_cells=True), ehd.Lubricant(viscosity=MU), (0.0, 0.0))
     state = film.evaluate(motion)
     tangent = film.tangent()
     return np.array([state.wrench[2], -tangent[2, 0], -tangent[2, 3], state.wrench[5], state.power_loss, *film.flows()])
@@ -92,7 +92,7 @@ def test_contact_on_lands(share):
     wall, depth, gap = ehd.RegularisedWall(onset=5e-6, pressure=1e8), 20e-6, 2e-6
     profile = ehd.StepLand(pads=7, depth=depth, share=share)
     faces = ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.04, clearance=30e-6, profile=profile, contact=wall)
-    film = FaceFilm(faces, 1, ehd.SwiftStieber(), MU, (0.0, 0.0))
+    film = FaceFilm(faces, 1, ehd.SwiftStieber(), ehd.Lubricant(viscosity=MU), (0.0, 0.0))
     found = film.evaluate(np.array([gap - faces.clearance, *np.zeros(8)]))
     area = (1.0 - share) * math.pi * (0.04**2 - 0.02**2)
     assert found.contact_load == pytest.approx(area * wall.pressure * (1.0 - gap / wall.onset) ** 2, rel=1e-12)

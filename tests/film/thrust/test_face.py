@@ -20,7 +20,7 @@ def _faces(ratio=0.5, **options):
 
 
 def _film(faces=None, side=1, closure=None, pressures=(0.0, 0.0)):
-    return FaceFilm(faces or _faces(), side, closure or ehd.FullSommerfeld(), MU, pressures)
+    return FaceFilm(faces or _faces(), side, closure or ehd.FullSommerfeld(), ehd.Lubricant(viscosity=MU), pressures)
 
 
 def _motion(**parts):
@@ -101,41 +101,56 @@ def test_short_taper():
     assert turned.evaluate(_motion(omega=-omega)).wrench[[2, 5]] == pytest.approx([mirrored[2], -mirrored[5]], rel=1e-9)
 
 
-def reference_film(gap, rate, omega, n, m, *, ri, clips=False, parts=1):
+def reference_film(gap, rate, omega, n, m, *, ri, clips=False, parts=1, oil=None, turbulent=None):
     """Independent film of r and theta: cells between circles of equal distance, of one of ``parts`` that repeat.
 
     Links in theta join the half cells on their sides, whose gaps may differ at a step: the flow ``V h - a dp`` of both
     is the same. Returns the integrals of p, of p times y and of -p times x, and the torque of a collar without tilt,
     ``-int r (mu omega r / h + h / 2 dp/(r dtheta)) dA``.
+
+    ``oil``: ratios of viscosity and density at pressures; ``turbulent``: factors k_x / 12, k_z / 12 and t at gaps and
+    radii. Both act on links and cells as they are, until pressures no longer change.
     """
+    oil = oil or (lambda p: (np.ones_like(p), np.ones_like(p)))
+    turbulent = turbulent or (lambda h, r: np.ones((3, *np.broadcast(h, r).shape)))
     dr, dt = (RO - ri) / m, 2 * math.pi / (parts * n)
     r, theta = ri + dr * (np.arange(m) + 0.5), dt * (np.arange(n) + 0.5)
-    cell = np.arange(n * m).reshape(n, m)
+    cell, p, full = np.arange(n * m).reshape(n, m), np.zeros(n * m), np.ones(n * m, dtype=bool)
     before, behind = (gap(theta[:, None] + dt / 2 + side, r[None, :]) for side in (-1e-9, 1e-9))
-    a, b = (2 * h**3 * dr / (r * dt) / (12 * MU) for h in (before, behind))
-    flow = omega / 2 * r * dr * (b * before + a * behind) / (a + b)
-    rhs = (np.roll(flow, 1, 0) - flow - rate(theta[:, None], r[None, :]) * r * dr * dt).ravel()
-    links = [(cell.ravel(), np.roll(cell, -1, 0).ravel(), (a * b / (a + b)).ravel())]
-    for j in range(m - 1):
-        h = gap(theta, r[j] + dr / 2)
-        links.append((cell[:, j], cell[:, j + 1], h**3 * (r[j] + dr / 2) * dt / dr / (12 * MU)))
-    entries = [e for i, k, g in links for e in ((i, i, g), (k, k, g), (i, k, -g), (k, i, -g))]
-    for j, edge in ((0, ri), (m - 1, RO)):
-        entries.append((cell[:, j], cell[:, j], gap(theta, edge) ** 3 * edge * dt / (dr / 2) / (12 * MU)))
-    rows, columns, values = (np.concatenate(part) for part in zip(*entries, strict=True))
-    A, full = coo_matrix((values, (rows, columns))).tocsr(), np.ones(n * m, dtype=bool)
     while True:
-        p, inside = np.zeros(n * m), np.flatnonzero(full)
+        last = full, p
+        mu, rho = oil(p)
+        field = p.reshape(n, m)
+        link_mu, link_rho = oil(0.5 * (field + np.roll(field, -1, 0)))
+        a, b = (
+            2 * h**3 * dr / (r * dt) / (12 * MU * turbulent(h, r)[0]) * link_rho / link_mu for h in (before, behind)
+        )
+        flow = omega / 2 * r * dr * (b * before + a * behind) / (a + b) * link_rho
+        squeeze = rate(theta[:, None], r[None, :]) * r * dr * dt * rho.reshape(n, m)
+        rhs = (np.roll(flow, 1, 0) - flow - squeeze).ravel()
+        links = [(cell.ravel(), np.roll(cell, -1, 0).ravel(), (a * b / (a + b)).ravel())]
+        for j in range(m - 1):
+            h, (link_mu, link_rho) = gap(theta, r[j] + dr / 2), oil(0.5 * (field[:, j] + field[:, j + 1]))
+            g = h**3 * (r[j] + dr / 2) * dt / dr / (12 * MU * turbulent(h, r[j] + dr / 2)[1])
+            links.append((cell[:, j], cell[:, j + 1], g * link_rho / link_mu))
+        entries = [e for i, k, g in links for e in ((i, i, g), (k, k, g), (i, k, -g), (k, i, -g))]
+        for j, edge in ((0, ri), (m - 1, RO)):
+            h, (link_mu, link_rho) = gap(theta, edge), oil(0.5 * field[:, j])
+            g = h**3 * edge * dt / (dr / 2) / (12 * MU * turbulent(h, edge)[1]) * link_rho / link_mu
+            entries.append((cell[:, j], cell[:, j], g))
+        rows, columns, values = (np.concatenate(part) for part in zip(*entries, strict=True))
+        A, inside = coo_matrix((values, (rows, columns))).tocsr(), np.flatnonzero(full)
+        p = np.zeros(n * m)
         p[inside] = spsolve(A[inside][:, inside].tocsc(), rhs[inside])
-        last, full = full, np.where(full, p >= 0.0, A @ p < rhs) if clips else full
-        if np.array_equal(last, full):
+        full = np.where(full, p >= 0.0, A @ p < rhs) if clips else full
+        if np.array_equal(last[0], full) and np.abs(p - last[1]).max() <= 1e-9 * np.abs(p).max():
             break
-    p = p.reshape(n, m)
+    p, mu = p.reshape(n, m), mu.reshape(n, m)
     area, X, Y = r * dr * dt, r * np.cos(theta)[:, None], r * np.sin(theta)[:, None]
-    after = np.roll(p, -1, 0)
+    after, at = np.roll(p, -1, 0), gap(theta[:, None], r[None, :])
     on_edge = (omega / 2 * r * dr * (before - behind) + a * p + b * after) / (a + b)
     pull = 0.5 * ((before * (on_edge - p) + behind * (after - on_edge)) * dr * r).sum()
-    torque = -(MU * omega * r**2 / gap(theta[:, None], r[None, :]) * area).sum() - pull
+    torque = -(MU * mu * turbulent(at, r)[2] * omega * r**2 / at * area).sum() - pull
     return parts * np.array([(p * area).sum(), (p * area * Y).sum(), -(p * area * X).sum(), torque])
 
 

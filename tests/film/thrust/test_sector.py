@@ -23,7 +23,7 @@ def _pads(**options):
 
 
 def _film(pads):
-    return FaceFilm(pads, 1, pads.cavitation, MU, (0.0, 0.0))
+    return FaceFilm(pads, 1, pads.cavitation, ehd.Lubricant(viscosity=MU), (0.0, 0.0))
 
 
 def _random(rng, **options):
@@ -146,7 +146,13 @@ def test_balances():
         ({"pivot_stiffness": -1.0}, "pivot_stiffness must be > 0"),
         ({"cavitation": ehd.ElrodAdams()}, "does not go with cavitation=ElrodAdams"),
         ({"cavitation": ehd.Gumbel(cavity_pressure=1e4)}, "does not go with a cavity_pressure above 0 Pa"),
-        ({"lubricant": dataclasses.replace(OIL, pressure_law=ehd.BarusPressure(coefficient=1e-8))}, "pressure_law"),
+        (
+            {
+                "lubricant": dataclasses.replace(OIL, pressure_law=ehd.BarusPressure(coefficient=1e-8)),
+                "turbulence": ehd.NgPan(),
+            },
+            r"turbulence=NgPan\(\) does not go with Lubricant.pressure_law",
+        ),
         ({"contact": ehd.RegularisedWall(onset=2 * C)}, "onset must be below the clearance"),
         ({"extent": 7.0}, "extent must be between"),
     ),
