@@ -27,8 +27,8 @@ from exudyn_ehd.joint import step_error
 from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
-from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, steady_spherical
+from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel
+from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, result_of
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type, require_vector
 
@@ -218,9 +218,10 @@ class LubricatedSphericalJoint(Joint):
             If there is no film at that state.
         """
         self._require_end("film")
-        motion = self.element.steps.look_at_accepted(self.mbs)[1].motion
-        parts = {"place": motion[PLACE], "velocity": motion[VELOCITY], "angular_velocity": motion[SPIN]}
-        return steady_spherical(self.bearing, **parts)
+        found = self.element.steps.look_at_accepted(self.mbs)[1].evaluation
+        assert isinstance(found, SphericalEvaluation)
+        # of the last evaluation, which this is: no solver runs
+        return result_of(found, f"{type(self).__name__}.film")
 
     def audit(self) -> Audit:
         """Find the effects that mattered in the accepted steps, and those of them that a ball's film omits; print it.
@@ -319,7 +320,7 @@ def CreateLubricatedSphericalJoint(
     model = SphericalModel(bearing)
     if move_to_start(mbs, (socket, ball), sides):
         place = ball_motion(sides[0].frame, sides[1].frame)[:3]
-        if not model.smallest_gap(place) > 0.0:
+        if not bearing.smallest_gap(place) > 0.0:
             raise InputError(
                 f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in "
                 f"the socket's frame, radial clearance {bearing.radial_clearance:g} m; check the initial positions, "

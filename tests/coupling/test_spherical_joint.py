@@ -18,6 +18,7 @@ from exudyn_ehd.coupling.kinematics import relative
 OIL = ehd.Lubricant(viscosity=0.1)
 HELD = {"socket_angles": (0.0, 2.3), "contact": ehd.RegularisedWall(onset=2e-6)}
 BALL = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=OIL, n_phi=32, n_chi=12, **HELD)
+KEPT = dataclasses.replace(BALL, cavitation=ehd.ElrodAdams(cavity_pressure=-1e3))
 SIZE = (0.2, 0.02, 0.02)
 MASS = 7800 * 0.2 * 0.02 * 0.02
 
@@ -256,19 +257,32 @@ def test_a_film_that_can_not_be_is_told_by_name():
             ehd.SolveDynamic(mbs, scenes.settings(0.1, steps), solverType=exu.DynamicSolverType.ExplicitEuler)
 
 
-def test_a_stored_run_goes_on(tmp_path):
-    mbs, joint, _ = pendulum()
+@pytest.mark.parametrize("bearing", [BALL, KEPT])
+def test_a_stored_run_goes_on(bearing, tmp_path):
+    mbs, joint, _ = pendulum(bearing)
     run(mbs, 0.02, 20)
     whole = joint.history
-    mbs, joint, _ = pendulum()
+    mbs, joint, _ = pendulum(bearing)
     run(mbs, 0.01, 10)
     ehd.SaveState(mbs, tmp_path / "state.npz")
-    mbs, joint, _ = pendulum()
+    mbs, joint, _ = pendulum(bearing)
     run(mbs, 0.02, 10, restart=tmp_path / "state.npz")
     again = joint.history
     assert again.time == pytest.approx(whole.time)
     # to the tolerance of Newton's method
     assert np.abs(again.place - whole.place).max() < 1e-11
+
+
+def test_a_run_with_conserved_oil_shows_the_film_that_its_steps_have_led_to():
+    mbs, joint, _ = pendulum(KEPT, spin=(30.0, 20.0, -4.0))
+    run(mbs, 0.02, 40)
+    film, h = joint.film(), joint.history
+    assert film.force == pytest.approx(h.force[-1], rel=1e-6)
+    assert 0.0 < film.fill.min() < 0.99 and not film.unbroken.all()
+    # a steady film has other cavities
+    motion = {"place": h.place[-1], "velocity": h.velocity[-1], "angular_velocity": h.angular_velocity[-1]}
+    assert np.abs(ehd.steady_spherical(KEPT, **motion).fill - film.fill).max() > 0.01
+    assert joint.audit()["mass conservation"].on
 
 
 def test_what_a_user_sees():

@@ -9,7 +9,9 @@ and the mean velocity of the surfaces w x R n / 2, which has no divergence on th
 
     div(h^3 / (12 mu) grad p) = w x R n / 2 grad h + dh/dt = -n u,        u = v + e x w / 2 :
 
-in a frame that turns with half the relative angular velocity there is squeeze alone. The edges have p = 0. Only what is
+in a frame that turns with half the relative angular velocity there is squeeze alone. A film that conserves mass has oil
+in a part of the gap only, which moves with the mean velocity. Its links have Couette flows instead, and u = v: the same
+in a full film, to round-off (`exudyn_ehd.joint.spherical.bearing.SphereFlow`). The edges have p = 0. Only what is
 relative counts: a motion of ball and socket together changes none of it. Left out, as in every Reynolds film, is what
 is c / R of what is there: the ball's translation along the film in the flow, and the pressure's shear forces.
 
@@ -47,13 +49,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.lubricant import transform_of
-from exudyn_ehd.film.solvers.film import shear_share
+from exudyn_ehd.film.reynolds.differences import on_links
+from exudyn_ehd.film.solvers.film import shear_by_unknown, shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
 from exudyn_ehd.joint.solved_film import History, LimiterFields
-from exudyn_ehd.joint.spherical.bearing import COMPONENTS, SphericalBearing, sphere_patch
+from exudyn_ehd.joint.spherical.bearing import (
+    SphereFlow,
+    SphericalBearing,
+    drag_of_moments,
+    skew,
+    sphere_patch,
+)
 from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, quotients
 from exudyn_ehd.status import Status
 
@@ -65,17 +75,12 @@ and four rates."""
 _PLACE, _SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[[4, 5, 6, 8, 9, 10]]
 
 
-def skew(v: np.ndarray) -> np.ndarray:
-    """Matrix (3, 3) of the cross product with v (3,)."""
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
-
-
 class BallFilm(NamedTuple):
     """A solved film; fields (n, m).
 
     Attributes
     ----------
-    pressure : Pa; gap of the film : m; unbroken : bool
+    pressure : Pa; gap of the film : m; unbroken : bool; fill : oil over gap, 1 unless the film conserves mass
     wrench : (6,) array
         On the ball, moment about O.
     torque : (3,) array
@@ -92,6 +97,7 @@ class BallFilm(NamedTuple):
     pressure: np.ndarray
     gap: np.ndarray
     unbroken: np.ndarray
+    fill: np.ndarray
     wrench: np.ndarray
     torque: np.ndarray
     contact: np.ndarray
@@ -114,6 +120,8 @@ class SphericalEvaluation:
     minimum_gap : float
         Minimum gap of the rigid surfaces, exact, m.
     film : BallFilm or None
+    before, step : History or None, float
+        At the start of the step, and the time since then, s.
     """
 
     status: Status
@@ -123,6 +131,8 @@ class SphericalEvaluation:
     film: BallFilm | None = field(repr=False)
     model: SphericalModel = field(repr=False)
     serial: int = field(repr=False)
+    before: History | None = field(repr=False)
+    step: float = field(repr=False)
 
     def tangent(self) -> np.ndarray:
         """d wrench / d motion (6, 11), exact for the current active set; until the model's next evaluation.
@@ -149,7 +159,7 @@ class SphericalEvaluation:
         steps = np.repeat([length, 0.0, spin * length, 0.0, BESIDE * spin], [3, 1, 3, 1, 3])
         # a model of its own keeps this film in the buffers
         beside = SphericalModel(self.model.bearing)
-        return quotients(lambda motion: beside.evaluate(motion).wrench, self.motion, steps)
+        return quotients(lambda at: beside.evaluate(at, self.before, self.step).wrench, self.motion, steps)
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state: m, Pa, N m, W, N."""
@@ -167,8 +177,13 @@ class SphericalEvaluation:
         }
 
     def history(self) -> History | None:
-        """Return None: the film remembers nothing."""
-        return None
+        """Return the film's memory after this state; None of a film that remembers nothing."""
+        if not self.model.remembers:
+            return None
+        self._require_current()
+        s, old = self.model.solver, History() if self.before is None else self.before
+        void, mass = s.stored(old.mass, self.step)
+        return History(void=void, mass=mass, outflow=s.outflow())
 
     def _require_current(self) -> None:
         if self.serial != self.model.serial:
@@ -183,7 +198,7 @@ class SphericalModel:
     bearing : SphericalBearing
     """
 
-    remembers = remembers_mass = needs_spin = flexible = False
+    needs_spin = flexible = False
     motion_size = SIZE
 
     def __init__(self, bearing: SphericalBearing) -> None:
@@ -191,7 +206,11 @@ class SphericalModel:
         mu, R, c = b.lubricant.viscosity, b.ball_radius, b.radial_clearance
         self.patch = p = sphere_patch(R, b.socket_angles, b.n_phi, b.n_chi)
         self.grid: FilmGrid = p.grid
-        self.solver = FilmSolver(p.grid, b.cavitation)
+        self.remembers = self.remembers_mass = b.cavitation.conserves_mass
+        self.flow = SphereFlow(p, c) if self.remembers_mass else None
+        if self.flow is not None:
+            p.grid.area[:] = p.area  # what control volumes hold is above them on the sphere
+        self.solver = FilmSolver(p.grid, b.cavitation, flux_effects=() if self.flow is None else (self.flow,))
         self.limiter = None if b.contact is None else WallContact(b.contact, c)
         self.pressure_scale = 12.0 * mu * R**2 / c**2
         self.force_scale, self.shear_scale = self.pressure_scale * R**2, mu * R**2 / c
@@ -203,7 +222,7 @@ class SphericalModel:
         self._moments = np.concatenate([p.area[None], p.vector, p.tensor]).reshape(10, -1)
         self._storage = -(p.vector / (c * p.grid.area)).reshape(3, -1)
         self._gap_slope, self._link_slope = (-n.reshape(3, -1) / c for n in (p.normals, p.link_normals))
-        self._drag = -self.shear_scale * _drag_of_moments(R)
+        self._drag = -self.shear_scale * drag_of_moments(R)
         self._closed, (self._wall, self._wall_slope) = LimiterFields(p.grid.shape), np.zeros((2, *p.grid.shape))
         self._closed.slope[:] = self._closed.face_slope[:] = 1.0
         self._limits, self.serial = False, 0
@@ -213,8 +232,13 @@ class SphericalModel:
         self.solver.forget()
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """Return None: the film remembers nothing."""
-        return None
+        """History of a flooded socket at this motion; None of a film that remembers nothing."""
+        if not self.remembers:
+            return None
+        self.serial += 1
+        self._set_gap(motion)
+        void, mass, outflow = self.solver.flooded()
+        return History(void=void, mass=mass, outflow=outflow)
 
     def is_at_rest(self, motion: np.ndarray) -> bool:
         """Return whether the last film, at this motion, has no source and may rupture at any."""
@@ -222,46 +246,43 @@ class SphericalModel:
         entrained = motion[VELOCITY] + 0.5 * skew(motion[PLACE]) @ motion[SPIN]
         return self._cavity == 0.0 and float(np.linalg.norm(entrained)) <= source
 
-    def smallest_gap(self, place: np.ndarray) -> float:
-        """Smallest gap (m) of the rigid surfaces for the ball's centre at ``place`` (3,), exact."""
-        x, y, z = place.tolist()
-        across = math.hypot(x, y)
-        first, last = self.bearing.socket_angles
-        nearest = min(max(math.atan2(across, z), first), last)
-        return self.bearing.radial_clearance - (across * math.sin(nearest) + z * math.cos(nearest))
-
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> SphericalEvaluation:
-        """Film at a motion (11,): place, 0, velocity, 0, angular velocity of the ball against the socket."""
+        """Film at a motion (11,): place, 0, velocity, 0, angular velocity of the ball against the socket.
+
+        ``history`` and ``step`` as for `exudyn_ehd.joint.model.rigid.BearingModel.evaluate`.
+        """
         motion = np.array(motion, dtype=float)
         self.serial += 1
-        if not np.isfinite(motion.sum()):
-            return self._without(Status.NOT_FINITE, motion, math.nan)
-        gap = self.smallest_gap(motion[PLACE])
+        gap = self.bearing.smallest_gap(motion[PLACE]) if np.isfinite(motion.sum()) else math.nan
+        status, film = self._film(motion, gap, History() if history is None else history, step)
+        wrench = np.full(6, np.nan) if film is None else film.wrench
+        return SphericalEvaluation(status, motion, wrench, gap, film, self, self.serial, history, step)
+
+    def _film(self, motion: np.ndarray, gap: float, past: History, step: float) -> tuple[Status, BallFilm | None]:
+        """Film of a motion with the smallest gap, m; None with a status that says why there is none."""
+        if math.isnan(gap):
+            return Status.NOT_FINITE, None
         if not gap > 0.0 and self.limiter is None:
-            return self._without(Status.NO_FILM, motion, gap)
-        self._set_gap(motion)
-        s = self.solver
+            return Status.NO_FILM, None
+        speeds, s = self._set_gap(motion), self.solver
         s.system.pressure[self.grid.fixed] = s.system.linear_pressure[self.grid.fixed] = 0.0
-        status, _ = s.solve(0.0, 0.0, self._cavity / self.pressure_scale)
+        status, _ = s.advance(*speeds, self._cavity / self.pressure_scale, past.void, past.outflow, step)
         if status is not Status.CONVERGED or not np.isfinite(s.pressure.sum()):
-            return self._without(Status.NOT_CONVERGED, motion, gap)
+            return (Status.NOT_CONVERGED if status is Status.CONVERGED else status), None
         oil = self._oil()
-        if oil is None:
-            return self._without(Status.NO_PRESSURE, motion, gap)
-        film = self._loads(motion, *oil)
-        return SphericalEvaluation(status, motion, film.wrench, gap, film, self, self.serial)
+        return (Status.NO_PRESSURE, None) if oil is None else (status, self._loads(motion, *oil))
 
-    def _without(self, status: Status, motion: np.ndarray, gap: float) -> SphericalEvaluation:
-        return SphericalEvaluation(status, motion, np.full(6, np.nan), gap, None, self, self.serial)
+    def _set_gap(self, motion: np.ndarray) -> tuple[float, float]:
+        """Gap and storage of the film into the solver's buffers; wall pressures and the limiter's slopes.
 
-    def _set_gap(self, motion: np.ndarray) -> None:
-        """Gap and storage of the film into the solver's buffers; wall pressures and the limiter's slopes."""
+        Returns the speeds of the solver, which are 0 where the film needs no Couette flows.
+        """
         s, place = self.solver, motion[PLACE]
         s.H[:] = 1.0 + (place @ self._gap_slope).reshape(s.H.shape)
         s.HF[:] = 1.0 + (place @ self._link_slope).reshape(s.H.shape)
-        entrained = motion[VELOCITY] + 0.5 * skew(place) @ motion[SPIN]
+        entrained = motion[VELOCITY] if self.flow is not None else motion[VELOCITY] + 0.5 * skew(place) @ motion[SPIN]
         s.H_t[:] = (entrained @ self._storage).reshape(s.H.shape)
         wall, f = self.limiter, self._closed
         if wall is not None:
@@ -270,6 +291,9 @@ class SphericalModel:
             f.rate[:] = s.H_t
             wall.limit(s.H, s.HF, np.ones_like(s.H), f.slope, f.bend, f.face_slope)
             s.H_t *= f.slope
+        if self.flow is None:
+            return 0.0, 0.0
+        return self.flow.take(motion[SPIN], place, on_links(f.slope))
 
     def _share(self) -> np.ndarray:
         """Share (n m,) of a full film's Couette shear."""
@@ -301,6 +325,7 @@ class SphericalModel:
             pressure=P * self.pressure_scale,
             gap=s.H * self.bearing.radial_clearance,
             unbroken=s.work.active | self.grid.fixed,
+            fill=s.fill.copy() if self.remembers_mass else s.ones,
             wrench=np.concatenate([force, torque + cross @ force]),
             torque=torque,
             contact=contact,
@@ -317,11 +342,14 @@ class SphericalModel:
         # derivatives of normal and pulled (3 rows each), of Couette's loads by the viscosity (6), by adjoint solves
         rows = self._vector if not self._limits else np.concatenate([self._vector, self._vector * f.slope.ravel()])
         n, P, share = len(rows), film.pressure / self.pressure_scale, self._share()
-        if self.law is not None:
+        rows = rows * w.active.ravel()
+        if follows := self.law is not None or self.flow is not None:
             sheared = np.tensordot(self._drag.reshape(6, 6, 10), speeds, (1, 0)) @ self._moments
-            rows = np.concatenate([rows * film.ratio, sheared * (film.ratio_q * share / s.H.ravel())])
+            rows = np.concatenate([rows * film.ratio, self._shear_rows(sheared, film, share)])
         at, k = w.order[: w.count], len(rows)
-        lam = np.ascontiguousarray(rows[:, at] * w.active.ravel()[at])
+        lam, y = np.ascontiguousarray(rows[:, at]), s.system
+        if y.continued is not None:
+            rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, lam)
         s.solve_transposed(lam)
         cell, face, rate, _ = s.gradients().fields(lam, self.grid.shape)
         by_gap = cell if not self._limits else cell * f.slope + rate * f.bend * f.rate
@@ -329,12 +357,14 @@ class SphericalModel:
         by_place += (face * f.face_slope).reshape(k, -1) @ self._link_slope.T
         by_entrained = (rate * f.slope).reshape(k, -1) @ self._storage.T
         entrained = _SPEEDS[:3] + 0.5 * (cross @ _SPEEDS[3:] - skew(motion[SPIN]) @ _PLACE)
-        pressed = by_place @ _PLACE + by_entrained @ entrained
+        pressed = by_place @ _PLACE + by_entrained @ (entrained if self.flow is None else _SPEEDS[:3])
+        if self.flow is not None:
+            pressed += self._by_flow(self.flow, lam)
         pulled = pressed[n - 3 : n] + (P * f.bend).ravel() * self._vector @ self._gap_slope.T @ _PLACE
         thinner = -share * film.ratio * f.slope.ravel() / s.H.ravel() ** 2
         drag = self._drag @ (self._moments @ (thinner * self._gap_slope).T)
         out = film.drag @ _SPEEDS + np.tensordot(drag.reshape(6, 6, 3), speeds, (1, 0)) @ _PLACE
-        if self.law is not None:
+        if follows:
             out += pressed[n:]
         out[:3] -= force * pressed[:3] + R2 * (self._vector * self._wall_slope.ravel()) @ self._gap_slope.T @ _PLACE
         out[3:] += 0.5 * force * (cross @ pulled - skew(self._vector @ (P * f.slope).ravel()) @ _PLACE)
@@ -342,12 +372,22 @@ class SphericalModel:
         out[3:] += cross @ out[:3] - skew(film.wrench[:3]) @ _PLACE
         return np.asarray(out)
 
+    def _shear_rows(self, sheared: np.ndarray, film: BallFilm, share: np.ndarray) -> np.ndarray:
+        """Weights (k, n m) of the unknowns in sums of the Couette shear over H with the weights ``sheared``."""
+        s, active = self.solver, self.solver.work.active
+        if not self.remembers_mass:
+            return np.asarray(sheared * (film.ratio_q * share / s.H.ravel()) * active.ravel())
+        y, fixed, out = s.system, self.grid.fixed, np.empty((len(sheared), *s.H.shape))
+        ratio, ratio_q = ((x * s.ones.ravel()).reshape(s.H.shape) for x in (film.ratio, film.ratio_q))
+        oil = s.H, ratio, ratio_q, s.fill, s.nothing, active | fixed, fixed, s.pressure, y.cavity_pressure
+        for weights, row in zip(sheared.reshape(out.shape), out, strict=True):
+            shear_by_unknown(weights, *oil, row)
+        return out.reshape(len(out), -1)
 
-def _drag_of_moments(R: float) -> np.ndarray:
-    """Return the map from moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
-
-    def drag(moments: np.ndarray) -> np.ndarray:
-        K, turn = moments[0] * np.eye(3) - moments[4:][COMPONENTS], R * skew(moments[1:4])
-        return np.block([[K, -turn], [turn, R**2 * K]])
-
-    return np.stack([drag(moments) for moments in np.eye(10)], axis=-1).reshape(36, 10)
+    def _by_flow(self, flow: SphereFlow, lam: np.ndarray) -> np.ndarray:
+        """Gradients (k, 11) of functionals with adjoints ``lam`` (k, count) through flows, links' gaps held."""
+        s, fields = self.solver, np.zeros((len(lam), self.grid.weight.size))
+        fields[:, s.work.order[: s.work.count]] = -lam
+        by_spin, by_place, by_slope = flow.gradients(fields, s.taken_along(), (s.HF, on_links(s.H)[1]))
+        by_place += (by_slope * self._closed.bend).reshape(len(lam), -1) @ self._gap_slope.T
+        return np.asarray(by_spin @ _SPEEDS[3:] + by_place @ _PLACE)

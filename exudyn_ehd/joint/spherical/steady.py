@@ -10,7 +10,7 @@ judged by their numbers alone: such a row has no remedy but what its advice says
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar, cast
@@ -28,6 +28,7 @@ from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, sq
 from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
@@ -63,8 +64,22 @@ def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedS
         record = replace(record, motion=motions, leakage=moved_oil(bearing, motions))
         spin = np.linalg.norm(motions[:, SPIN], axis=1)
         motions = motions[record.extremes(spin, squeeze_share(ball_sources(motions)))]
-    states = [FilmState(motion) for motion in motions]
-    return audit_of(BallCase(SphericalModel(bearing), states, record), BALL_ROWS)  # type: ignore[arg-type]
+    model = SphericalModel(bearing)
+    states = [FilmState(motion, steady_history(model, motion)) for motion in motions]
+    return audit_of(BallCase(model, states, record), BALL_ROWS)  # type: ignore[arg-type]
+
+
+def steady_history(model: SphericalModel, motion: np.ndarray) -> History | None:
+    """Memory of a ball that moves on with a motion (11,): the oil content of the steady film at rest at its place.
+
+    None of a film that remembers nothing, of a steady one, or where there is no film.
+    """
+    if not model.remembers or not np.any(motion[VELOCITY]):
+        return None
+    at_rest = motion.copy()
+    at_rest[VELOCITY] = 0.0
+    found = model.evaluate(at_rest)
+    return None if found.film is None else found.history()
 
 
 def ball_sources(motions: np.ndarray) -> Sources:
@@ -88,6 +103,7 @@ class BallCase(Case):
     bearing: SphericalBearing  # type: ignore[assignment]
     # of some directions the force of a ball knows little
     axes, entries, tolerance = 3, SIZE, 3e-4
+    replays = False
     surface, steel = "socket", "steel under the peak"
     omitted: ClassVar[Mapping[str, str]] = {
         "elasticity": "even steel gives way: a ball's film is one of rigid surfaces, whose peak is too high and whose "
@@ -95,14 +111,18 @@ class BallCase(Case):
         "roughness": "the film is that of smooth surfaces: take load and friction as estimates where it is so thin.",
         "heating": "films of balls are isothermal: give the lubricant the viscosity at their temperature.",
         "shear thinning": "a multigrade oil thins here: give the lubricant its viscosity at this shear rate.",
-        "mass conservation": "cavities keep no oil in a ball's film: where they move or refill, its forces come too "
-        "early.",
         "turbulence": "beyond the laminar film: friction is too low.",
     }
 
     def build(self, bearing: SphericalBearing) -> SphericalModel:  # type: ignore[override]
         """Model of another ball."""
         return SphericalModel(bearing)
+
+    def steady(  # type: ignore[override]
+        self, other: SphericalModel, mine: FilmState
+    ) -> Callable[[np.ndarray], SphericalEvaluation]:
+        """Return the function of a motion that evaluates another ball's film at its own memory."""
+        return lambda motion: other.evaluate(motion, steady_history(other, motion))
 
     def sources(self, motions: np.ndarray) -> Sources:
         """Sources of Reynolds' equation by motions (n, 11)."""
@@ -191,6 +211,8 @@ class SphericalResult:
         Pa (gauge), m.
     unbroken : (n, m) bool array
         True where the film is not cavitated.
+    fill : (n, m) array
+        Oil over gap with `ElrodAdams`; 1 with other closures, which do not count it.
     force, torque : (3,) arrays
         On the ball; torque about its centre, N and N m. The socket gets minus the force in the ball's centre and minus
         the torque.
@@ -219,6 +241,7 @@ class SphericalResult:
     pressure: np.ndarray
     gap: np.ndarray
     unbroken: np.ndarray
+    fill: np.ndarray
     force: np.ndarray
     torque: np.ndarray
     tangent: np.ndarray
@@ -302,8 +325,12 @@ def steady_spherical(
     motion[VELOCITY] = require_vector(f"{where}: velocity", velocity, 3, "m/s")
     motion[SPIN] = require_vector(f"{where}: angular_velocity", angular_velocity, 3, "rad/s")
     model = SphericalModel(bearing)
-    found = model.evaluate(motion)
-    film = found.film
+    return result_of(model.evaluate(motion, steady_history(model, motion)), where)
+
+
+def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
+    """Return the result of an evaluation, the last one of its model; errors in the name of ``where``."""
+    film, motion, model, bearing = found.film, found.motion, found.model, found.model.bearing
     if film is None:
         raise FilmError(
             f"{where}: {found.status.name} at place {motion[PLACE]} m, minimum film thickness "
@@ -320,6 +347,7 @@ def steady_spherical(
         pressure=film.pressure,
         gap=film.gap,
         unbroken=film.unbroken,
+        fill=film.fill,
         force=force,
         torque=film.torque,
         tangent=_derivatives(found),
