@@ -35,7 +35,10 @@ from exudyn_ehd.status import FilmError, InputError, Status, require_type, requi
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
 _WHERE = "CreateLubricatedSphericalJoint"
-_QUANTITIES = ("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load")
+_QUANTITIES = (
+    *("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load"),
+    *("film_temperature", "sump_temperature"),
+)
 
 
 class SphericalFailures(Failures):
@@ -112,6 +115,8 @@ class SphericalHistory(FilmSteps):
         Mechanical power that turns into heat. Positive: taken from the motion.
     contact_load : (n,) [N]
         Force that the wall carries by contact. From 0, a part of ``force``.
+    film_temperature, sump_temperature : (n,) [K]
+        Temperature of the film, and of a `Sump`. With which the film was solved; nan without.
     step_error : (n,) [-]
         Estimated error of the ball's place that the time steps have made, over the minimum film thickness. From 0; of
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -130,6 +135,8 @@ class SphericalHistory(FilmSteps):
     angular_velocity: np.ndarray
     torque: np.ndarray
     eccentricity_ratio: np.ndarray
+    film_temperature: np.ndarray
+    sump_temperature: np.ndarray
 
     def __repr__(self) -> str:
         if not self.time.size:

@@ -23,7 +23,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
-from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
+from exudyn_ehd.joint.tangent.wrench import BESIDE, CENTRE, LARGEST_SPREAD, quotients
 from exudyn_ehd.status import FilmError, Status
 
 SIZE, PLACE = 11, 10

@@ -216,7 +216,8 @@ def _rheology(
     if spec is None:
         return None, [], [*laws], [*laws]
     if isinstance(spec, LumpedThermal):
-        lumped = LumpedTemperature(spec, bearing)
+        around = sum(arc.extent for arc in bearing.bore_arcs) or 2.0 * math.pi
+        lumped = LumpedTemperature(spec, oil, around * R * bearing.length * c)
         if bearing.turbulence is not None:
             laws[0].field = lumped.field = ViscosityField()
         return lumped, [], [*laws], [*laws]

@@ -35,7 +35,9 @@ from exudyn_ehd.film.cavitation.closures import (
     SwiftStieber,
     place_line,
 )
+from exudyn_ehd.film.combinations import require_viscosities
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.differences import drops, to_ends
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
@@ -166,13 +168,17 @@ class SphereFlow(FluxEffect):
         # about the socket's axis oil goes round in the rows
         return 0.5 * float(np.linalg.norm(spin)), 0.5 * math.hypot(spin[0], spin[1])
 
+    def flows(self, gap_x: np.ndarray, gap_z: np.ndarray) -> np.ndarray:
+        """Couette flows (2, n, m) of a full film over the links, behind the last row over the last edge."""
+        return np.asarray(self.along * np.stack([gap_x, gap_z]) + self.slope * self.rest)
+
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Set the carriers with their derivatives, over the speeds and the widths with which the solver takes them."""
-        carriers = zip((vx, vz), self.widths, (gap_x, gap_z), (flux.cx, flux.cz), (flux.cx_h, flux.cz_h), strict=True)
-        for k, (v, width, gap, out, slope_out) in enumerate(carriers):
+        carriers = zip((vx, vz), self.widths, (flux.cx, flux.cz), (flux.cx_h, flux.cz_h), strict=True)
+        flows = self.flows(gap_x, gap_z)
+        for k, (v, width, out, slope_out) in enumerate(carriers):
             if v != 0.0:
-                slope_out[:] = self.along[k] / (v * width)
-                out[:] = slope_out * gap + self.slope[k] * self.rest[k] / (v * width)
+                out[:], slope_out[:] = flows[k] / (v * width), self.along[k] / (v * width)
 
     def gradients(
         self, weights: np.ndarray, taken: np.ndarray, gaps: tuple[np.ndarray, np.ndarray]
@@ -255,7 +261,7 @@ class SphericalBearing(Checked):
     The socket is the part of a sphere between two circles around the joint's z axis, fixed in the housing. Colatitudes
     count from +z: (0, pi/2) is a hemispherical cup on the side of +z, which carries a ball that is pushed along +z. A
     socket that ends beyond pi/2 also holds the ball along -z. The edges are open to the ambient pressure. Equations and
-    assumptions: `exudyn_ehd.joint.spherical.model`.
+    assumptions: `exudyn_ehd.joint.spherical.film`.
 
     Errors of the default grid. Squeeze force of the cup, against the closed form: 0.02 % up to eccentricity ratio 0.5,
     0.4 % at 0.9. Any motion in any direction, in sockets closed or open at the pole: force up to 1 % at eccentricity
@@ -268,7 +274,7 @@ class SphericalBearing(Checked):
     radial_clearance : float
         c = socket radius - ball radius, m; at most 0.05 R.
     lubricant : Lubricant
-        Its ``pressure_law`` acts. The film is isothermal: a ``temperature_law`` only sets the viscosity at
+        Its ``pressure_law`` acts, and with ``thermal`` its ``temperature_law``, which else only sets the viscosity at
         ``lubricant.temperature``. A ``shear_law`` or a ``density_law`` raises `InputError`.
     socket_angles : (float, float), default (0.0, pi / 2)
         Colatitudes from +z at which the socket begins and ends, rad; it begins at 0 (closed at the pole) or, with an
@@ -285,6 +291,10 @@ class SphericalBearing(Checked):
         one of your own.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before the gap vanishes; None: a vanishing gap ends the run with an error.
+    thermal : LumpedThermal or None, default None
+        One temperature of the film, whose heat is that of shear and pressure flow; what flows out over the edges, or is
+        lost in cavities, is replaced by oil of the supply temperature, and the film's volume is the socket's area times
+        the clearance. None: isothermal, at ``lubricant.temperature``. `FilmEnergy` is not supported.
 
     Raises
     ------
@@ -306,9 +316,10 @@ class SphericalBearing(Checked):
     n_chi: int = 24
     cavitation: SwiftStieber | Gumbel | FullSommerfeld | ElrodAdams | Closure = SwiftStieber()
     contact: RegularisedWall | None = None
+    thermal: LumpedThermal | None = None
 
     # what a joint's watches and audits ask of every bearing
-    bush = yielding = journal = thermal = asperity = roughness = wear = film = turbulence = inlet = None
+    bush = yielding = journal = asperity = roughness = wear = film = turbulence = inlet = None
     profiles = supply = bore_arcs = ()
     end_pressures, squeeze = (0.0, 0.0), True
     levers = (1.0, 1.0, 1.0, 0.0)
@@ -355,6 +366,14 @@ class SphericalBearing(Checked):
                 "surface of a ball has another speed in every place; use line_in_cells=False, or SwiftStieber(...)."
             )
         object.__setattr__(self, "cavitation", place_line(self.cavitation, False))
+        if isinstance(self.thermal, FilmEnergy):
+            raise InputError(
+                f"{name}.thermal=FilmEnergy(...): its journal is equally warm all around, as it turns past hot and "
+                "cold, but a ball that swings has hot and cold sides, which move with it; give a LumpedThermal(...)."
+            )
+        require_type(f"{name}.thermal", self.thermal, LumpedThermal, type(None))
+        if self.thermal is not None:
+            require_viscosities(f"{name}.thermal", self.thermal, self.lubricant)
         require_type(f"{name}.contact", self.contact, RegularisedWall, type(None))
         if self.contact is not None:
             require_number(

@@ -9,6 +9,7 @@ judged by their numbers alone: such a row has no remedy but what its advice says
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, ClassVar, cast
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.heat.options import known_supply
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.joint.audit import effects
@@ -26,13 +28,20 @@ from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, squeeze_share
 from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
-from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.limits import (
+    advice,
+    outside_table,
+    refuse_pressed_through,
+    require_oil_bears,
+    warn_of_heat,
+    warn_of_overload,
+)
 from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
-from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
+from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
+from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel, steady_history
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.joint.tangent.one_sided import LARGEST_SPREAD
+from exudyn_ehd.joint.tangent.wrench import LARGEST_SPREAD
 from exudyn_ehd.pictures.records import Target, shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
 
@@ -65,21 +74,12 @@ def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedS
         spin = np.linalg.norm(motions[:, SPIN], axis=1)
         motions = motions[record.extremes(spin, squeeze_share(ball_sources(motions)))]
     model = SphericalModel(bearing)
-    states = [FilmState(motion, steady_history(model, motion)) for motion in motions]
+    states = []
+    for motion in motions:
+        # the case tells if none has a film
+        with contextlib.suppress(FilmError):
+            states.append(FilmState(motion, steady_history(model, motion)))
     return audit_of(BallCase(model, states, record), BALL_ROWS)  # type: ignore[arg-type]
-
-
-def steady_history(model: SphericalModel, motion: np.ndarray) -> History | None:
-    """Memory of a ball that moves on with a motion (11,): the oil content of the steady film at rest at its place.
-
-    None of a film that remembers nothing, of a steady one, or where there is no film.
-    """
-    if not model.remembers or not np.any(motion[VELOCITY]):
-        return None
-    at_rest = motion.copy()
-    at_rest[VELOCITY] = 0.0
-    found = model.evaluate(at_rest)
-    return None if found.film is None else found.history()
 
 
 def ball_sources(motions: np.ndarray) -> Sources:
@@ -109,7 +109,6 @@ class BallCase(Case):
         "elasticity": "even steel gives way: a ball's film is one of rigid surfaces, whose peak is too high and whose "
         "minimum film thickness is too small here.",
         "roughness": "the film is that of smooth surfaces: take load and friction as estimates where it is so thin.",
-        "heating": "films of balls are isothermal: give the lubricant the viscosity at their temperature.",
         "shear thinning": "a multigrade oil thins here: give the lubricant its viscosity at this shear rate.",
         "turbulence": "beyond the laminar film: friction is too low.",
     }
@@ -152,7 +151,10 @@ class BallCase(Case):
             "speed": R * float(np.linalg.norm(motion[SPIN])) + float(np.linalg.norm(motion[VELOCITY])),
             "minimum_gap": max(found.minimum_gap, SMALLEST_GAP_SHARE * b.radial_clearance),
             "flow": float(moved_oil(b, motion[None])[0]),
-            "viscosity": b.lubricant.viscosity,
+            "viscosity": b.lubricant.viscosity * self.model.viscosity_ratio,
+            "rise": 0.0
+            if film.temperature is None or b.thermal is None
+            else film.temperature - known_supply(b.thermal),
             "cavitated": float(share[~film.unbroken].sum()),
             "tension": float(share[p < VAPOUR_PRESSURE].sum()),
             "compliance": 4.0 * (1.0 - STEEL["poisson_ratio"] ** 2) / STEEL["youngs_modulus"] * radius,
@@ -220,13 +222,15 @@ class SphericalResult:
         Derivative of the force and of the moment about the socket's centre to place, velocity and angular velocity,
         each x, y, z; SI units. At rest a film that ruptures where the ball moves away has one-sided derivatives:
         entries are nan where both sides differ by more than 5 % of the largest entry of their kind.
+    temperature : float or None
+        Temperature of the film, K; None of an isothermal one.
     minimum_gap, peak_pressure : float
         Minimum film thickness, m; peak pressure, Pa.
     power_loss, contact_load : float
         Power loss, W; force of the contact, N, a part of ``force``.
     bearing : SphericalBearing
     motion : (11,) array
-        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.model`.
+        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.film`.
 
     Examples
     --------
@@ -245,6 +249,7 @@ class SphericalResult:
     force: np.ndarray
     torque: np.ndarray
     tangent: np.ndarray
+    temperature: float | None
     minimum_gap: float
     peak_pressure: float
     power_loss: float
@@ -299,6 +304,10 @@ def steady_spherical(
     angular_velocity : (3,) [rad/s], default (0.0, 0.0, 0.0)
         Angular velocity of the ball as seen from the socket.
 
+    The film is a steady one. With `ElrodAdams` and a velocity it is that of the instant at which a ball begins to move
+    so, with the oil content of the steady film at rest; its ``tangent`` holds the fill. With ``thermal`` it has the
+    temperature at which heat and cooling are in balance.
+
     Returns
     -------
     SphericalResult
@@ -325,7 +334,7 @@ def steady_spherical(
     motion[VELOCITY] = require_vector(f"{where}: velocity", velocity, 3, "m/s")
     motion[SPIN] = require_vector(f"{where}: angular_velocity", angular_velocity, 3, "rad/s")
     model = SphericalModel(bearing)
-    return result_of(model.evaluate(motion, steady_history(model, motion)), where)
+    return result_of(model.evaluate(motion, steady_history(model, motion, where)), where)
 
 
 def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
@@ -340,6 +349,10 @@ def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
     refuse_pressed_through(sizes, found.minimum_gap, where)
     quantities = found.quantities()
     force, peak = film.wrench[:3], quantities["peak_pressure"]
+    if message := outside_table(film):
+        raise FilmError(f"{where}: {message}")
+    require_oil_bears(film.temperature, model.grid, where)
+    warn_of_heat(film.temperature, model.grid, where)
     warn_of_overload(sizes, peak, float(np.linalg.norm(force)), where)
     return SphericalResult(
         phi=model.grid.x,
@@ -351,6 +364,7 @@ def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
         force=force,
         torque=film.torque,
         tangent=_derivatives(found),
+        temperature=film.temperature,
         minimum_gap=quantities["minimum_gap"],
         peak_pressure=peak,
         power_loss=quantities["power_loss"],

@@ -9,7 +9,8 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
+from exudyn_ehd.joint.spherical.model import SphericalModel
 from exudyn_ehd.status import Status
 
 R, C, MU = 0.015, 30e-6, 0.1
