@@ -692,7 +692,14 @@ ehd.SphericalBearing(ball_radius=0.015, radial_clearance=1e-3, lubricant=oil)
 
 ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, socket_angles=(0.0, 4.0))
 
-ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, cavitation=ehd.ElrodAdams())
+lined = ehd.ElrodAdams(line_in_cells=True)
+ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, cavitation=lined)
+
+above = ehd.Gumbel(cavity_pressure=1.0)
+ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, cavitation=above)
+
+field = ehd.FilmEnergy(supply_temperature=313.15)
+ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, thermal=field)
 
 thin = ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.8))
 ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=thin)

@@ -53,7 +53,12 @@ FED = ehd.JournalBearing(
     contact=ehd.RegularisedWall(onset=2e-6),
     supply=(ehd.Hole(angle=4.7, diameter=0.006, supply=ehd.Orifice(diameter=5e-4, supply_pressure=2e6)),),
 )
-BALL = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=ehd.Lubricant(viscosity=0.1))
+BALL = ehd.SphericalBearing(
+    ball_radius=0.015,
+    radial_clearance=30e-6,
+    lubricant=ehd.Lubricant(viscosity=0.1),
+    thermal=ehd.LumpedThermal(supply_temperature=ehd.Sump(conductance=1.0, ambient=313.0)),
+)
 
 
 def ran(create, bearing, place, **axis):

@@ -27,15 +27,18 @@ from exudyn_ehd.joint import step_error
 from exudyn_ehd.joint.audit.audit import Audit
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
-from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, steady_spherical
+from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel
+from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, result_of
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_type, require_vector
 
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
 _WHERE = "CreateLubricatedSphericalJoint"
-_QUANTITIES = ("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load")
+_QUANTITIES = (
+    *("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load"),
+    *("film_temperature", "sump_temperature"),
+)
 
 
 class SphericalFailures(Failures):
@@ -112,6 +115,8 @@ class SphericalHistory(FilmSteps):
         Mechanical power that turns into heat. Positive: taken from the motion.
     contact_load : (n,) [N]
         Force that the wall carries by contact. From 0, a part of ``force``.
+    film_temperature, sump_temperature : (n,) [K]
+        Temperature of the film, and of a `Sump`. With which the film was solved; nan without.
     step_error : (n,) [-]
         Estimated error of the ball's place that the time steps have made, over the minimum film thickness. From 0; of
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -130,6 +135,8 @@ class SphericalHistory(FilmSteps):
     angular_velocity: np.ndarray
     torque: np.ndarray
     eccentricity_ratio: np.ndarray
+    film_temperature: np.ndarray
+    sump_temperature: np.ndarray
 
     def __repr__(self) -> str:
         if not self.time.size:
@@ -218,9 +225,10 @@ class LubricatedSphericalJoint(Joint):
             If there is no film at that state.
         """
         self._require_end("film")
-        motion = self.element.steps.look_at_accepted(self.mbs)[1].motion
-        parts = {"place": motion[PLACE], "velocity": motion[VELOCITY], "angular_velocity": motion[SPIN]}
-        return steady_spherical(self.bearing, **parts)
+        found = self.element.steps.look_at_accepted(self.mbs)[1].evaluation
+        assert isinstance(found, SphericalEvaluation)
+        # of the last evaluation, which this is: no solver runs
+        return result_of(found, f"{type(self).__name__}.film")
 
     def audit(self) -> Audit:
         """Find the effects that mattered in the accepted steps, and those of them that a ball's film omits; print it.
@@ -319,7 +327,7 @@ def CreateLubricatedSphericalJoint(
     model = SphericalModel(bearing)
     if move_to_start(mbs, (socket, ball), sides):
         place = ball_motion(sides[0].frame, sides[1].frame)[:3]
-        if not model.smallest_gap(place) > 0.0:
+        if not bearing.smallest_gap(place) > 0.0:
             raise InputError(
                 f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in "
                 f"the socket's frame, radial clearance {bearing.radial_clearance:g} m; check the initial positions, "

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.heat.options import FilmEnergy, Sump, known_supply
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Sump, known_supply
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.temperature_viscosity import require_covered
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.reynolds.turbulence import FOLLOWING, check_turbulence
@@ -139,22 +140,27 @@ def _check_seals(bearing: BearingOptions) -> None:
         )
 
 
-def _check_heat(bearing: BearingOptions) -> None:
-    """Refuse temperatures at which the oil's law gives no viscosity, as for degrees Celsius given as kelvin, and a
-    temperature field that does not go with the bearing."""
-    thermal, oil = bearing["thermal"], bearing["lubricant"]
+def require_viscosities(where: str, thermal: LumpedThermal | FilmEnergy, oil: Lubricant) -> None:
+    """Refuse temperatures of a thermal effect at which the oil's law gives no viscosity."""
     law = oil.temperature_law
     for name, value in (vars(thermal) | {"supply_temperature": known_supply(thermal)}).items():
         if law is None or value is None or not name.endswith("temperature"):
             continue
-        require_covered(f"JournalBearing.thermal.{name}", law, value)
+        require_covered(f"{where}.{name}", law, value)
         with np.errstate(all="ignore"):
             viscosity = float(law.viscosity(value, oil.density))
         if not LEAST_VISCOSITY <= viscosity <= LARGEST_VISCOSITY:
             raise InputError(
-                f"JournalBearing.thermal.{name} = {value!r} K: the lubricant's {type(law).__name__} gives a "
-                f"viscosity of {viscosity:g} Pa s there; temperatures are in kelvin, 0 degrees Celsius are 273.15 K."
+                f"{where}.{name} = {value!r} K: the lubricant's {type(law).__name__} gives a viscosity of "
+                f"{viscosity:g} Pa s there; temperatures are in kelvin, 0 degrees Celsius are 273.15 K."
             )
+
+
+def _check_heat(bearing: BearingOptions) -> None:
+    """Refuse temperatures at which the oil's law gives no viscosity, as for degrees Celsius given as kelvin, and a
+    temperature field that does not go with the bearing."""
+    thermal, oil = bearing["thermal"], bearing["lubricant"]
+    require_viscosities("JournalBearing.thermal", thermal, oil)
     if not isinstance(thermal, FilmEnergy):
         return
     if thermal.across == 2 and oil.shear_law is not None:

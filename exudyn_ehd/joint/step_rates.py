@@ -59,7 +59,7 @@ class StepStart:
     time : float
         s.
     motion : (10 + 2 k,) array
-        Pose, velocities and bore; (11,) of a ball, see `exudyn_ehd.joint.spherical.model`.
+        Pose, velocities and bore; (11,) of a ball, see `exudyn_ehd.joint.spherical.film`.
     step : float
         Length of the step before, s; 0 if there was none.
     misses : (n, 4 + k) array

@@ -25,7 +25,7 @@ from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.joint.heat.temperature import OilTemperature
 from exudyn_ehd.joint.solved_film import FacesHeat, History
-from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD, quotients
+from exudyn_ehd.joint.tangent.wrench import BESIDE, CENTRE, LARGEST_SPREAD, quotients
 from exudyn_ehd.status import FilmError, Status
 
 SIZE, PLACE = 11, 10

@@ -18,6 +18,11 @@ from exudyn_ehd.coupling.kinematics import relative
 OIL = ehd.Lubricant(viscosity=0.1)
 HELD = {"socket_angles": (0.0, 2.3), "contact": ehd.RegularisedWall(onset=2e-6)}
 BALL = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=OIL, n_phi=32, n_chi=12, **HELD)
+KEPT = dataclasses.replace(BALL, cavitation=ehd.ElrodAdams(cavity_pressure=-1e3))
+TANK = ehd.Sump(conductance=0.5, ambient=310.0, heat_capacity=1e-3)
+HEATED = dataclasses.replace(
+    KEPT, lubricant=ehd.oil("ISO VG 100"), thermal=ehd.LumpedThermal(supply_temperature=TANK, housing_conductance=0.1)
+)
 SIZE = (0.2, 0.02, 0.02)
 MASS = 7800 * 0.2 * 0.02 * 0.02
 
@@ -256,19 +261,55 @@ def test_a_film_that_can_not_be_is_told_by_name():
             ehd.SolveDynamic(mbs, scenes.settings(0.1, steps), solverType=exu.DynamicSolverType.ExplicitEuler)
 
 
-def test_a_stored_run_goes_on(tmp_path):
-    mbs, joint, _ = pendulum()
+@pytest.mark.parametrize("bearing", [BALL, KEPT, HEATED])
+def test_a_stored_run_goes_on(bearing, tmp_path):
+    mbs, joint, _ = pendulum(bearing)
     run(mbs, 0.02, 20)
     whole = joint.history
-    mbs, joint, _ = pendulum()
+    mbs, joint, _ = pendulum(bearing)
     run(mbs, 0.01, 10)
     ehd.SaveState(mbs, tmp_path / "state.npz")
-    mbs, joint, _ = pendulum()
+    mbs, joint, _ = pendulum(bearing)
     run(mbs, 0.02, 10, restart=tmp_path / "state.npz")
     again = joint.history
     assert again.time == pytest.approx(whole.time)
     # to the tolerance of Newton's method
     assert np.abs(again.place - whole.place).max() < 1e-11
+    if bearing.thermal is not None:
+        assert again.film_temperature == pytest.approx(whole.film_temperature, abs=1e-6)
+        assert again.sump_temperature == pytest.approx(whole.sump_temperature, abs=1e-6)
+
+
+def test_a_run_with_conserved_oil_shows_the_film_that_its_steps_have_led_to():
+    mbs, joint, _ = pendulum(KEPT, spin=(30.0, 20.0, -4.0))
+    run(mbs, 0.02, 40)
+    film, h = joint.film(), joint.history
+    assert film.force == pytest.approx(h.force[-1], rel=1e-6)
+    assert 0.0 < film.fill.min() < 0.99 and not film.unbroken.all()
+    # a steady film has other cavities
+    motion = {"place": h.place[-1], "velocity": h.velocity[-1], "angular_velocity": h.angular_velocity[-1]}
+    assert np.abs(ehd.steady_spherical(KEPT, **motion).fill - film.fill).max() > 0.01
+    assert joint.audit()["mass conservation"].on
+
+
+def test_a_film_warms_up_in_a_run_to_the_balance_of_its_power():
+    """Oil of constant viscosity: the steps' heat is what capacity, housing and oil have taken up."""
+    warm = ehd.LumpedThermal(supply_temperature=313.0, housing_conductance=0.2, capacity=0.05)
+    bearing = dataclasses.replace(BALL, thermal=warm)
+    mbs, joint, _ = pendulum(bearing, spin=(30.0, 20.0, -4.0))
+    plain, cold, _ = pendulum(spin=(30.0, 20.0, -4.0))
+    run(mbs, 0.02, 40)
+    run(plain, 0.02, 40)
+    h, its = joint.history, cold.history
+    assert h.force == pytest.approx(its.force, rel=1e-6, abs=1e-6 * np.abs(its.force).max())
+    T, steps = h.film_temperature, np.diff(h.time)
+    assert T[0] == 313.0 and (np.diff(T) >= 0.0).all() and np.isnan(its.film_temperature).all()
+    area = joint.element.model.patch.area.sum() * 0.015**2
+    stored = 0.05 + OIL.density * OIL.specific_heat * area * 30e-6
+    most = np.concatenate([[0.0], np.cumsum(h.power_loss[1:] * steps)]) / stored
+    # the temperature of a step is that at its start; some of the heat leaves with the oil
+    assert 0.3 * most[-2] < T[-1] - 313.0 < most[-2]
+    assert joint.film().temperature == pytest.approx(T[-1], abs=0.2)
 
 
 def test_what_a_user_sees():

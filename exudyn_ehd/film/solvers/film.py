@@ -333,6 +333,10 @@ class FilmArrays:
         known = mass is not None and step > 0.0
         return self.H - content, mass + content - self.system.mass_old if known else content
 
+    def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return `stored` and `outflow` of a full film at the gaps now stored, from which nothing has flowed."""
+        return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing])
+
     def lag(self, outflow: np.ndarray | None, step: float) -> None:
         """Let the next solution's flows out of cavities lag, by what `outflow` (3, n, m) was at the start of its
         step; None, or a step of 0: they do not."""

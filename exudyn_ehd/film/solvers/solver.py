@@ -120,6 +120,25 @@ class FilmSolver(FilmAnswers):
         solve = partial(self._solve_film, vx, vz, cavity_pressure, mass_old, step)
         return self._balance(self.reservoirs, solve, cavity_pressure * self.pressure_scale)
 
+    def advance(
+        self,
+        vx: float,
+        vz: float,
+        cavity_pressure: float,
+        void: np.ndarray | None,
+        outflow: np.ndarray | None,
+        step: float,
+    ) -> tuple[Status, int]:
+        """`solve` over a step at whose start the film had a ``void`` and an `outflow`; None: a steady film."""
+        kept = None if void is None else self.keep(void, step)
+        self.lag(outflow, step)
+        status, count = self.solve(vx, vz, cavity_pressure, kept, step)
+        if status is Status.NOT_CONVERGED and self.lagging:
+            # flows that grow manifold within a step may take more than there was
+            self.lag(None, step)
+            status, count = self.solve(vx, vz, cavity_pressure, kept, step)
+        return status, count
+
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
         """Solve the film with its reservoirs by Newton's method in their pressures, none below ``floor``, Pa.
 

@@ -108,6 +108,8 @@ class Case:
         Components of the force that a film carries, and of a motion of rigid surfaces.
     tolerance : float
         Unbalance over the load up to which two films carry the same one.
+    replays : bool
+        Whether films with a memory are those that the steps of a record lead to.
     surface, steel : str
         Names of the surface around the film and of the deflecting steel, for messages.
     omitted : dict of str to str
@@ -119,7 +121,7 @@ class Case:
         If there is no film at any state.
     """
 
-    axes, entries, tolerance = 2, MOTION_SIZE, 1e-3
+    axes, entries, tolerance, replays = 2, MOTION_SIZE, 1e-3, True
     surface, steel = "bore", "a steel ring"
     omitted: ClassVar[Mapping[str, str]] = {}
 
@@ -221,7 +223,7 @@ class Case:
         except InputError:
             return None
         states: Sequence[FilmState] = self.states
-        remembers = record is not None and (other.remembers or own.remembers or own.needs_spin)
+        remembers = self.replays and record is not None and (other.remembers or own.remembers or own.needs_spin)
         # without a memory of its own it takes that of this one
         gains = other.remembers_mass and not own.remembers_mass
         if record is not None and remembers and (gains or other.grid.shape != own.grid.shape):

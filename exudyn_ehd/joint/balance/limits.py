@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import numpy as np
 
@@ -126,12 +127,13 @@ def seized(walls: Walls | None) -> str:
 
 def outside_table(film: object) -> str:
     """Return the message for a film with temperatures outside the limits of the oil's law; empty for any other film."""
-    if not isinstance(film, SolvedFilm) or film.temperature is None:
+    if (T := getattr(film, "temperature", None)) is None:
         return ""
+    film = cast(SolvedFilm, film)
     law = film.parts.bearing.lubricant.temperature_law
     if (limits := getattr(law, "limits", None)) is None:
         return ""
-    T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
+    T = T if film.walls is None else film.walls.across_film(T)
     low, high = float(np.min(T)), float(np.max(T))
     if limits[0] - ROUNDING <= low and high <= limits[1] + ROUNDING:
         return ""

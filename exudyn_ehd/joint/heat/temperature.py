@@ -7,11 +7,10 @@ solved film follows from its flows: banded system, solution and balance.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.arcs import rows_at_sides
 from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.factors import factor_lu
@@ -128,7 +127,11 @@ class LumpedTemperature(OilTemperature):
     Parameters
     ----------
     spec : LumpedThermal
-    bearing : JournalBearing
+    lubricant : Lubricant
+    volume : float
+        Of the film, m3.
+    heat_and_exchange : function
+        Gives the heat, W, of a film with a carry-over, and the scaled flow that oil from outside replaces.
 
     Attributes
     ----------
@@ -136,15 +139,16 @@ class LumpedTemperature(OilTemperature):
         Takes the viscosity to an effect that asks for it, as (1, 1) arrays.
     """
 
-    def __init__(self, spec: LumpedThermal, bearing: JournalBearing) -> None:
-        super().__init__(spec, bearing.lubricant)
-        self.spec = spec
+    def __init__(
+        self,
+        spec: LumpedThermal,
+        lubricant: Lubricant,
+        volume: float,
+        heat_and_exchange: Callable[..., tuple[float, float]] = heat_and_exchange,
+    ) -> None:
+        super().__init__(spec, lubricant)
+        self.spec, self.heat_and_exchange = spec, heat_and_exchange
         self.housing = self._or_supply(spec.housing_temperature)
-        around = sum(arc.extent for arc in bearing.bore_arcs) or 2.0 * math.pi
-        volume = around * bearing.journal_radius * bearing.length * bearing.radial_clearance
-        if (faces := bearing.thrust) is not None:
-            ring = math.pi * (faces.outer_radius**2 - faces.inner_radius**2) * faces.clearance
-            volume += (faces.lower + faces.upper) * ring
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
         self.field: ViscosityField | None = None
@@ -164,7 +168,7 @@ class LumpedTemperature(OilTemperature):
 
     def _rates(self, film: SolvedFilm) -> tuple[float, float]:
         """Heat, W, and conductance of the oil from the film to what is `outside`, W/K."""
-        heat, exchanged = heat_and_exchange(film, self.carry_over)
+        heat, exchanged = self.heat_and_exchange(film, self.carry_over)
         flow = self.flow_capacity * film.parts.flow_scale * exchanged / self.spec.effective_rise
         return heat, flow / (1.0 + flow / self.outside(film)[1])
 

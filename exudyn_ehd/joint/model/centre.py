@@ -24,7 +24,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import MaximumGap
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
-from exudyn_ehd.joint.tangent.one_sided import BESIDE, CENTRE, LARGEST_SPREAD
+from exudyn_ehd.joint.tangent.wrench import BESIDE, CENTRE, LARGEST_SPREAD
 from exudyn_ehd.status import FilmError
 
 # Angle of the first of four directions, rad; along a column of the grid, Gümbel's linear pressure would be zero there,

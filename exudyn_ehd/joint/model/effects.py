@@ -216,7 +216,12 @@ def _rheology(
     if spec is None:
         return None, [], [*laws], [*laws]
     if isinstance(spec, LumpedThermal):
-        lumped = LumpedTemperature(spec, bearing)
+        around = sum(arc.extent for arc in bearing.bore_arcs) or 2.0 * math.pi
+        volume = around * R * bearing.length * c
+        if (faces := bearing.thrust) is not None:
+            ring = math.pi * (faces.outer_radius**2 - faces.inner_radius**2) * faces.clearance
+            volume += (faces.lower + faces.upper) * ring
+        lumped = LumpedTemperature(spec, oil, volume)
         if bearing.turbulence is not None:
             laws[0].field = lumped.field = ViscosityField()
         return lumped, [], [*laws], [*laws]

@@ -186,10 +186,11 @@ class BearingModel:
         self._set_gap(self._journal(motion, 0.0), None)
         s, remembers, liner, wear = self.solver, self.remembers_mass, self.parts.liner, self.effects.wear
         found = (self.remembers_deflection or s.pockets is not None) and self.evaluate(motion).film is not None
+        void, mass, outflow = s.flooded() if remembers else (None, None, None)
         return History(
-            void=s.nothing if remembers else None,
-            mass=s.H.copy() if remembers else None,
-            outflow=np.array([s.ones, s.nothing, s.nothing]) if remembers else None,
+            void=void,
+            mass=mass,
+            outflow=outflow,
             wear=None if wear is None else wear.field(None).copy(),
             deflection=liner.deflection if found and self.remembers_deflection and liner is not None else None,
             temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
@@ -369,15 +370,8 @@ class BearingModel:
             p.liner.delta_old = past.deflection
         if self.solver.reservoirs is not None:
             self.solver.reservoirs.before = past.pockets
-        kept = None if past.void is None else self.solver.keep(past.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
-        self.solver.lag(past.outflow, step)
-        status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
-        if status is Status.NOT_CONVERGED and self.solver.lagging:
-            # flows that grow manifold within a step may take more than there was
-            self.solver.lag(None, step)
-            status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
-        return status, count
+        return self.solver.advance(0.5 * journal.omega, along, cavity, past.void, past.outflow, step)
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0

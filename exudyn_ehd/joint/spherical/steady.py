@@ -9,8 +9,9 @@ judged by their numbers alone: such a row has no remedy but what its advice says
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar, cast
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, ClassVar, cast
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.heat.options import known_supply
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.joint.audit import effects
@@ -26,12 +28,20 @@ from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, squeeze_share
 from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
-from exudyn_ehd.joint.balance.limits import advice, refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.limits import (
+    advice,
+    outside_table,
+    refuse_pressed_through,
+    require_oil_bears,
+    warn_of_heat,
+    warn_of_overload,
+)
 from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalEvaluation, SphericalModel
+from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
+from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel, steady_history
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.joint.tangent.one_sided import LARGEST_SPREAD
+from exudyn_ehd.joint.tangent.wrench import LARGEST_SPREAD
 from exudyn_ehd.pictures.records import Target, shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
 
@@ -63,8 +73,13 @@ def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedS
         record = replace(record, motion=motions, leakage=moved_oil(bearing, motions))
         spin = np.linalg.norm(motions[:, SPIN], axis=1)
         motions = motions[record.extremes(spin, squeeze_share(ball_sources(motions)))]
-    states = [FilmState(motion) for motion in motions]
-    return audit_of(BallCase(SphericalModel(bearing), states, record), BALL_ROWS)  # type: ignore[arg-type]
+    model = SphericalModel(bearing)
+    states = []
+    for motion in motions:
+        # the case tells if none has a film
+        with contextlib.suppress(FilmError):
+            states.append(FilmState(motion, steady_history(model, motion)))
+    return audit_of(BallCase(model, states, record), BALL_ROWS)  # type: ignore[arg-type]
 
 
 def ball_sources(motions: np.ndarray) -> Sources:
@@ -88,21 +103,25 @@ class BallCase(Case):
     bearing: SphericalBearing  # type: ignore[assignment]
     # of some directions the force of a ball knows little
     axes, entries, tolerance = 3, SIZE, 3e-4
+    replays = False
     surface, steel = "socket", "steel under the peak"
     omitted: ClassVar[Mapping[str, str]] = {
         "elasticity": "even steel gives way: a ball's film is one of rigid surfaces, whose peak is too high and whose "
         "minimum film thickness is too small here.",
         "roughness": "the film is that of smooth surfaces: take load and friction as estimates where it is so thin.",
-        "heating": "films of balls are isothermal: give the lubricant the viscosity at their temperature.",
         "shear thinning": "a multigrade oil thins here: give the lubricant its viscosity at this shear rate.",
-        "mass conservation": "cavities keep no oil in a ball's film: where they move or refill, its forces come too "
-        "early.",
         "turbulence": "beyond the laminar film: friction is too low.",
     }
 
     def build(self, bearing: SphericalBearing) -> SphericalModel:  # type: ignore[override]
         """Model of another ball."""
         return SphericalModel(bearing)
+
+    def steady(  # type: ignore[override]
+        self, other: SphericalModel, mine: FilmState
+    ) -> Callable[[np.ndarray], SphericalEvaluation]:
+        """Return the function of a motion that evaluates another ball's film at its own memory."""
+        return lambda motion: other.evaluate(motion, steady_history(other, motion))
 
     def sources(self, motions: np.ndarray) -> Sources:
         """Sources of Reynolds' equation by motions (n, 11)."""
@@ -132,7 +151,10 @@ class BallCase(Case):
             "speed": R * float(np.linalg.norm(motion[SPIN])) + float(np.linalg.norm(motion[VELOCITY])),
             "minimum_gap": max(found.minimum_gap, SMALLEST_GAP_SHARE * b.radial_clearance),
             "flow": float(moved_oil(b, motion[None])[0]),
-            "viscosity": b.lubricant.viscosity,
+            "viscosity": b.lubricant.viscosity * self.model.viscosity_ratio,
+            "rise": 0.0
+            if film.temperature is None or b.thermal is None
+            else film.temperature - known_supply(b.thermal),
             "cavitated": float(share[~film.unbroken].sum()),
             "tension": float(share[p < VAPOUR_PRESSURE].sum()),
             "compliance": 4.0 * (1.0 - STEEL["poisson_ratio"] ** 2) / STEEL["youngs_modulus"] * radius,
@@ -191,6 +213,8 @@ class SphericalResult:
         Pa (gauge), m.
     unbroken : (n, m) bool array
         True where the film is not cavitated.
+    fill : (n, m) array
+        Oil over gap with `ElrodAdams`; 1 with other closures, which do not count it.
     force, torque : (3,) arrays
         On the ball; torque about its centre, N and N m. The socket gets minus the force in the ball's centre and minus
         the torque.
@@ -198,13 +222,15 @@ class SphericalResult:
         Derivative of the force and of the moment about the socket's centre to place, velocity and angular velocity,
         each x, y, z; SI units. At rest a film that ruptures where the ball moves away has one-sided derivatives:
         entries are nan where both sides differ by more than 5 % of the largest entry of their kind.
+    temperature : float or None
+        Temperature of the film, K; None of an isothermal one.
     minimum_gap, peak_pressure : float
         Minimum film thickness, m; peak pressure, Pa.
     power_loss, contact_load : float
         Power loss, W; force of the contact, N, a part of ``force``.
     bearing : SphericalBearing
     motion : (11,) array
-        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.model`.
+        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.film`.
 
     Examples
     --------
@@ -219,9 +245,11 @@ class SphericalResult:
     pressure: np.ndarray
     gap: np.ndarray
     unbroken: np.ndarray
+    fill: np.ndarray
     force: np.ndarray
     torque: np.ndarray
     tangent: np.ndarray
+    temperature: float | None
     minimum_gap: float
     peak_pressure: float
     power_loss: float
@@ -276,6 +304,10 @@ def steady_spherical(
     angular_velocity : (3,) [rad/s], default (0.0, 0.0, 0.0)
         Angular velocity of the ball as seen from the socket.
 
+    The film is a steady one. With `ElrodAdams` and a velocity it is that of the instant at which a ball begins to move
+    so, with the oil content of the steady film at rest; its ``tangent`` holds the fill. With ``thermal`` it has the
+    temperature at which heat and cooling are in balance.
+
     Returns
     -------
     SphericalResult
@@ -302,8 +334,12 @@ def steady_spherical(
     motion[VELOCITY] = require_vector(f"{where}: velocity", velocity, 3, "m/s")
     motion[SPIN] = require_vector(f"{where}: angular_velocity", angular_velocity, 3, "rad/s")
     model = SphericalModel(bearing)
-    found = model.evaluate(motion)
-    film = found.film
+    return result_of(model.evaluate(motion, steady_history(model, motion, where)), where)
+
+
+def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
+    """Return the result of an evaluation, the last one of its model; errors in the name of ``where``."""
+    film, motion, model, bearing = found.film, found.motion, found.model, found.model.bearing
     if film is None:
         raise FilmError(
             f"{where}: {found.status.name} at place {motion[PLACE]} m, minimum film thickness "
@@ -313,6 +349,10 @@ def steady_spherical(
     refuse_pressed_through(sizes, found.minimum_gap, where)
     quantities = found.quantities()
     force, peak = film.wrench[:3], quantities["peak_pressure"]
+    if message := outside_table(film):
+        raise FilmError(f"{where}: {message}")
+    require_oil_bears(film.temperature, model.grid, where)
+    warn_of_heat(film.temperature, model.grid, where)
     warn_of_overload(sizes, peak, float(np.linalg.norm(force)), where)
     return SphericalResult(
         phi=model.grid.x,
@@ -320,9 +360,11 @@ def steady_spherical(
         pressure=film.pressure,
         gap=film.gap,
         unbroken=film.unbroken,
+        fill=film.fill,
         force=force,
         torque=film.torque,
         tangent=_derivatives(found),
+        temperature=film.temperature,
         minimum_gap=quantities["minimum_gap"],
         peak_pressure=peak,
         power_loss=quantities["power_loss"],

@@ -9,7 +9,8 @@ from scipy.optimize import root
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.audit.samples import squeeze_rate, squeeze_share
-from exudyn_ehd.joint.spherical.model import PLACE, SphericalModel
+from exudyn_ehd.joint.spherical.film import PLACE
+from exudyn_ehd.joint.spherical.model import SphericalModel
 from exudyn_ehd.joint.spherical.steady import ball_sources
 from tests.sampling import sample
 
@@ -113,11 +114,7 @@ def test_advice_can_be_followed_until_nothing_is_left():
             break
         ball = better
     assert {"cavitation", "contact", "piezoviscosity", "grid along"} <= seen
-    assert (
-        ball.contact
-        and ball.lubricant.pressure_law
-        and ball.cavitation == ehd.SwiftStieber(line_in_cells=False, cavity_pressure=-1e5)
-    )
+    assert ball.contact and ball.lubricant.pressure_law and ball.cavitation == ehd.ElrodAdams(cavity_pressure=-1e5)
     left = {finding.effect for finding in audit.neglected}
     assert left <= {"elasticity", "roughness", "heating", "shear thinning", "mass conservation"}
 

@@ -9,13 +9,17 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
+from exudyn_ehd.joint.spherical.model import SphericalModel
 from exudyn_ehd.status import Status
 
 R, C, MU = 0.015, 30e-6, 0.1
 CUP, RING = (0.0, 0.5 * math.pi), (0.3, 2.2)
 WALL = ehd.RegularisedWall(onset=5e-6, pressure=1e8)
 CLOSURES = (ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.SwiftStieber(cavity_pressure=-1e5))
+IN_CELLS = tuple(
+    kind(line_in_cells=True, cavity_pressure=p) for kind in (ehd.Gumbel, ehd.SwiftStieber) for p in (0.0, -1e5)
+)
 
 
 BARUS, ROELANDS = ehd.BarusPressure(coefficient=2e-8), ehd.RoelandsPressure(coefficient=2e-8)
@@ -203,7 +207,7 @@ def numerical(film, state):
     return out
 
 
-@pytest.mark.parametrize("closure", CLOSURES)
+@pytest.mark.parametrize("closure", CLOSURES + IN_CELLS)
 @pytest.mark.parametrize("angles", [CUP, RING])
 @pytest.mark.parametrize("wall", [None, WALL])
 def test_tangent_is_exact(closure, angles, wall):
@@ -240,7 +244,7 @@ def test_squeeze_with_barus_law_is_that_of_the_transformed_pressure():
 
 
 @pytest.mark.parametrize("law", [BARUS, ROELANDS])
-@pytest.mark.parametrize("closure", CLOSURES)
+@pytest.mark.parametrize("closure", CLOSURES + IN_CELLS)
 @pytest.mark.parametrize("wall", [None, WALL])
 def test_tangent_is_exact_with_a_pressure_law(law, closure, wall):
     rng, film = (
@@ -287,6 +291,23 @@ def test_work_is_heat(closure, wall, law):
         if not closure.clips:
             # the products of the normals are integrated, their squares are taken at the vertices: couette to 1 %
             assert loss == pytest.approx(heat, abs=0.01 * couette + 1e-9 * heat)
+
+
+@pytest.mark.parametrize("angles", [CUP, RING])
+def test_a_line_in_the_cells_makes_derivatives_smoother(angles):
+    """Stiffness and damping on the default grid against one of twice as many rows and columns."""
+    rng, misses = np.random.default_rng(8), []
+    for in_cells in (False, True):
+        closure = ehd.SwiftStieber(line_in_cells=in_cells)
+        films, own, rng = [], [], np.random.default_rng(8)
+        for factor in (1, 2):
+            films.append(model(cavitation=closure, socket_angles=angles, n_phi=48 * factor, n_chi=24 * factor))
+        for state in states(rng, 5, 0.8):
+            state[VELOCITY], state[SPIN] = 0.0, 3.0 * state[SPIN]
+            coarse, fine = (film.evaluate(state).tangent()[:3] for film in films)
+            own += [np.abs(coarse - fine)[:, at].max() / np.abs(fine[:, at]).max() for at in (PLACE, VELOCITY)]
+        misses.append(max(own))
+    assert misses[1] < 0.02 and misses[1] < 0.6 * misses[0], misses
 
 
 def test_films_do_not_depend_on_what_was_asked_before():
@@ -336,7 +357,7 @@ def test_smallest_gap_is_that_of_the_patch():
             place = state[PLACE]
             gaps = C - np.tensordot(place, film.patch.normals, 1)
             # rows and columns are 1.5 degrees apart; closed caps have none at the pole
-            assert 0.0 <= gaps.min() - film.smallest_gap(place) < 4e-4 * C
+            assert 0.0 <= gaps.min() - film.bearing.smallest_gap(place) < 4e-4 * C
 
 
 def test_the_edge_beside_a_cavity_shears_what_it_holds():
