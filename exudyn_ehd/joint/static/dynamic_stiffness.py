@@ -82,6 +82,10 @@ class FilmResponse:
 
     rates = np.zeros(0)
 
+    def linear(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """K and C of the journal's motions together with massless coordinates that follow; None without such."""
+        return None
+
     def __init__(self, film: SolvedFilm, tangent: np.ndarray) -> None:
         s, w, liner = film.solver, film.solver.work, film.parts.liner
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
@@ -169,6 +173,11 @@ class FilmOnBoreResponse(FilmResponse):
         if self.remembers and k > 2 * PLACES * len(SAMPLES):
             speed, whole = abs(film.journal.omega), super().at
             self._reduce([self._followed(whole(ratio * speed)) for ratio in SAMPLES])
+
+    def linear(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """K and C (4 + k, 4 + k) of the journal's motions and q, with the bore's own stiffness; None with a memory."""
+        whole = np.pad(self.stiffness, (PLACES, 0))
+        return None if self.remembers else (self.rest[0] + whole, self.rest[1])
 
     def _add_bore(self, film: SolvedFilm, bore: Bore) -> None:
         """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
