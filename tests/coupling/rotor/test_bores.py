@@ -120,7 +120,7 @@ def on_a_housing(film, turned):
 
 @pytest.mark.parametrize("axis", [2, 0])
 def test_a_mesh_counts_as_a_rigid_part_of_its_housing(axis):
-    """Whose vibrations on springs are those with a rigid bearing in a housing of the same mass."""
+    """The vibrations on springs are those with a rigid bearing in a housing of the same mass."""
     turned = np.roll(np.eye(3), axis - 2, axis=0)
     stiff = ehd.ANCFBush(mesh=bush_mesh(), material=plastic(youngs_modulus=1e16))
     rigid, found = (
@@ -132,7 +132,7 @@ def test_a_mesh_counts_as_a_rigid_part_of_its_housing(axis):
 
 
 def test_a_mesh_and_its_modes_agree():
-    """Of one bush, in a housing that vibrates."""
+    """One bush, in a housing that vibrates."""
     modes = ehd.ModalBush(mesh=bush_mesh(), material=plastic(), tolerance=0.02)
     bushes = modes, BORES["mesh"]["bush"]
     found = [ehd.SolveEquilibrium(on_a_housing(bearing(bush=bush), np.eye(3))[0], SPEED) for bush in bushes]
@@ -153,9 +153,12 @@ def history_of(mbs, result, speed, joint, turns, steps):
     return joint.history.time, joint.history.eccentricity
 
 
-@pytest.mark.parametrize("name", ["modes", "journal", pytest.param("mesh", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["modes", "journal", pytest.param("mesh", marks=pytest.mark.slow), "modes, pockets"])
 def test_a_run_that_starts_in_the_equilibrium_stays_there(name):
-    mbs, joints = on_a_housing(bearing(**BORES[name]), np.eye(3))
+    feed = ehd.Orifice(diameter=4e-4, supply_pressure=3e6, compressible_volume=1e-6)
+    supply = tuple(ehd.Pocket(angle=0.5 * np.pi * k, width_angle=1.0, length=0.012, supply=feed) for k in range(4))
+    options = {"supply": supply} if name.endswith("pockets") else {}
+    mbs, joints = on_a_housing(bearing(**BORES[name.partition(",")[0]], **options), np.eye(3))
     result = ehd.SolveEquilibrium(mbs, SPEED)
     _, e = history_of(mbs, result, SPEED, joints[0], 1, 10)
     assert np.abs(e - result.motion[0, 0, :2]).max() < 1e-4 * CLEARANCE
