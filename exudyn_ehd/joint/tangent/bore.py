@@ -136,10 +136,15 @@ def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray | csr_matrix:
 
     Sparse with the bore's shapes.
     """
-    weight = film.scales.force * film.grid.weight
+    s, weight = film.solver, film.scales.force * film.grid.weight
     if film.oil.P_q is not None:
         weight = weight * film.oil.P_q
-    return pressures_by_unknowns(film).T @ (diags_array(weight.ravel()) @ bore.shapes)
+    if not isinstance(bore.shapes, np.ndarray):
+        return pressures_by_unknowns(film).T @ (diags_array(weight.ravel()) @ bore.shapes)
+    if s.system.continued is not None or s.reservoirs is not None:
+        return pressures_by_unknowns(film).T @ (weight.reshape(-1, 1) * bore.shapes)
+    places = s.work.order[: s.work.count]
+    return (weight * s.work.active).ravel()[places, None] * bore.shapes[places]
 
 
 def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
