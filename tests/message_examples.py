@@ -438,7 +438,8 @@ ehd.JournalBearing(**plain, supply=tuple(pockets))
 low = ehd.Hole(angle=0.0, diameter=0.006, supply=ehd.Orifice(diameter=5e-4, supply_pressure=-1e5))
 ehd.JournalBearing(**plain, supply=(low,))
 
-fed = ehd.Hole(angle=0.0, diameter=0.006, supply=orifice)
+slender = ehd.Capillary(diameter=5e-4, length=0.06, supply_pressure=4e6)
+fed = ehd.Hole(angle=0.0, diameter=0.006, supply=slender)
 sump = ehd.Sump(conductance=5.0, ambient=293.15)
 ehd.JournalBearing(**plain, supply=(fed,), thermal=ehd.LumpedThermal(supply_temperature=sump))
 
@@ -1457,9 +1458,7 @@ ehd.SolveEquilibrium(rotor(gravity=[0, -1e9, 0])[0], 300.0)
 
 ehd.SolveEquilibrium(rotor(ehd.JournalBearing(**plain, squeeze=False))[0], 300.0)
 
-steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
-pin = ehd.ElasticJournal(material=steel, span=(-0.02, 0.02), held=ehd.HeldEnds())
-ehd.SolveEquilibrium(rotor(ehd.JournalBearing(**plain, journal=pin))[0], 300.0)
+ehd.SolveEquilibrium(rotor(ehd.JournalBearing(**plain, film=ehd.ImpedanceMap()))[0], 300.0)
 
 ehd.SolveEquilibrium(mbs, 300.0, rotors=[exu.ObjectIndex(0)])
 
@@ -1521,6 +1520,7 @@ ehd.HollowCylinder(inner_radius=25.0, thickness=0.005, length=0.025)
 
 ehd.HollowCylinder(inner_radius=0.025, thickness=5e-3, length=0.025, axial=10**5, radial=10**4, circumferential=10**4)
 
+steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 ehd.ModalBush(mesh=3, material=steel)
 
 ehd.ModalBush(mesh=tube, material="steel")

@@ -11,7 +11,7 @@ from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.reynolds.turbulence import FOLLOWING, check_turbulence
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
-from exudyn_ehd.film.supply.restrictors import GivenFlow
+from exudyn_ehd.film.supply.restrictors import Capillary, GivenFlow
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.thrust.annulus import BearingOptions
 from exudyn_ehd.status import InputError
@@ -97,19 +97,14 @@ def _check_arcs(bearing: BearingOptions) -> None:
 
 
 def _check_restrictors(bearing: BearingOptions) -> None:
-    """Refuse what a film with areas of unknown pressure leaves out."""
-    fed = [k for k, area in enumerate(bearing["supply"]) if area.supply is not None]
-    if not fed:
-        return
-    others = [] if isinstance(bearing["bush"], ElasticLiner | None) else ["JournalBearing.bush"]
-    others += [] if bearing["journal"] is None else ["JournalBearing.journal"]
-    others += ["Sump"] if isinstance(getattr(bearing["thermal"], "supply_temperature", None), Sump) else []
-    if others:
+    """Refuse restrictors whose flow, or whose oil, has no balance."""
+    fed = [k for k, area in enumerate(bearing["supply"]) if isinstance(area.supply, Capillary)]
+    if fed and isinstance(getattr(bearing["thermal"], "supply_temperature", None), Sump):
         raise InputError(
-            f"JournalBearing.supply[{fed[0]}] with a restrictor does not go with {others[0]}: the pressure of the area "
-            "is unknown, and would have to be found together with the shape of the surfaces or the temperature of the "
-            "sump; take an ElasticLiner and a known supply temperature, give the area a pressure, or leave the "
-            "restrictor out."
+            f"JournalBearing.supply[{fed[0]}] with Capillary(...) does not go with supply_temperature=Sump(...): a "
+            "capillary lets through what the viscosity of its oil allows, and the temperature of that oil follows from "
+            "the flow itself; take an Orifice(...) or a GivenFlow(...), whose flow does not depend on the viscosity, "
+            "or a known supply temperature."
         )
     if isinstance(bearing["film"], LongBearing) and any(isinstance(a.supply, GivenFlow) for a in bearing["supply"]):
         raise InputError(

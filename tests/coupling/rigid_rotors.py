@@ -28,6 +28,14 @@ def bearing(**options):
     )
 
 
+def bush_mesh(radius=0.025 + CLEARANCE):
+    return ehd.HollowCylinder(inner_radius=radius, thickness=0.008, length=0.025, axial=2, radial=1, circumferential=16)
+
+
+def plastic(youngs_modulus=2e9):
+    return ehd.SaintVenantKirchhoff(youngs_modulus=youngs_modulus, poisson_ratio=0.35, density=1400.0)
+
+
 def inertia_of(mass, transverse, polar, turn, com=(0.0, 0.0, 0.0)):
     tensor = turn @ np.diag([*np.broadcast_to(transverse, 2), polar]) @ turn.T
     return RigidBodyInertia(mass=mass, com=turn @ com, inertiaTensor=tensor, inertiaTensorAtCOM=True)

@@ -46,6 +46,23 @@ OPTIONS = {
     "turbulent": {"turbulence": ehd.Hirs(onset=8.0, full=24.0, coefficient=2.0)},
 }
 C = 30e-6
+POCKETS = tuple(
+    ehd.Pocket(angle=0.4 + 2.1 * k, width_angle=0.7, length=0.03, supply=feed)
+    for k, feed in enumerate(
+        (
+            ehd.Orifice(diameter=4e-4, supply_pressure=4e6),
+            ehd.Capillary(diameter=5e-4, length=0.08, supply_pressure=3e6, compressible_volume=1e-6),
+            None,
+        )
+    )
+)
+OPTIONS |= {
+    f"pockets, {name}": OPTIONS[name] | {"supply": POCKETS}
+    for name in (
+        *("swift", "gumbel in cells", "full", "elrod in cells", "piezoviscous", "shear thinning", "compressible"),
+        *("rough journal", "wall"),
+    )
+}
 
 
 def make_bearing(bush, **options):

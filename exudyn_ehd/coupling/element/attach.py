@@ -278,7 +278,10 @@ def _starting_film(
         film = ElasticBearingModel(bearing, make, elasticity=model.elasticity, effects=effects)
     frames = sides[0].frame, sides[1].frame
     motion = relative.motion_of(*frames)
-    return StartingFilm(film, motion, film.initial_history(motion), relative.angle_of(*frames))
+    known = film.initial_history(motion)
+    # pressures of supply areas are those in balance with the bore
+    memory = None if known is None else dataclasses.replace(known, pockets=None)
+    return StartingFilm(film, motion, memory, relative.angle_of(*frames))
 
 
 def _equilibrium(films: list[StartingFilm]) -> np.ndarray | None:

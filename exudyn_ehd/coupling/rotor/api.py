@@ -43,8 +43,10 @@ def SolveEquilibrium(
     - Loads with user functions have their value at the start time.
     - Tilting pads: every pad is a film of the result, called "... pad 1" and so on, in the frame of the pad; its tilt,
       its shift on a flexible pivot and their inertia take part in all vibrations.
-    - Bearings: rigid surfaces and liners, no flexible bushes or journals. With `ElrodAdams` and on liners the film
-      follows a motion with a delay: every vibration and every whirl sees it at its own frequency
+    - Bearings: rigid surfaces, liners, flexible bushes and journals, but not those of finite-element bodies (`FEBore`,
+      `FEJournal`), whose modes have mass. Bushes and journals deflect without inertia; the mesh of an `ANCFBush` counts
+      as a rigid part of its housing. With `ElrodAdams` and on surfaces that deflect the film follows a motion with a
+      delay: every vibration and every whirl sees it at its own frequency
       (`exudyn_ehd.joint.static.dynamic_stiffness`). Films with heat have the temperature of the equilibrium, which
       vibrations do not change; nothing wears. Films on end faces take part, but the result's values of single films
       omit them.

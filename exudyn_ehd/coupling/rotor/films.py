@@ -9,10 +9,12 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex, Side
+from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
+from exudyn_ehd.coupling.rotor.bores import HeldBore
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -99,10 +101,11 @@ class RotorFilm:
     ----------
     joint : Joint
     system : SpinningSystem
+    bore : HeldBore
     """
 
-    def __init__(self, joint: Joint, system: SpinningSystem) -> None:
-        self.name, self.size = joint.name, system.size
+    def __init__(self, joint: Joint, system: SpinningSystem, bore: HeldBore) -> None:
+        self.bore, self.name, self.size = bore, joint.name, system.size
         self.model = film_model(joint)
         self.bearing = self.model.bearing
         housing, journal = (_spinning_side(joint, side, system) for side in joint.element.sides)
@@ -224,7 +227,7 @@ class RotorFilm:
         """Largest part of a step x (size,) that leaves half of the gaps; `update` has run."""
         change = relative.variation_of(*self.frames, *self.jacobians)[0] @ x[self.places]
         c, part = self.bearing.radial_clearance, self.room_of_faces(x)
-        if self.model.effects.contacts:
+        if self.model.effects.contacts or self.model.flexible:
             return min(part, FREE_STEP * c / max(float(np.hypot(*change[:2])), 1e-300))
         if self.bearing.bore_arcs:
             return min(part, room_between_lobes(self.model, self.motion, change[:4]))
@@ -241,10 +244,11 @@ class RotorFilm:
         allowed = ROOM * self._on_faces.minimum_gap if thrust.contact is None else FREE_STEP * thrust.clearance
         return min(1.0, allowed / max(closed, 1e-300))
 
-    def found(self, evaluation: Evaluation, tangent: np.ndarray) -> dict[str, np.ndarray | float]:
-        """Return the values of one film at its equilibrium for `RotorResult`."""
+    def found(self, evaluation: Evaluation, tangent: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray | float]:
+        """Return the values of one film at its equilibrium for `RotorResult`, and enter its bore into q (n,)."""
         force, known = evaluation.wrench[:2], evaluation.quantities()
         where = f"{WHERE}, joint '{self.name}'"
+        self.bore.enter(q, evaluation, self.frames[0])
         if is_central(evaluation):
             require_derivatives(evaluation, where)
         refuse_pressed_through(self.bearing, known["minimum_gap"], where)
@@ -284,10 +288,13 @@ def _spinning_side(joint: Joint, side: object, system: SpinningSystem) -> Spinni
 def film_model(joint: Joint) -> BearingModel:
     """The model of a film that has stiffness and damping about a position at rest; `InputError` for others."""
     where, element, model = f"{WHERE}: joint '{joint.name}'", joint.element, joint.element.model
-    if type(element) is not FilmElement or not isinstance(model, BearingModel):
+    # a bush or journal with modes of its own follows the film; those of a finite-element body have its mass
+    known = type(element) in (FilmElement, NodalFilmElement) or element.is_massless
+    if not known or not isinstance(model, BearingModel):
         raise InputError(
-            f"{where} has a ball, a flexible bush or journal, or a film of your own, whose coordinates or response it "
-            "does not know; take a rigid bearing or an ElasticLiner, or single bearings by ehd.equilibrium(...)."
+            f"{where} has a ball, the bore or journal of a finite-element body, whose modes have mass, an ImpedanceMap "
+            "or a film of your own; take a bearing that is rigid or has a bush or journal of its own (ElasticLiner, "
+            "ModalBush, ANCFBush, ElasticJournal)."
         )
     if not model.bearing.squeeze:
         raise InputError(f"{where} has squeeze=False and so no damping; take squeeze=True.")

@@ -12,7 +12,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
-from exudyn_ehd.coupling.rotor.vibrations import delayed_vibrations, vibrations
+from exudyn_ehd.coupling.rotor.vibrations import delayed_vibrations, vibrations, vibrations_on_bores
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number
@@ -77,12 +77,13 @@ class RotorResult:
         minimum film thickness, m; peak pressure, Pa; power loss, W.
     stiffness, damping : (k, j, 4, 4) arrays
         K and C of every film in its joint's frame: minus the derivative of (F_x, F_y, M_y, -M_x) on the journal, N and
-        N m, with respect to (x, y, bx, by), m and rad, and to their rates. With `ElrodAdams` and liners those of slow
-        motions.
+        N m, with respect to (x, y, bx, by), m and rad, and to their rates. With `ElrodAdams`, liners, flexible bushes
+        and journals those of slow motions.
     mass_matrix, damping_matrix, stiffness_matrix : (k, n, n) arrays
         M, D, K of small motions of the whole system, ``M y_tt + D y_t + K y = 0``, with gyroscopic terms in D. The
         motion of all bodies in space is ``directions @ y``; spins of the driven nodes are held, constraints kept. With
-        `ElrodAdams` and liners those of slow motions; eigenvalues and responses also take what ``memories`` add.
+        a film that follows with a delay those of slow motions; eigenvalues and responses also take what ``memories``
+        add.
     directions : (k, N, n) array
         Map from y to displacements (m) and rotations (rad) in space of all nodes of rigid bodies, and to other
         coordinates.
@@ -99,7 +100,7 @@ class RotorResult:
     layout : Layout
         Map of bodies to the directions.
     memories : tuple of k tuples of FilmMemory
-        Dynamic stiffness of the films with `ElrodAdams` or liners, beyond that of slow motions.
+        Dynamic stiffness of the films that follow with a delay, beyond that of slow motions.
 
     Examples
     --------
@@ -144,14 +145,22 @@ class RotorResult:
 
     @cached_property
     def _modes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Eigenvalues (k, 2n), sorted by imaginary and real part, and modes (k, N, 2n) in the directions."""
+        """Eigenvalues (k, m), sorted by imaginary and real part, and modes (k, N, m) in the directions."""
         matrices = self.mass_matrix, self.damping_matrix, self.stiffness_matrix
         found = [vibrations(*parts) for parts in zip(*matrices, strict=True)]
         for k, memories in enumerate(self.memories):
             if memories:
-                M, D, K = (part[k] for part in matrices)
-                found[k] = delayed_vibrations(M, D, K, partial(self._beyond, k), abs(float(self.speeds[k])))
-        values, vectors = (np.array(part) for part in zip(*found, strict=True))
+                (M, D, K), speed = (part[k] for part in matrices), abs(float(self.speeds[k]))
+                bores = [(film, own) for film in memories if (own := film.response.linear()) is not None]
+                if len(bores) == len(memories):
+                    found[k] = vibrations_on_bores(M, D, K, bores, speed)
+                else:
+                    found[k] = delayed_vibrations(M, D, K, partial(self._beyond, k), speed)
+        size = max(len(values) for values, _ in found)
+        values = np.full((len(found), size), np.nan, dtype=complex)
+        vectors = np.full((len(found), matrices[0].shape[1], size), np.nan, dtype=complex)
+        for k, (some, shapes) in enumerate(found):
+            values[k, : some.size], vectors[k, :, : some.size] = some, shapes
         order = np.lexsort((values.real, values.imag))
         values = np.take_along_axis(values, order, axis=1)
         return values, self.directions @ np.take_along_axis(vectors, order[:, None, :], axis=2)
@@ -162,17 +171,18 @@ class RotorResult:
 
     @property
     def eigenvalues(self) -> np.ndarray:
-        """(k, 2n) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency.
+        """(k, m) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency; m = 2n.
 
-        With films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) there are more or
-        fewer motions that die out without a swing and within a turn. The place of one that is missing is nan, here and
-        in ``modes``.
+        On flexible bushes and journals there are more: the film swings with the surface, too, in waves around the bore.
+        With films that follow a vibration with a delay (`ElrodAdams`, surfaces that deflect, compressible volumes)
+        there are more or fewer motions that die out without a swing and within a turn. The place of one that is missing
+        is nan, here and in ``modes``.
         """
         return self._modes[0]
 
     @property
     def modes(self) -> np.ndarray:
-        """(k, N, 2n) complex: mode shapes, the motion of all bodies in space with each of the eigenvalues."""
+        """(k, N, m) complex: mode shapes, the motion of all bodies in space with each of the eigenvalues."""
         return self._modes[1]
 
     @property

@@ -20,6 +20,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.rotor.bores import HeldBore
 from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import SpinningSystem
@@ -91,8 +92,9 @@ class EquilibriumSearch:
         # films first: a rotor of finite elements has none of these
         for joint in joints:
             film_model(joint)
-        self.mbs, self.system = mbs, SpinningSystem(mbs, find_rotors(mbs, joints, rotors, ratios))
-        self.films = [RotorFilm(joint, self.system) for joint in joints]
+        bores = [HeldBore(mbs, joint.element) for joint in joints]
+        self.mbs, self.system = mbs, SpinningSystem(mbs, find_rotors(mbs, joints, rotors, ratios), bores)
+        self.films = [RotorFilm(joint, self.system, bore) for joint, bore in zip(joints, bores, strict=True)]
         self.length = max(film.bearing.length for film in self.films)
         self.weights = np.ones(self.system.size)
         for node in self.system.nodes.values():
@@ -133,6 +135,7 @@ class EquilibriumSearch:
         self.slope = -free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ changed)
         self.speed = speed
         D = balance.r_u + M @ system.turning()
+        films = [film.found(e, t, system.q) for film, e, t in zip(self.films, *found, strict=True)]
         whole = {
             "speeds": speed,
             "mass_matrix": free.T @ M @ free,
@@ -144,7 +147,6 @@ class EquilibriumSearch:
             "residual": balance.residual,
             "evaluations": self.count,
         }
-        films = [film.found(e, t) for film, e, t in zip(self.films, *found, strict=True)]
         memories = [film.memory(e, free) for film, e in zip(self.films, evaluations, strict=True)]
         return {name: np.array(value) for name, value in whole.items()} | {
             name: np.array([film[name] for film in films]) for name in films[0]

@@ -25,7 +25,7 @@ Source of the variation of omega: dA = [dphi] A and A_t = [omega] A give [d omeg
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias, cast
 
 import exudyn as exu
@@ -35,6 +35,7 @@ from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.relative import exponential_map, skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, node_side
+from exudyn_ehd.coupling.rotor.bores import HeldBore
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
 from exudyn_ehd.status import InputError
 
@@ -42,11 +43,11 @@ from exudyn_ehd.status import InputError
 STEP, RATE_STEP = 1e-6, 1e-2
 
 
-NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
+NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 
 class TurningNode:
-    """Node of a rigid body or a beam.
+    """Node of a rigid body or a beam, with what it carries: the nodes of a flexible bush, which move with it rigidly.
 
     Parameters
     ----------
@@ -56,22 +57,40 @@ class TurningNode:
         Its coordinates among those of the system.
     first : int
         Place of its displacement and rotation (6,) in x.
+
+    Attributes
+    ----------
+    places : (n + 3 k,) array
+        Its coordinates and those of k nodes that it carries.
     """
 
     def __init__(self, side: NodeSide, places: np.ndarray, first: int) -> None:
         self.side, self.places, self.own = side, places, slice(first, first + 6)
+        self.count, self.carried = places.size, np.zeros((0, 3))
+
+    def carry(self, places: np.ndarray, reference: np.ndarray) -> None:
+        """Take along nodes with coordinates at ``places`` (3 k,) and reference positions (k, 3), m.
+
+        Their centripetal acceleration is omitted: what carries them does not spin.
+        """
+        self.places = np.concatenate((self.places, places))
+        self.carried = np.concatenate((self.carried, reference))
 
     def turn(self, q: np.ndarray) -> np.ndarray:
         """Rotation (3, 3), node to space, at the system's coordinates."""
-        return rigid_nodes.rotation_of(self.side.kind, self.side.reference + q[self.places])
+        return rigid_nodes.rotation_of(self.side.kind, self.side.reference + q[self.places[: self.count]])
 
     def position(self, q: np.ndarray) -> np.ndarray:
         """Place (3,) in space, m."""
-        return (self.side.reference + q[self.places])[:3]
+        return self.side.reference[:3] + q[self.places[:3]]
+
+    def _arms(self, q: np.ndarray) -> np.ndarray:
+        """Distances (k, 3) of the carried nodes, m."""
+        return self.carried + q[self.places[self.count :]].reshape(-1, 3) - self.position(q)
 
     def rates(self, q: np.ndarray, omega: np.ndarray) -> NodeRates:
-        """B (n, 6), the rates (m,) of the rotation's coordinates for omega (3,), and their rates at constant omega."""
-        own = q[self.places]
+        """B (n + 3 k, 6), and the second derivatives (m,) of the rotation's coordinates at constant omega (3,)."""
+        own = q[self.places[: self.count]]
         rates = np.zeros(own.size)
         self.side.update(None, own, rates, None)
         turns = self.side.jac[1, :, 3:]
@@ -81,14 +100,17 @@ class TurningNode:
             # columns or rows are orthogonal and of one length; Euler parameters keep theirs
             inverse = turns.T / (turns[0] @ turns[0])
         rates[3:] = inverse @ omega
-        B = np.zeros((own.size, 6))
-        B[:3, :3], B[3:, 3:] = np.eye(3), inverse
-        return B, rates[3:], -inverse @ (self.side.change(None, own)[3:] @ rates @ rates)
+        B = np.zeros((self.places.size, 6))
+        B[:3, :3], B[3 : own.size, 3:] = np.eye(3), inverse
+        for k, arm in enumerate(self._arms(q)):
+            B[own.size + 3 * k : own.size + 3 * k + 3] = np.hstack((np.eye(3), -skew(arm)))
+        return B, -inverse @ (self.side.change(None, own)[3:] @ rates @ rates)
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
         """Change the coordinates of the system by a displacement and a rotation (6,), exact to the second order."""
-        theta = self.side.reference[3:] + q[self.places[3:]]
-        change = self.rates(q, x[3:])[1]
+        own, carried = self.places[3 : self.count], self.places[self.count :]
+        theta, arms, before = self.side.reference[3:] + q[own], self._arms(q), self.turn(q)
+        change = self.rates(q, x[3:])[0][3 : self.count, 3:] @ x[3:]
         if self.side.kind == rigid_nodes.ROTATION_VECTOR:
             # the angular velocity is that in the turned frame
             change = np.linalg.solve(exponential_map(theta)[1].T, change)
@@ -96,7 +118,8 @@ class TurningNode:
         if self.side.kind == rigid_nodes.EULER_PARAMETERS:
             theta /= np.linalg.norm(theta)
         q[self.places[:3]] += x[:3]
-        q[self.places[3:]] = theta - self.side.reference[3:]
+        q[own] = theta - self.side.reference[3:]
+        q[carried] += (x[:3] + arms @ (self.turn(q) @ before.T - np.eye(3)).T).ravel()
 
 
 class SpinningSystem:
@@ -106,6 +129,8 @@ class SpinningSystem:
     ----------
     mbs : exudyn.MainSystem
     rotors : list of Rotor
+    bores : sequence of HeldBore, default ()
+        Flexible bushes and journals, whose coordinates take no part in x.
 
     Attributes
     ----------
@@ -125,7 +150,7 @@ class SpinningSystem:
         Coordinates that belong to no rigid node, and their directions in x.
     """
 
-    def __init__(self, mbs: exu.MainSystem, rotors: list[Rotor]) -> None:
+    def __init__(self, mbs: exu.MainSystem, rotors: list[Rotor], bores: Sequence[HeldBore] = ()) -> None:
         self.mbs, self.rotors, self.spins = mbs, rotors, np.zeros(len(rotors))
         self.ratios = {node: rotor.ratio for rotor in rotors for node in rotor.nodes}
         data = mbs.systemData
@@ -144,6 +169,10 @@ class SpinningSystem:
                 self.nodes[number] = TurningNode(node_side(mbs, node), places, self.size)
                 plain[places] = False
                 self.size += 6
+        for bore in bores:
+            plain[bore.places] = False
+            if bore.housing in self.nodes:
+                self.nodes[bore.housing].carry(bore.places, bore.reference)
         turning = [(k, *pair) for k, rotor in enumerate(rotors) for pair in zip(rotor.nodes, rotor.axes, strict=True)]
         self.spinning = [(k, self.nodes[number], axis) for k, number, axis in turning]
         self.places = np.flatnonzero(plain)
@@ -151,6 +180,7 @@ class SpinningSystem:
         self.size += self.places.size
         self._settings = settings = exu.SimulationSettings()
         settings.staticSolver.verboseMode = 0
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
         settings.solution.file.write = settings.solution.sensors.active = False
         self._solver = cast(Any, exu.MainSolverStatic())
         self._solver.InitializeSolver(mbs, settings)
@@ -194,8 +224,7 @@ class SpinningSystem:
         rates, accelerations, maps = np.zeros_like(q), np.zeros_like(q), []
         for number, node in self.nodes.items():
             own = known[number] if known and number != moved else node.rates(q, u[node.own][3:])
-            rates[node.places[:3]] = u[node.own][:3]
-            rates[node.places[3:]], accelerations[node.places[3:]] = own[1], own[2]
+            rates[node.places], accelerations[node.places[3 : node.count]] = own[0] @ u[node.own], own[1]
             maps.append((node, own[0]))
         rates[self.places] = u[self.own]
         self._enter(q, rates)

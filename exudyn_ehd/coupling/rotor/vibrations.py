@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 import numpy as np
+from scipy.linalg import block_diag
 
+from exudyn_ehd.joint.static.dynamic_stiffness import ROUNDING, FilmMemory
 from exudyn_ehd.status import FilmError
 
 # Vibrations of films with a memory, as shares of their size: the change that ends a search, the distance up to which
@@ -14,6 +16,8 @@ from exudyn_ehd.status import FilmError
 SETTLED, NEAR, FARTHEST, SMALLEST_SHARE, ROUNDS = 1e-7, 0.2, 0.25, 1e-3, 8
 # Step of difference quotients over the speed: their error of 1e-5 slows the rounds, but is none of the result.
 DIFFERENCE = 1e-5
+# K and C of coordinates that follow.
+Linear: TypeAlias = tuple[np.ndarray, np.ndarray]
 Stiffness: TypeAlias = Callable[[complex], np.ndarray]
 # Eigenvalue, 1/s, and shape (n,) of a vibration.
 Track: TypeAlias = tuple[complex, np.ndarray]
@@ -25,6 +29,33 @@ def vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray,
     lower = -np.linalg.solve(M, np.hstack((K, D)))
     values, vectors = np.linalg.eig(np.vstack((np.eye(n, 2 * n, n), lower)))
     return values.astype(complex), vectors[:n].astype(complex)
+
+
+def vibrations_on_bores(
+    M: np.ndarray, D: np.ndarray, K: np.ndarray, films: Sequence[tuple[FilmMemory, Linear]], speed: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (m,) and vectors (n, m) of a system with films on flexible bores, and their `FilmResponse.linear`.
+
+    The coordinates q of the bores have no mass. With z = (y, q), y the first n of them, and v = s y,
+
+        -K z = s (D z + M v),    s y = v,
+
+    is one linear problem; its 1 / s are the eigenvalues of a matrix. Motions that die out without a swing and within a
+    turn are left out.
+    """
+    n, whole = len(M), []
+    for k, own in enumerate((K, D)):
+        corner = own + sum(film.loads @ (both[k][:4, :4] - film.slow[k]) @ film.places for film, both in films)
+        right = np.hstack([film.loads @ both[k][:4, 4:] for film, both in films])
+        below = np.vstack([both[k][4:, :4] @ film.places for film, both in films])
+        whole.append(np.block([[corner, right], [below, block_diag(*(both[k][4:, 4:] for _, both in films))]]))
+    size = len(whole[0])
+    moved = np.linalg.solve(whole[0], -np.hstack((whole[1], np.eye(size, n) @ M)))
+    inverse, vectors = np.linalg.eig(np.vstack((moved, np.eye(n, size + n))))
+    there = np.abs(inverse) > ROUNDING * np.abs(inverse).max()
+    values, vectors = 1.0 / inverse[there].astype(complex), vectors[:n, there].astype(complex)
+    lasts = values.real >= -np.maximum(np.abs(values.imag), speed / (2.0 * np.pi))
+    return values[lasts], vectors[:, lasts]
 
 
 def delayed_vibrations(

@@ -112,6 +112,11 @@ class FilmAnswers(FilmArrays):
             refine_factor(self.system, self.line, self.work)
         self.work.exact = True
 
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns: pressures and fills of vertices, and pressures of areas with a balance."""
+        return self.work.count + (0 if self.reservoirs is None else int(self.reservoirs.live.sum()))
+
     def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p as the film's unknown,
         Q scaled."""
@@ -178,7 +183,11 @@ class FilmAnswers(FilmArrays):
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` for every column of rhs (count, k), in place."""
-        w = self.work
+        w, r = self.work, self.reservoirs
+        if r is not None:
+            (B, C, S), rhs, areas = self.reduced(), rhs[: w.count], rhs[w.count :]
+            areas[:] = np.linalg.solve(r.derivatives(S), areas - r.weights()[:, None] * (C @ rhs))
+            rhs -= B.T @ areas
         self.factor_solution()
         lower, upper = (w.band, w.band) if self.symmetric else self._bands()
         if rhs.shape[1] > 1:

@@ -39,7 +39,7 @@ from exudyn_ehd.joint.solved_film import (
     JournalMotion,
     SolvedFilm,
 )
-from exudyn_ehd.joint.tangent.bore import elastic_tangent
+from exudyn_ehd.joint.tangent.bore import elastic_tangent, storage_tangent
 from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, complete, traction
 from exudyn_ehd.status import Status, warn_user
 
@@ -101,7 +101,10 @@ class ElasticEvaluation(Evaluation):
         if is_central(self):
             return tangents_beside(self, exact).mean(axis=0)
         elasticity = self.model.elasticity
-        return condensed_tangent(elasticity.tangent(self, exact), elasticity, self.bore.coordinates)
+        T = elasticity.tangent(self, exact)
+        if exact and self.model.solver.pockets is not None:
+            T = T + storage_tangent(self._found(), self.model.bore)
+        return condensed_tangent(T, elasticity, self.bore.coordinates)
 
     def nodal_forces(self) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.

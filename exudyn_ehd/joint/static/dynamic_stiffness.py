@@ -45,7 +45,8 @@ from exudyn_ehd.joint.tangent.wrench import balance_gradients, wrench_rows
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
 SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
-# Whirl ratios at which a bore of many coordinates is asked how it follows. The space of the answers tells the critical
+# Whirl ratios at which a bore of many coordinates is asked how it follows, and frequencies over the rates at which
+# pressures of supply areas settle. The space of the answers tells the critical
 # mass of soft bushes to 2e-9, and Z from 0 to 4 times the spin to 5e-7.
 SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
 # Places and slopes x, y, bx, by of a journal, and the rows of a wrench that do work on them: F_x, F_y, M_y, -M_x.
@@ -82,6 +83,10 @@ class FilmResponse:
 
     rates = np.zeros(0)
 
+    def linear(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """K and C of the journal's motions together with massless coordinates that follow; None without such."""
+        return None
+
     def __init__(self, film: SolvedFilm, tangent: np.ndarray) -> None:
         s, w, liner = film.solver, film.solver.work, film.parts.liner
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
@@ -97,7 +102,7 @@ class FilmResponse:
             if s.oil_line is not None:
                 stored += whole * s.oil_line.rise
             stored = np.where(w.active, stored, whole)
-        areas = self.matrix.shape[0] - w.count  # whose pressure is unknown
+        areas = s.unknowns - w.count  # whose pressure is unknown
         self.store = diags_array(np.append(stored.reshape(-1)[order], np.zeros(areas)) + s.surroundings())
         if s.reservoirs is not None:
             filled = s.reservoirs.storage()
@@ -159,7 +164,7 @@ class FilmOnBoreResponse(FilmResponse):
         assert film is not None
         T, k, m = elasticity.tangent(evaluation, exact=True), bore.size, MOTION_SIZE
         self.stiffness = elasticity.stiffness.copy()
-        self.remembers = film.solver.closure.conserves_mass
+        self.remembers = film.solver.closure.conserves_mass or film.solver.pockets is not None
         if self.remembers:
             super().__init__(film, T)
             self._add_bore(film, bore)
@@ -168,7 +173,13 @@ class FilmOnBoreResponse(FilmResponse):
         self._rest_of(*(np.hstack((rows[:, a], rows[:, b])) for a, b in ((slice(PLACES), slice(m, m + k)), rates)))
         if self.remembers and k > 2 * PLACES * len(SAMPLES):
             speed, whole = abs(film.journal.omega), super().at
-            self._reduce([self._followed(whole(ratio * speed)) for ratio in SAMPLES])
+            beside = np.outer(SAMPLES[1:], (self.rates.min(), self.rates.max())).ravel() if self.rates.size else ()
+            self._reduce([self._followed(whole(nu)) for nu in (*(speed * np.array(SAMPLES)), *beside)])
+
+    def linear(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """K and C (4 + k, 4 + k) of the journal's motions and q, with the bore's own stiffness; None with a memory."""
+        whole = np.pad(self.stiffness, (PLACES, 0))
+        return None if self.remembers else (self.rest[0] + whole, self.rest[1])
 
     def _add_bore(self, film: SolvedFilm, bore: Bore) -> None:
         """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
@@ -177,7 +188,7 @@ class FilmOnBoreResponse(FilmResponse):
         place, rate = (-force * balances.times(bore.shapes, *ends).T for ends in ((1.0, 0.0), (0.0, 1.0)))
         sway = content = np.zeros_like(rate)
         if self.contents is not None:
-            at, by = (film.grid.shape, len(balances.places)), -force / balances.clearance
+            at, by = (film.grid.shape, balances.count), -force / balances.clearance
             parts = (self.contents.matrix(*at, *factors) for factors in ((by, 0.0), (0.0, by)))
             content, sway = (dense(part @ bore.shapes).T for part in parts)
         self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))

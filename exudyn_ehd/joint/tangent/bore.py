@@ -14,7 +14,7 @@ of the derivatives to q and q_t, which costs as much as one of them.
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse import csc_matrix, csr_matrix, diags_array
 
 from exudyn_ehd.film.banded.substitution import product
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
@@ -66,13 +66,30 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
     return out
 
 
+def storage_tangent(film: SolvedFilm, bore: Bore) -> np.ndarray:
+    """Add to `elastic_tangent` by q and q_t, (6 + k, 10 + 2 k), what the oil in supply areas takes in slow motions.
+
+    With the storage S u_t in the balances, and u_t = du/dx x_t, a second film solve: ``A du = -S du/dx x_t``.
+    """
+    k, size = bore.size, MOTION_SIZE
+    change, out = Balances(film).changes(bore.shapes, (1.0, 0.0)), np.zeros((6 + k, size + 2 * k))
+    stored = np.ascontiguousarray(-film.solver.surroundings()[:, None] * np.delete(change, np.arange(4, size), axis=1))
+    film.solver.direct(stored)
+    rates = [*range(4, 8), *range(size + k, size + 2 * k)]
+    out[:6, rates] = wrench_weights(film) @ (adjoint_rows(film) @ stored)
+    out[6:, rates] = load_columns(film, bore).T @ stored
+    if bore.twist is not None:
+        out[6:] -= np.multiply.outer(bore.twist, out[5])
+    return out
+
+
 class Balances:
     """Derivatives of a film's balances at its unknowns.
 
     Attributes
     ----------
-    places : (count,) array
-        Flat vertices of the unknowns.
+    count : int
+        Number of the unknowns.
     gradients : Gradients
         To the scaled true gap.
     motion : (10, count) array
@@ -81,21 +98,20 @@ class Balances:
 
     def __init__(self, film: SolvedFilm) -> None:
         self.film, self.clearance = film, film.parts.bearing.radial_clearance
-        self.places = film.solver.work.order[: film.solver.work.count]
-        self.gradients = true_gradients(film)
-        self.motion = self.gradients.columns(film.grid.gap_shapes, self.places.size)
+        self.count, self.gradients = film.solver.unknowns, true_gradients(film)
+        self.motion = self.gradients.columns(film.grid.gap_shapes, self.count)
 
     def matrix(self, by_place: float, by_rate: float) -> csr_matrix:
         """``by_place d/d delta + by_rate d/d delta_t`` (count, n m) of the bore's displacement delta, SI units."""
         factors = by_place / self.clearance, by_rate / self.clearance
-        return self.gradients.matrix(self.film.grid.shape, self.places.size, *factors)
+        return self.gradients.matrix(self.film.grid.shape, self.count, *factors)
 
     def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray:
         """Return `matrix` times the shapes (n m, k) of a bore."""
         if not isinstance(shapes, np.ndarray):
             return dense(self.matrix(by_place, by_rate) @ shapes)
         out, factors = (
-            np.zeros((self.places.size, shapes.shape[1])),
+            np.zeros((self.count, shapes.shape[1])),
             (by_place / self.clearance, by_rate / self.clearance),
         )
         add_rows(self.gradients.rows, *self.gradients.stencil(self.film.grid.shape, *factors), shapes, out)
@@ -107,7 +123,7 @@ class Balances:
         ``combinations`` as for `elastic_tangent`; SI units.
         """
         size, k = MOTION_SIZE, shapes.shape[1]
-        out = np.empty((len(self.places), size + k * len(combinations)))
+        out = np.empty((self.count, size + k * len(combinations)))
         out[:, :size] = self.motion.T * -self.film.parts.motion_scale
         for i, (by_place, by_rate) in enumerate(combinations):
             out[:, size + i * k : size + (i + 1) * k] = self.times(shapes, -by_place, -by_rate)
@@ -120,27 +136,24 @@ def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray | csr_matrix:
 
     Sparse with the bore's shapes.
     """
-    w, y = film.solver.work, film.solver.system
-    places = w.order[: w.count]
-    weight = np.where(w.active, film.scales.force * film.grid.weight, 0.0)
+    s, weight = film.solver, film.scales.force * film.grid.weight
     if film.oil.P_q is not None:
-        weight *= film.oil.P_q
-    if isinstance(bore.shapes, np.ndarray):
-        columns = weight.ravel()[places, None] * bore.shapes[places]
-    else:
-        columns = at_unknowns(film, weight).T @ bore.shapes
-    if y.continued is not None:
-        columns = pressures_by_unknowns(film)[places].T @ columns
-    return columns
+        weight = weight * film.oil.P_q
+    if not isinstance(bore.shapes, np.ndarray):
+        return pressures_by_unknowns(film).T @ (diags_array(weight.ravel()) @ bore.shapes)
+    if s.system.continued is not None or s.reservoirs is not None:
+        return pressures_by_unknowns(film).T @ (weight.reshape(-1, 1) * bore.shapes)
+    places = s.work.order[: s.work.count]
+    return (weight * s.work.active).ravel()[places, None] * bore.shapes[places]
 
 
 def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
     """Derivatives (n m, count) of the pressures, in front of the oil's law, to the unknowns."""
     w, y = film.solver.work, film.solver.system
-    if y.continued is not None:
-        by_linear = pressures_by_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active)
-        return by_linear[:, w.order[: w.count]]
-    return at_unknowns(film, w.active.astype(float))
+    if y.continued is None:
+        return at_unknowns(film, (w.active | y.fixed).astype(float))
+    by_linear = pressures_by_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active)
+    return (by_linear + diags_array(y.fixed.ravel().astype(float))) @ at_unknowns(film, film.solver.ones)
 
 
 def dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
@@ -149,10 +162,19 @@ def dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
 
 
 def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:
-    """Values of a field (n, m) at the unknowns, each in its row and column (n m, count)."""
-    w = film.solver.work
-    places = w.order[: w.count]
-    return csc_matrix((field.reshape(-1)[places], places, np.arange(w.count + 1)), shape=(field.size, w.count))
+    """Values of a field (n, m) at the unknowns, each in its row and column (n m, count).
+
+    Of an area whose pressure is unknown at all of its vertices, times the derivative of the film's unknown there.
+    """
+    s, values = film.solver, field.reshape(-1)
+    rows = s.work.order[: s.work.count]
+    starts, entries, shape = np.arange(rows.size + 1), values[rows], (field.size, s.unknowns)
+    if (r := s.reservoirs) is not None:
+        area, at = np.nonzero(r.within().T)
+        by_pressure = r.transformed()[1][r.live] / s.pressure_scale
+        starts = np.append(starts, rows.size + np.cumsum(r.sizes[r.live]))
+        entries, rows = np.append(entries, values[r.at[at]] * by_pressure[area]), np.append(rows, r.at[at])
+    return csc_matrix((entries, rows, starts), shape=shape)
 
 
 def bore_tangent(film: SolvedFilm, bore: Bore) -> np.ndarray:

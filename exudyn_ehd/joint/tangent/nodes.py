@@ -233,15 +233,15 @@ def _share_by_unknowns(film: SolvedFilm, pressure: csr_matrix) -> csr_matrix | N
     ``pressure``: those of the pressures in front of the oil's law.
     """
     s, oil, w = film.solver, film.oil, film.solver.work
-    places, parts = w.order[: w.count], []
+    parts = []
     if oil.ratio_q is not None:
         parts.append(diags((oil.ratio_q * (s.fill if s.closure.conserves_mass else 1.0)).ravel()) @ pressure)
     by_others = film.shear_by_unknowns()
     if by_others is not None:
-        parts.append(diags(film.share().ravel()) @ by_others[:, places])
+        parts.append(diags(film.share().ravel()) @ (by_others @ at_unknowns(film, film.solver.ones)))
     if s.closure.conserves_mass:
         rise = 0.0 if s.oil_line is None else s.oil_line.rise
-        parts.append(_share_by_fills(film) @ at_unknowns(film, np.where(w.active, rise, 1.0)))
+        parts.append(_share_by_fills(film) @ at_unknowns(film, np.where(w.active, rise, ~film.grid.fixed)))
     return sum(parts[1:], parts[0]) if parts else None
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.gradients import Gradients
+from exudyn_ehd.film.gradients import Gradients, join
 from exudyn_ehd.film.reynolds.differences import on_links, to_ends
 from exudyn_ehd.film.solvers.film import at_beside_ends
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
@@ -71,9 +71,18 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     return patir_cheng.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
 
 
-def true_gradients(film: SolvedFilm, places: np.ndarray | None = None) -> Gradients:
-    """`FilmAnswers.gradients` to the true gap."""
-    return _to_true_gap(film, film.solver.gradients(places))
+def true_gradients(film: SolvedFilm) -> Gradients:
+    """`FilmAnswers.gradients` to the true gap, with the balances of supply areas with an unknown pressure behind.
+
+    These are sums over the balances at their vertices.
+    """
+    s, found = film.solver, _to_true_gap(film, film.solver.gradients())
+    if (r := s.reservoirs) is None:
+        return found
+    flows = _to_true_gap(film, s.gradients(r.at))
+    rows, entries = np.nonzero(r.within().T[:, flows.rows])
+    by = flows.by[:, entries] * r.weights()[rows]
+    return join(found, Gradients(s.work.count + rows, flows.places[entries], by))
 
 
 def true_fills(film: SolvedFilm) -> Gradients | None:

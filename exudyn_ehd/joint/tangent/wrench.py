@@ -19,7 +19,6 @@ from exudyn_ehd.film.gradients import functional_gradients
 from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
 from exudyn_ehd.film.solvers.film import shear_by_unknown
 from exudyn_ehd.film.solvers.sor import ClassicSolver
-from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
@@ -132,15 +131,7 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
     s, shapes = film.solver, film.grid.gap_shapes
     if isinstance(s, ClassicSolver):
         return _difference_columns(film, s)
-    out = true_gradients(film).columns(shapes, s.work.count)
-    return out if s.reservoirs is None else np.hstack((out, _reservoir_gradients(film, s.reservoirs)))
-
-
-def _reservoir_gradients(film: SolvedFilm, reservoirs: Reservoirs) -> np.ndarray:
-    """`balance_gradients` (10, k) of the areas with an unknown pressure, from the balances at their vertices."""
-    out = true_gradients(film, reservoirs.at).columns(film.grid.gap_shapes, reservoirs.at.size)
-    flows: np.ndarray = reservoirs.weights() * (out @ reservoirs.within())
-    return flows
+    return true_gradients(film).columns(shapes, s.unknowns)
 
 
 def _difference_columns(film: SolvedFilm, solver: ClassicSolver) -> np.ndarray:

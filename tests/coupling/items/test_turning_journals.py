@@ -212,7 +212,7 @@ def test_run_can_be_kept_judged_and_seen(tmp_path):
     assert "journal elasticity" in str(joint.audit())
     with pytest.raises(InputError, match="must be a rigid body or node"):
         joint.place_in_equilibrium(load=(0, -1e3))
-    with pytest.raises(InputError, match="joint 'finite elements' has a ball, a flexible bush or journal"):
+    with pytest.raises(InputError, match="'finite elements' has a ball, the bore or journal of a finite-element"):
         ehd.SolveEquilibrium(joint.mbs, SPEED)
 
 

@@ -11,8 +11,10 @@ from rigid_rotors import (
     VECTOR,
     WEIGHT,
     bearing,
+    bush_mesh,
     fixed,
     inertia_of,
+    plastic,
     shaft,
     sprung,
     three_bodies,
@@ -64,6 +66,13 @@ MEMORIES = {
             )
             for angle in (0.1, 1.7, 3.2, 4.8)
         ),
+    },
+    "bush": {"bush": ehd.ModalBush(mesh=bush_mesh(), material=plastic(), tolerance=0.2)},
+    "mesh": {"bush": ehd.ANCFBush(mesh=bush_mesh(), material=plastic())},
+    "oil content, bush, journal": {
+        "cavitation": ehd.ElrodAdams(cavity_pressure=-1e5),
+        "bush": ehd.ModalBush(mesh=bush_mesh(), material=plastic(), tolerance=0.2),
+        "journal": ehd.ElasticJournal(material=plastic(), span=(-0.02, 0.02), held=ehd.HeldEnds(), tolerance=0.2),
     },
     "heat": {"lubricant": ehd.oil("ISO VG 46"), "thermal": ehd.LumpedThermal(supply_temperature=313.0)},
     "wear": {
@@ -119,7 +128,7 @@ def unstable_motions(result):
 
 
 @pytest.mark.parametrize(("mass", "speed"), sample([(20.0, 300.0), (200.0, 300.0), (4000.0, 600.0)], 1))
-@pytest.mark.parametrize("name", ["oil content", "liner", "oil content, liner"])
+@pytest.mark.parametrize("name", ["oil content", "liner", "oil content, liner", "bush", "oil content, bush, journal"])
 def test_no_vibration_in_films_that_remember_is_missed(name, mass, speed):
     """Nyquist counts the unstable ones, and no vibration stands twice, in a rotor that is not symmetric."""
     film = bearing(**MEMORIES[name])
@@ -136,7 +145,7 @@ def test_no_vibration_in_films_that_remember_is_missed(name, mass, speed):
 @pytest.mark.parametrize("seed", sample([1, 2, 3, 4], 1))
 def test_no_vibration_stands_twice(seed):
     """Random symmetric rotors, whose vibrations come in neighbours; each solves the whole dynamic stiffness."""
-    rng, names = np.random.default_rng(seed), ["oil content", "liner", "oil content, liner", "pockets"]
+    rng, names = np.random.default_rng(seed), ["oil content", "liner", "oil content, liner", "pockets", "bush"]
     for name in names * 3:
         mass, load = float(np.exp(rng.uniform(np.log(5.0), np.log(1000.0)))), float(rng.uniform(300.0, 3000.0))
         scale = {"transverse": 0.01 * mass * rng.uniform(0.3, 3.0), "polar": 0.005 * mass, "weight": load / mass}
