@@ -285,7 +285,7 @@ class SphericalBearing(Checked):
         Intervals from edge to edge, or from the pole to the edge of a socket that is closed there; at least 4.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure, default SwiftStieber()
         Cavitation model. Its line lies on vertices; with ``line_in_cells=True`` it lies inside the cells, and the error
-        of stiffness and damping falls to 2 %. Its ``cavity_pressure`` must not be above 0, the ambient pressure.
+        of stiffness and damping falls from 7 to 1 %. Its ``cavity_pressure`` must not be above 0, the ambient pressure.
         `ElrodAdams` counts the oil, which moves with the mean speed of the surfaces: steady forces are up to 3 % off,
         and 16 % where much void returns to the film (on 96 x 48, 1.2 and 6 %). With it, or with a ``density_law``, the
         line lies on vertices. `Closure` is one of your own.
