@@ -1238,6 +1238,10 @@ film.audit()["heat"]
 ball = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil)
 ehd.steady_spherical(ball, place=(0.0, 0.0, 40e-6))
 
+warm = ehd.LumpedThermal(supply_temperature=313.15)
+closed = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, thermal=warm)
+ehd.steady_spherical(closed, place=(0.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 100.0))
+
 grid = ehd.slider_grid(length=0.1, width=0.1, n_x=16, n_z=8)
 ehd.solve_film(grid, np.ones((3, 3)), lubricant=oil)
 

@@ -275,7 +275,7 @@ class SphericalBearing(Checked):
         c = socket radius - ball radius, m; at most 0.05 R.
     lubricant : Lubricant
         Its ``pressure_law`` acts, and with ``thermal`` its ``temperature_law``, which else only sets the viscosity at
-        ``lubricant.temperature``. A ``shear_law`` or a ``density_law`` raises `InputError`.
+        ``lubricant.temperature``, and its ``density_law``. A ``shear_law`` raises `InputError`.
     socket_angles : (float, float), default (0.0, pi / 2)
         Colatitudes from +z at which the socket begins and ends, rad; it begins at 0 (closed at the pole) or, with an
         opening around the axis, from 0.05 on.
@@ -285,10 +285,10 @@ class SphericalBearing(Checked):
         Intervals from edge to edge, or from the pole to the edge of a socket that is closed there; at least 4.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure, default SwiftStieber()
         Cavitation model. Its line lies on vertices; with ``line_in_cells=True`` it lies inside the cells, and the error
-        of stiffness and damping falls to 2 %. Its ``cavity_pressure`` must not be above 0, the ambient pressure.
-        `ElrodAdams`, without ``line_in_cells``, counts the oil, which moves with the mean speed of the surfaces: steady
-        forces are up to 3 % off, and 16 % where much void returns to the film (on 96 x 48, 1.2 and 6 %). `Closure` is
-        one of your own.
+        of stiffness and damping falls from 7 to 1 %. Its ``cavity_pressure`` must not be above 0, the ambient pressure.
+        `ElrodAdams` counts the oil, which moves with the mean speed of the surfaces: steady forces are up to 3 % off,
+        and 16 % where much void returns to the film (on 96 x 48, 1.2 and 6 %). With it, or with a ``density_law``, the
+        line lies on vertices. `Closure` is one of your own.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before the gap vanishes; None: a vanishing gap ends the run with an error.
     thermal : LumpedThermal or None, default None
@@ -340,12 +340,12 @@ class SphericalBearing(Checked):
                 f"which thin films are, got {self.radial_clearance!r}; if yours is diametral, halve it."
             )
         require_type(f"{name}.lubricant", self.lubricant, Lubricant)
-        for law in ("shear_law", "density_law"):
-            if (given := getattr(self.lubricant, law)) is not None:
-                raise InputError(
-                    f"{name}.lubricant: a spherical film has no {law}, got {type(given).__name__}; give a Lubricant "
-                    "without it, with the viscosity at the film's state."
-                )
+        if (given := self.lubricant.shear_law) is not None:
+            raise InputError(
+                f"{name}.lubricant: a spherical film has no shear_law, got {type(given).__name__}: the law takes one "
+                "sliding speed in one direction, but a ball slides past in another way at every place; give a "
+                "Lubricant without it, with the viscosity at the film's shear rate."
+            )
         first, last = require_vector(f"{name}.socket_angles", self.socket_angles, 2, "rad").tolist()
         end = math.pi - LEAST_ANGLE
         if not (first == 0.0 or first >= LEAST_ANGLE) or not first + LEAST_ANGLE <= last <= end:
@@ -360,10 +360,12 @@ class SphericalBearing(Checked):
                 f"{name}.cavitation must have a cavity_pressure <= 0 Pa, that of the open edges, got "
                 f"{self.cavitation!r}."
             )
-        if self.cavitation.conserves_mass and self.cavitation.line_in_cells:
+        carries = self.cavitation.conserves_mass or self.lubricant.density_law is not None
+        if carries and self.cavitation.line_in_cells:
             raise InputError(
-                f"{name}.cavitation=ElrodAdams(line_in_cells=True): that line takes oil along at one speed, but the "
-                "surface of a ball has another speed in every place; use line_in_cells=False, or SwiftStieber(...)."
+                f"{name}.cavitation: with ElrodAdams or a density_law a line inside the cells takes oil along at one "
+                "speed, but the surface of a ball has another speed at every place; use line_in_cells=False, got "
+                f"{self.cavitation!r}."
             )
         object.__setattr__(self, "cavitation", place_line(self.cavitation, False))
         if isinstance(self.thermal, FilmEnergy):

@@ -9,11 +9,12 @@ and the mean velocity of the surfaces w x R n / 2, which has no divergence on th
 
     div(h^3 / (12 mu) grad p) = w x R n / 2 grad h + dh/dt = -n u,        u = v + e x w / 2 :
 
-in a frame that turns with half the relative angular velocity there is squeeze alone. A film that conserves mass has oil
-in a part of the gap only, which moves with the mean velocity. Its links have Couette flows instead, and u = v: the same
-in a full film, to round-off (`exudyn_ehd.joint.spherical.bearing.SphereFlow`). The edges have p = 0. Only what is
-relative counts: a motion of ball and socket together changes none of it. Left out, as in every Reynolds film, is what
-is c / R of what is there: the ball's translation along the film in the flow, and the pressure's shear forces.
+in a frame that turns with half the relative angular velocity there is squeeze alone. Where the film conserves mass, oil
+fills a part of the gap only, and with a density law it is not equally dense: what moves with the mean velocity differs
+from place to place. The links then have Couette flows, and u = v. In a full film of constant density both are the same
+to round-off (`exudyn_ehd.joint.spherical.bearing.SphereFlow`). The edges have p = 0. Only what is relative counts: a
+motion of ball and socket together changes none of it. Left out, as in every Reynolds film, is what is c / R of what is
+there: the ball's translation along the film in the flow, and the pressure's shear forces.
 
 With u = 0 (a ball at rest, or one that spins about the line to its place) nothing presses. The pressure is homogeneous
 of degree one in u, so that a film that ruptures at the edges' pressure has one-sided derivatives only: it carries where
@@ -35,7 +36,8 @@ Where a wall limits the film's gap to H(g), g the true one, sources and T_p carr
 `exudyn_ehd.film.surfaces.patir_cheng`); what the slopes leave of the pressure goes from solid to solid, without torque.
 
 With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`),
-loads take p(q) and the viscosity of every vertex; heat is sum H^3 dq dP.
+loads take p(q) and the viscosity of every vertex; heat is sum H^3 dq dP. With a density law q is that of
+`exudyn_ehd.film.lubricant.density`, and the heat has the flow work in place of P.
 
 The pressure comes from the film solver of cylindrical bearings on the grid of `exudyn_ehd.joint.spherical.bearing`:
 with -N u / c for the storage of a control volume it needs no other input. Second order in both directions.
@@ -50,6 +52,7 @@ import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.energy import film_flows, film_heat
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.reynolds.differences import on_links
 from exudyn_ehd.film.solvers.film import shear_share
@@ -57,13 +60,7 @@ from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature
 from exudyn_ehd.joint.solved_film import History, LimiterFields
-from exudyn_ehd.joint.spherical.bearing import (
-    SphereFlow,
-    SphericalBearing,
-    drag_of_moments,
-    skew,
-    sphere_patch,
-)
+from exudyn_ehd.joint.spherical.bearing import SphereFlow, SphericalBearing, drag_of_moments, skew, sphere_patch
 from exudyn_ehd.status import Status
 
 PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
@@ -74,8 +71,8 @@ and four rates."""
 PLACES, SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[[4, 5, 6, 8, 9, 10]]
 
 
-# Scaled pressure, viscosity ratio and its derivative to the solver's unknown.
-OilState = tuple[np.ndarray, np.ndarray | float, np.ndarray | float]
+# Scaled pressure and its derivative to the solver's unknown, viscosity ratio and its derivative.
+OilState = tuple[np.ndarray, np.ndarray | float, np.ndarray | float, np.ndarray | float]
 
 
 class BallFilm(NamedTuple):
@@ -93,8 +90,8 @@ class BallFilm(NamedTuple):
     drag : (6, 6) array
         Force and torque of the Couette shear by velocity and angular velocity.
     stored_power : W, taken up by the wall
-    ratio, ratio_q : (n m,) arrays or floats
-        Viscosity over that at ambient pressure, and its derivative to the solver's unknown.
+    pressure_q, ratio, ratio_q : (n m,) arrays or floats
+        Derivative of the pressure to the solver's unknown; viscosity over that at ambient pressure, and its derivative.
     motion : (11,) array
     temperature : K, None of an isothermal film
     history, step : History, float
@@ -111,6 +108,7 @@ class BallFilm(NamedTuple):
     contact: np.ndarray
     drag: np.ndarray
     stored_power: float
+    pressure_q: np.ndarray | float
     ratio: np.ndarray | float
     ratio_q: np.ndarray | float
     motion: np.ndarray
@@ -136,18 +134,20 @@ class SphericalFilm:
         self.patch = p = sphere_patch(R, b.socket_angles, b.n_phi, b.n_chi)
         self.grid: FilmGrid = p.grid
         self.remembers_mass, self.flow_scale = b.cavitation.conserves_mass, c * R**2
-        self.remembers, oil, area = self.remembers_mass or b.thermal is not None, b.lubricant, float(p.area.sum())
-        # where the oil moves; and the one in the solver
-        self.couette = SphereFlow(p, c) if self.remembers else None
-        self.flow = self.couette if self.remembers_mass else None
-        self.thermal, volume = None, self.flow_scale * area
-        if b.thermal is not None:
-            self.thermal = LumpedTemperature(b.thermal, oil, volume, self.heat_and_exchange)
+        self.law, self._cavity, oil = transform_of(b.lubricant), b.cavitation.cavity_pressure, b.lubricant
+        density = self.law if isinstance(self.law, CompressibleLaw) else None
+        self.remembers = self.remembers_mass or b.thermal is not None
+        # Couette flows of a full film; the solver needs them where fill or density differ from place to place
+        self.couette = SphereFlow(p, c) if self.remembers or density is not None else None
+        self.flow = self.couette if self.remembers_mass or density is not None else None
+        flows = () if self.flow is None else (self.flow,)
         if self.flow is not None:
             p.grid.area[:] = p.area  # what control volumes hold is above them on the sphere
-        self.solver = FilmSolver(p.grid, b.cavitation, flux_effects=() if self.flow is None else (self.flow,))
+        self.solver = FilmSolver(p.grid, b.cavitation, flux_effects=flows, density=density)
+        self.thermal, volume = None, self.flow_scale * float(p.area.sum())
+        if b.thermal is not None:
+            self.thermal = LumpedTemperature(b.thermal, oil, volume, self.heat_and_exchange)
         self.limiter = None if b.contact is None else WallContact(b.contact, c)
-        self.law, self._cavity = transform_of(b.lubricant), b.cavitation.cavity_pressure
         if self.law is not None:
             self._cavity = float(self.law.transform(np.array(self._cavity)))
         # over control volumes: normals, and storage of a velocity (m/s) per area of the grid
@@ -171,20 +171,25 @@ class SphericalFilm:
     def heat_and_exchange(self, film: BallFilm, carry_over: float) -> tuple[float, float]:
         """Heat of shear and pressure flow, W, and the scaled flow that leaves and is replaced by oil from outside.
 
-        Of a film in the cavities of which oil is lost and found, as `exudyn_ehd.joint.heat.power.OilFlows` has it.
+        Out of a socket flows over its edges what their control volumes do not keep of the flows on their links, drag
+        included. What a closure without account of its oil loses in cavities leaves, too, but for the share
+        ``carry_over`` of what it finds there, as in `exudyn_ehd.joint.heat.power.OilFlows`.
         """
         s, y, flow, speeds = self.solver, self.solver.system, self.couette, SPEEDS @ film.motion
         assert flow is not None
         k, P = np.array((y.kx, y.kz)), film.pressure / self.pressure_scale
-        pressed = self.force_scale * self.bearing.radial_clearance * film_heat(P, y.flow_pressure, k).sum()
+        energy = P if s.law is None else s.flow_work(P)
+        pressed = self.force_scale * self.bearing.radial_clearance * film_heat(energy, y.flow_pressure, k).sum()
         heat = float(pressed - speeds @ film.drag @ speeds)
         if self.remembers_mass:
             return heat, -float(np.minimum(s.inflow(), 0.0).sum())
-        flow.take(film.motion[SPIN], film.motion[PLACE], on_links(self._closed.slope))
-        moved = flow.flows(s.HF, on_links(s.H)[1])
-        moved[1, :, -1] = 0.0
-        balance = film_flows(y.flow_pressure, s.ones, k, moved)[1]
-        balance += s.area * self._closed.slope * (film.motion[VELOCITY] @ self._storage).reshape(s.H.shape)
+        if self.flow is None:
+            flow.take(film.motion[SPIN], film.motion[PLACE], on_links(self._closed.slope))
+            (x, z), rate = flow.flows(s.HF, on_links(s.H)[1]), film.motion[VELOCITY] @ self._storage
+            z[:, -1], rate = 0.0, self._closed.slope * rate.reshape(s.H.shape)
+        else:
+            x, z, rate = s.couette_flows()
+        balance = film_flows(y.flow_pressure, s.ones, k, np.stack([x, z]))[1] + s.area * rate
         out, lost = (-float(np.minimum(balance, 0.0).sum(where=at)) for at in (self.grid.fixed, ~self.grid.fixed))
         found = float(np.maximum(balance, 0.0).sum(where=~self.grid.fixed))
         return heat, out + lost - carry_over * min(lost, found)
@@ -234,19 +239,17 @@ class SphericalFilm:
         return shear_share(s.system, s.work.active, s.closure).ravel()
 
     def _oil(self) -> OilState | None:
-        """Scaled pressure, viscosity ratio and its derivative to the unknown; None where no pressure is high enough."""
+        """Pressure and viscosity of the solution; None where no pressure is high enough."""
         oil = self.solver.oil_fields(self.law, None)
         if oil is None or oil.beyond:
             return None
-        return (
-            oil.P,
-            1.0 if oil.ratio is None else oil.ratio.ravel(),
-            0.0 if oil.ratio_q is None else oil.ratio_q.ravel(),
-        )
+        given = (oil.P_q, 1.0), (oil.ratio, 1.0), (oil.ratio_q, 0.0)
+        pressure_q, ratio, ratio_q = (usual if field is None else field.ravel() for field, usual in given)
+        return oil.P, pressure_q, ratio, ratio_q
 
     def _loads(self, motion: np.ndarray, oil: OilState, state: tuple[float | None, History, float]) -> BallFilm:
-        (P, ratio, ratio_q), s, R2, cross = oil, self.solver, self.bearing.ball_radius**2, skew(motion[PLACE])
-        velocity = motion[VELOCITY]
+        s, R2, velocity, cross = self.solver, self.bearing.ball_radius**2, motion[VELOCITY], skew(motion[PLACE])
+        P, pressure_q, ratio, ratio_q = oil
         normal = self._vector @ P.ravel()
         pulled = normal if not self._limits else self._vector @ (P * self._closed.slope).ravel()
         contact = -R2 * (self._vector @ self._wall.ravel())
@@ -264,6 +267,7 @@ class SphericalFilm:
             contact=contact,
             drag=drag,
             stored_power=float((self.force_scale * (normal - pulled) - contact) @ velocity),
+            pressure_q=pressure_q,
             ratio=ratio,
             ratio_q=ratio_q,
             motion=motion,

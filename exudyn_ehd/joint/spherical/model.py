@@ -17,10 +17,7 @@ from exudyn_ehd.film.reynolds.differences import on_links
 from exudyn_ehd.film.solvers.film import shear_by_unknown
 from exudyn_ehd.joint.balance.limits import ROUNDING, WAY_OUT, require_oil_bears
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.joint.spherical.bearing import (
-    SphereFlow,
-    skew,
-)
+from exudyn_ehd.joint.spherical.bearing import SphereFlow, skew
 from exudyn_ehd.joint.spherical.film import PLACE, PLACES, SIZE, SPEEDS, SPIN, VELOCITY, BallFilm, SphericalFilm
 from exudyn_ehd.joint.tangent.wrench import BESIDE, CENTRE, quotients
 from exudyn_ehd.status import FilmError, Status
@@ -176,9 +173,9 @@ class SphericalModel(SphericalFilm):
         rows = self._vector if not self._limits else np.concatenate([self._vector, self._vector * f.slope.ravel()])
         n, P, share = len(rows), film.pressure / self.pressure_scale, self._share()
         rows = rows * w.active.ravel()
-        if follows := self.law is not None or self.flow is not None:
+        if follows := self.law is not None or self.remembers_mass:
             sheared = np.tensordot(self._drag.reshape(6, 6, 10), speeds, (1, 0)) @ self._moments
-            rows = np.concatenate([rows * film.ratio, self._shear_rows(sheared, film, share)])
+            rows = np.concatenate([rows * film.pressure_q, self._shear_rows(sheared, film, share)])
         at, k = w.order[: w.count], len(rows)
         lam, y = np.ascontiguousarray(rows[:, at]), s.system
         if y.continued is not None:

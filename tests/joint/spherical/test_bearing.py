@@ -28,6 +28,13 @@ BALL = {"ball_radius": 0.015, "radial_clearance": 30e-6, "lubricant": OIL}
             {"lubricant": ehd.Lubricant(viscosity=0.1, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.5))},
             "shear_law",
         ),
+        (
+            {
+                "lubricant": ehd.Lubricant(viscosity=0.1, density_law=ehd.DowsonHigginson()),
+                "cavitation": ehd.SwiftStieber(line_in_cells=True),
+            },
+            "line_in_cells=False",
+        ),
     ],
 )
 def test_what_can_not_be_meant_is_refused(options, message):

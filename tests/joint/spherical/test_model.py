@@ -307,7 +307,7 @@ def test_a_line_in_the_cells_makes_derivatives_smoother(angles):
             coarse, fine = (film.evaluate(state).tangent()[:3] for film in films)
             own += [np.abs(coarse - fine)[:, at].max() / np.abs(fine[:, at]).max() for at in (PLACE, VELOCITY)]
         misses.append(max(own))
-    assert misses[1] < 0.02 and misses[1] < 0.6 * misses[0], misses
+    assert misses[1] < 0.012 and misses[1] < 0.6 * misses[0], misses
 
 
 def test_films_do_not_depend_on_what_was_asked_before():
