@@ -1212,6 +1212,10 @@ ehd.equilibrium(pads, speed=-300.0, load=30e3)
 
 ehd.equilibrium(bearing, speed=300.0, load=(0.0, -1e9))
 
+heat = ehd.LumpedThermal(supply_temperature=313.15)
+warm = ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thermal=heat)
+ehd.equilibrium(warm, speed=1000.0, load=(0.0, -0.1))
+
 halves = ehd.JournalBearing(**plain, arcs=ehd.offset_halves(preload=0.6))
 ehd.equilibrium(halves, speed=-300.0, load=(-500.0, -500.0))
 

@@ -90,7 +90,8 @@ def journal_wrench(pose, integrals, couette, extra_theta, extra_z, H, width, end
     ``extra_theta`` and ``extra_z``: what gap terms and uneven drag add to those integrals. On the bore, gap terms act
     twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag pulls the
     journal by as much as it holds the bore back. H, ``width``, ``ends``: for `end_forces`; ``edges``: the same of
-    an arc's edges, 0 of a ring; ``scales``: of force and shear, and R; omega, w: spin and axial speed.
+    an arc's edges, 0 of a ring, whose grooves press on their walls in the bore; ``scales``: of force and shear, and R;
+    omega, w: spin and axial speed.
     """
     force, shear, R = scales
     x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
@@ -100,7 +101,7 @@ def journal_wrench(pose, integrals, couette, extra_theta, extra_z, H, width, end
     out[0], out[1] = -force * sc, -force * ss
     out[2] = -shear * (w * couette + 6.0 * R * (s_z - 2.0 * extra_z - end_forces(H, width, ends)))
     out[3], out[4] = force * R * szs, -force * R * szc
-    out[5] = -shear * R**2 * (omega * couette + 6.0 * (s_theta - 2.0 * extra_theta))
+    out[5] = -shear * R**2 * (omega * couette + 6.0 * (s_theta - 2.0 * extra_theta + 2.0 * edges))
     return s_theta
 
 
@@ -246,7 +247,7 @@ def wrench_gradient(ds, dc, extra, ends, pose, sums, pose_scale, R, force, shear
         out[5, q] = -shear * R * R * (6.0 * theta + omega * dc[q])
         if q < 4:
             out[2, q] += 6.0 * shear * R * ends[0, q]
-            out[5, q] += 6.0 * shear * R * R * ends[1, q]
+            out[5, q] -= 6.0 * shear * R * R * ends[1, q]
         scale = 0.5
         if q < 8:
             scale = pose_scale[q % 4]

@@ -162,7 +162,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         ``friction_torque``, of which it is a part; nan with an `ImpedanceMap`.
     supply_flow : (n,) [m3/s]
         Oil that comes from all supply areas together, or enters an arc at its edges. Positive into the film; nan
-        without ``supply`` and ``arc``.
+        without ``supply`` and ``arc``; of areas that turn with the journal see `Hole`.
     lowest_pocket_pressure : (n,) [Pa]
         Lowest pressure of the supply areas with a restrictor. Above ambient; nan without a restrictor.
     highest_pocket_pressure : (n,) [Pa]

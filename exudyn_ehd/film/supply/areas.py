@@ -156,6 +156,11 @@ class Hole(_Area):
 
     With a pressure well above the film's, the error of its flow on the default grid is 1 %.
 
+    An area of any kind that turns with the journal takes the grid's columns one after the other, and with `ElrodAdams`
+    fills the cavity of each as it comes. So its flow ripples: rms 20 to 30 % of the mean of a hole over 0.3 R, 50 to
+    80 % of a pocket or a groove along the axis. The oil is balanced to round-off, means over the passage of a column
+    are right. Forces ripple by up to 0.5 %, the leakage by 1.5 %.
+
     Parameters
     ----------
     angle : float

@@ -97,7 +97,7 @@ def hottest(temperature: float | np.ndarray, grid: FilmGrid) -> str:
     if np.ndim(temperature) == 0:
         return f"{float(temperature):.4g} K"
     T = np.asarray(temperature)[:, : grid.z.size]  # without the walls behind it
-    i, j = divmod(int(np.argmax(T)), grid.z.size)
+    i, j = divmod(int(np.argmax(T.round(6))), grid.z.size)  # of equal ones the first, whatever the round-off
     return f"{T[i, j]:.4g} K at theta = {grid.x[i]:.3g} rad, z = {grid.z[j] * grid.reference_length:.4g} m"
 
 

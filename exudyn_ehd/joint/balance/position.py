@@ -11,7 +11,7 @@ import scipy
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
-from exudyn_ehd.joint.balance.limits import HOTTEST, is_above, too_hot
+from exudyn_ehd.joint.balance.limits import HOTTEST, WAY_OUT, hottest, is_above, too_hot
 from exudyn_ehd.joint.balance.newton import (
     HALVINGS,
     LOAD_TOLERANCE,
@@ -149,20 +149,25 @@ class LoadSearch(Balance):
                 "direction, plane faces no steady load: give them pads that carry (profile=TaperLand(...)), "
                 "contact=RegularisedWall(onset=...), or less load."
             )
+        if (left := self.residual(place)) <= self.tolerance(place.motion):
+            return FilmError(
+                f"{self.where}: at eccentricity ratio {ratio:.4f} the film carries the load, but its heat finds no "
+                f"balance at a temperature that oil bears: it has reached "
+                f"{hottest(place.temperature, self.model.grid)}; {WAY_OUT}"
+            )
         remedy = (
-            "A load this high may need asperity=GreenwoodTripp(...) or contact=RegularisedWall(...), or a finer film "
-            "grid."
+            "On the way a film has carried more, {:.4g} N at eccentricity ratio {:.4f}.".format(*self.strongest)
+            if self.strongest[0] > self.size
+            else "A load this high may need asperity=GreenwoodTripp(...) or contact=RegularisedWall(...), or a finer "
+            "film grid."
         )
-        if self.strongest[0] > self.size:
-            most, where = self.strongest
-            remedy = f"On the way a film has carried more, {most:.4g} N at eccentricity ratio {where:.4f}."
         reason = self._on_an_edge(place) or (
             f"{remedy} A supply area in the loaded zone, a starved film or an arc beside the load may carry no such "
             "load at any position: look at ehd.steady(...) around there."
         )
         return FilmError(
             f"{self.where}: no position found that carries {self.size:.4g} N in {self.count} steps; the nearest is off "
-            f"by {self.residual(place):.2g} of the load, at eccentricity ratio {ratio:.4f}. {reason}"
+            f"by {left:.2g} of the load, at eccentricity ratio {ratio:.4f}. {reason}"
             f"{too_hot(place.film.temperature, carried)}"
         )
 

@@ -189,8 +189,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         Pressure of every area of ``bearing.supply``, Pa; flow through its restrictor, m3/s, nan without one.
     inlet_flow : float
         Oil that enters the loaded zone around the bearing, Q_1, m3/s; nan at zero speed:
-        `exudyn_ehd.joint.model.quantities.inlet_flow`. Tables have the side flow ratio Q_s / Q = leakage / inlet_flow
-        and the flow variable Q / (R c N L) = inlet_flow / (R c N L), N = omega / (2 pi).
+        `exudyn_ehd.joint.model.quantities.passing_flows`. Tables have the side flow ratio Q_s / Q = leakage /
+        inlet_flow and the flow variable Q / (R c N L) = inlet_flow / (R c N L), N = omega / (2 pi).
     oil_flow : float
         Total oil flow: fresh oil that passes through the film, m3/s. It replaces what leaves through ends and supply
         areas; without end pressures and supply areas it is the leakage. With an arc: the sum of ``supply_flows``.

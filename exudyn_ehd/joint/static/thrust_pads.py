@@ -57,8 +57,8 @@ class ThrustPadsResult:
     power_loss, friction_torque : float
         W; torque on the collar about its own axis, positive about +z, N m.
     flows : (4,) array
-        Oil that leaves the pads at their leading, trailing, inner and outer edges, m3/s; negative: that enters. The
-        leading edge is that of a positive spin.
+        Oil that leaves the pads at their leading, trailing, inner and outer edges, m3/s; negative: that enters. Their
+        sum is 0: behind a cavity there leaves what the film has brought. The leading edge is that of a positive spin.
     stiffness, damping : float
         Axial, of the collar on pads that follow, N/m and N s/m, at ``frequency``.
     frequency : float
@@ -240,16 +240,20 @@ def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndar
     K, C = search.matrices()
     Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
     (inner, outer), (first, last) = film.flows(), film.flows_along()
+    flows = np.array([-first, last, -inner, outer])
+    # what a cavity's film has brought leaves at the edge behind it, where a full gap would carry more
+    flows[int(search.speed > 0.0)] -= flows.sum()
     peak, _, _ = refined_peak(film.fields.P, grid.fixed, grid.x, grid.link_x, grid.z)
     return ThrustPadsResult(
         film_thickness=float(v[0]),
         inclination=np.array([v[2], -v[1]]),
         minimum_gap=found.minimum_gap,
         maximum_gap=float(film.gap.max()),
-        peak_pressure=film.scales.pressure * peak,
+        peak_pressure=film.scales.pressure
+        * refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.link_x, grid.z)[0],
         power_loss=pads.pads * found.power_loss,
         friction_torque=-pads.pads * found.power_loss / search.speed,
-        flows=pads.pads * np.array([-first, last, -inner, outer]),
+        flows=pads.pads * flows,
         stiffness=Z.real,
         damping=Z.imag / nu,
         frequency=nu,

@@ -91,3 +91,13 @@ def test_asperities_that_rub_the_oil_away_are_no_film():
             ehd.equilibrium(made, speed=550.0, load=(0.0, -load))
         # a search without an end takes some times the film solves of one with
         assert int(re.search(r"in (\d+) steps", str(error.value)).group(1)) < 300
+
+
+@pytest.mark.parametrize("kind", ["lumped", "field"])
+def test_a_load_that_is_carried_is_not_to_blame(kind):
+    """Under hardly any load no oil flows through, and it is the heat that finds no way out."""
+    thermal = {"lumped": ehd.LumpedThermal, "field": ehd.FilmEnergy}[kind](supply_temperature=SUPPLY)
+    bearing = dataclasses.replace(concentric(HOT, kind), thermal=thermal, lubricant=ehd.oil("ISO VG 46"))
+    with pytest.raises(ehd.FilmError, match="carries the load, but its heat finds no balance") as told:
+        ehd.equilibrium(bearing, speed=3.0 * OMEGA, load=(0.0, -1.0))
+    assert "let oil flow through" in str(told.value) and "may carry no such load" not in str(told.value)

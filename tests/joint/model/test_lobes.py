@@ -191,6 +191,19 @@ def test_tangent_against_differences(name, arcs):
         assert (np.abs(tangent - differences) / scale[:, None]).max() < (5e-5 if arcs is DAM else 1e-5)
 
 
+@pytest.mark.parametrize("options", [{}, {"cavitation": KEPT}, {"bush": LINER}], ids=str)
+@pytest.mark.parametrize("arcs", [LOBES, DAM], ids=["lobes", "dam"])
+@pytest.mark.parametrize("spin", [300.0, -300.0])
+def test_the_moment_is_that_of_shear_and_force(options, arcs, spin):
+    """About its own axis the journal feels friction alone: the pressures of grooves act on their walls in the bore."""
+    for tilt in ((0.0, 0.0), (2e-4, -1e-4)):
+        film = ehd.steady(bearing_of(arcs, **options), speed=spin, eccentricity_ratio=0.5, direction=-1.9, tilt=tilt)
+        (x, y, bx, by), (fx, fy, _), (mx, my, mz) = film.motion[:4], film.force, film.moment
+        own = mz - (x * fy - y * fx) + bx * mx + by * my
+        assert own == pytest.approx(film.friction_torque, rel=1e-9)
+        assert film.power_loss == pytest.approx(-own * spin, rel=1e-9)
+
+
 def test_gap_around_a_concentric_journal():
     """Assembled clearance at the nearest points, machined clearance a right angle off; a dam's depth up to its step."""
     model = build_model(bearing_of(ehd.three_lobe(preload=0.6, offset=0.7)))

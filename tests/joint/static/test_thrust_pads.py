@@ -35,6 +35,7 @@ def _with(**options):
         ({"pivot_radius": 0.075, "pivot_angle": 0.38}, 300.0),
         ({"pivot_radius": 0.08, "pivot_angle": 0.27}, -150.0),
         ({"pivot_angle": 0.325, "crown": 20e-6}, 200.0),
+        ({"pivot_angle": 0.325, "crown": 60e-6}, -200.0),
         ({"pads": 5, "extent": 1.0, "pivot_angle": 0.62, "inner_radius": 0.04, "pivot_radius": 0.073}, 300.0),
     ),
 )
@@ -57,11 +58,8 @@ def test_balance_of_an_independent_film(options, speed):
     # the extrapolated peak is that of vertices
     assert found.peak_pressure == pytest.approx(peak, rel=5e-3)
     assert found.minimum_gap == pytest.approx(found.gap.min()) and found.maximum_gap == found.gap.max()
-    if np.all(found.pressure[1:-1, 1:-1] > 0.0):
-        assert found.flows.sum() == pytest.approx(0.0, abs=1e-12 * np.abs(found.flows).max())
-    else:
-        # behind the crown the film is torn
-        assert pads.crown > 0.0
+    # behind a crown the film is torn, and carries on what it has there
+    assert found.flows.sum() == pytest.approx(0.0, abs=1e-12 * np.abs(found.flows).max())
     assert np.all(found.flows[:2] * [-speed, speed] > 0.0) and np.all(found.flows[2:] > 0.0)
     assert found.residual < 1e-9
 
