@@ -249,8 +249,7 @@ def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndar
         inclination=np.array([v[2], -v[1]]),
         minimum_gap=found.minimum_gap,
         maximum_gap=float(film.gap.max()),
-        peak_pressure=film.scales.pressure
-        * refined_peak(film.solver.pressure, grid.fixed, grid.x, grid.link_x, grid.z)[0],
+        peak_pressure=film.scales.pressure * peak,
         power_loss=pads.pads * found.power_loss,
         friction_torque=-pads.pads * found.power_loss / search.speed,
         flows=pads.pads * flows,
