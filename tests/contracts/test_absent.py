@@ -160,7 +160,6 @@ SHARED = {
     "banded.factors",
     "reynolds.gap",
     "grid",
-    "reynolds.differences",
     "kernels",
     "loads",
     "lubricant.lubricant",

@@ -34,8 +34,7 @@ from numpy.polynomial import Polynomial
 
 from exudyn_ehd.film.heat.energy import ViscosityField, downstream_weight, passed
 from exudyn_ehd.film.kernels import FAST
-from exudyn_ehd.film.reynolds.differences import drops, to_ends
-from exudyn_ehd.film.reynolds.links import LinkFlux
+from exudyn_ehd.film.reynolds.links import LinkFlux, drops, to_ends
 
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
 _MOMENTS = (np.array([1.0, 5.0, 5.0, 1.0]) / 12.0)[:, None] * LOBATTO[:, None] ** np.arange(3)

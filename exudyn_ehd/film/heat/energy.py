@@ -39,8 +39,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.differences import drop_weights, drops, following, to_ends
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, following, to_ends
 
 
 class ViscosityField(FluxEffect):

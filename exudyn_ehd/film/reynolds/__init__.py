@@ -6,6 +6,5 @@ gap               rigid journal in its bore; slopes of what adds to its gap; gap
 links             conductance, carrier, right-hand side; effects on them; flows out of a cavity, averaged over the step
 balance           mass balance with fill and density, and its derivatives
 link_derivatives  derivatives of the flow through a link to gaps and speeds
-differences       differences over the links of a grid, sums over links by vertices
 turbulence        NgPan, Hirs
 """

@@ -33,8 +33,7 @@ import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid, rows_between
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.reynolds.differences import drop_weights, drops, on_links, to_ends
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, on_links, to_ends
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.status import (
     POSITIVE,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.gradients import Gradients, join
-from exudyn_ehd.film.reynolds.differences import on_links, to_ends
+from exudyn_ehd.film.reynolds.links import on_links, to_ends
 from exudyn_ehd.film.solvers.film import at_beside_ends
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.surfaces import patir_cheng
