@@ -232,7 +232,7 @@ def test_audit():
     assert audit["thrust faces"].value == pytest.approx(loss / (loss + history.power_loss.mean()))
     assert audit["thrust faces"].on and audit["thrust faces"].matters
     assert audit["heat of thrust faces"].matters
-    assert "isothermal" in audit["heat of thrust faces"].advice
+    assert "LumpedThermal" in audit["heat of thrust faces"].advice
     film = ehd.steady(joint.bearing, speed=500.0, eccentricity_ratio=0.5)
     with pytest.raises(KeyError):
         film.audit()["thrust faces"]
