@@ -438,8 +438,7 @@ ehd.JournalBearing(**plain, supply=tuple(pockets))
 low = ehd.Hole(angle=0.0, diameter=0.006, supply=ehd.Orifice(diameter=5e-4, supply_pressure=-1e5))
 ehd.JournalBearing(**plain, supply=(low,))
 
-slender = ehd.Capillary(diameter=5e-4, length=0.06, supply_pressure=4e6)
-fed = ehd.Hole(angle=0.0, diameter=0.006, supply=slender)
+fed = ehd.Hole(angle=0.0, diameter=0.006, supply=ehd.Capillary(diameter=5e-4, length=0.06, supply_pressure=4e6))
 sump = ehd.Sump(conductance=5.0, ambient=293.15)
 ehd.JournalBearing(**plain, supply=(fed,), thermal=ehd.LumpedThermal(supply_temperature=sump))
 

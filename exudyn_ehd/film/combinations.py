@@ -117,18 +117,18 @@ def _check_seals(bearing: BearingOptions) -> None:
     """Refuse films that take their pressure at an end as given, and those without any pressure that is given."""
     seals, supply = bearing["end_seals"], bearing["supply"]
     others = [f"Lubricant.{law}" for law in FOLLOWING if getattr(bearing["lubricant"], law) is not None]
-    others += [f"JournalBearing.{name}" for name in ("arcs", "bush", "journal") if bearing[name]]
+    others += [f"JournalBearing.{name}" for name in ("bush", "journal") if bearing[name]]
     others += [] if isinstance(bearing["film"], FiniteLength) else ["JournalBearing.film"]
     others += ["JournalBearing.thermal"] if isinstance(bearing["thermal"], FilmEnergy) else []
     if others:
         raise InputError(
             f"JournalBearing.end_seals does not go with {others[0]}: the pressure at a sealed end is unknown, which "
-            "needs film=FiniteLength(...) all around between rigid surfaces, an oil whose density and viscosity do not "
-            "follow the pressure, and one temperature; leave one of the two out."
+            "needs film=FiniteLength(...) between rigid surfaces, an oil whose density and viscosity do not follow the "
+            "pressure, and one temperature; leave one of the two out."
         )
     pair = seals if isinstance(seals, tuple) else (seals,)
     tight = all(seal is not None and seal.conductance == 0.0 for seal in pair)
-    if tight and all(isinstance(area.supply, GivenFlow) for area in supply):
+    if tight and not bearing["arcs"] and all(isinstance(area.supply, GivenFlow) for area in supply):
         raise InputError(
             "JournalBearing.end_seals: with a conductance of 0 at both ends nothing gives the film a pressure; give "
             "the bearing a supply with a pressure or an Orifice, or one of the seals a conductance."

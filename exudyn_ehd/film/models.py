@@ -317,17 +317,18 @@ def film_grid(
     sizes = placed(supply, length), radius, length, film.n_z, film.stretch
     rows = meeting_rows(*sizes, columns) if conserves_mass else supply_rows(*sizes)
     if arcs:
-        return arc_grid(radius, length, arcs, columns, film.n_z, film.stretch, rows)
-    grid = bearing_grid(
-        radius,
-        length,
-        columns,
-        film.n_z,
-        stretch=film.stretch,
-        start_angle=start_angle + column_of_hole(supply, columns),
-        open_ring=open_ring,
-        rows=rows,
-    )
+        grid = arc_grid(radius, length, arcs, columns, film.n_z, film.stretch, rows)
+    else:
+        grid = bearing_grid(
+            radius,
+            length,
+            columns,
+            film.n_z,
+            stretch=film.stretch,
+            start_angle=start_angle + column_of_hole(supply, columns),
+            open_ring=open_ring,
+            rows=rows,
+        )
     return grid if seals is None else sealed_grid(grid, seals)
 
 

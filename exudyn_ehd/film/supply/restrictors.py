@@ -251,10 +251,14 @@ WIDE_OPEN = 1e8
 
 
 def seal_ends(grid: FilmGrid, kz: np.ndarray, pressure_scale: float) -> None:
-    """Set the conductances of seals in those of a film's links in z, kz (n, m); ``pressure_scale`` in Pa."""
+    """Set the conductances of seals in those of a film's links in z, kz (n, m); ``pressure_scale`` in Pa.
+
+    None at the edges of arcs, whose oil does not come from the film.
+    """
     for row, seal in zip((0, -2), grid.seals or (), strict=False):
         if seal is not None:
             kz[:, row] = min(seal * pressure_scale, WIDE_OPEN / (grid.z[-1] - grid.z[0])) * grid.width_x
+            kz[grid.edges, row] = 0.0
 
 
 Restrictor = Orifice | Capillary | GivenFlow
