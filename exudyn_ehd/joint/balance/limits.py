@@ -152,8 +152,11 @@ def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
 
 
 def too_hot(T: Temperature, carried: float) -> str:
-    """Return the part of a message that explains a load limit by heat; empty if the film has no temperature."""
-    if T is None:
+    """Return the part of a message that explains a load limit by heat.
+
+    It is empty if the film is no hotter than oil bears and does not follow from smaller loads.
+    """
+    if T is None or not (carried or is_above(HOT, T)):
         return ""
     most = f" Followed from smaller loads, the film carries at least {carried:.4g} N." if carried else ""
     return (

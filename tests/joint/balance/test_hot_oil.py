@@ -101,3 +101,13 @@ def test_a_load_that_is_carried_is_not_to_blame(kind):
     with pytest.raises(ehd.FilmError, match="carries the load, but its heat finds no balance") as told:
         ehd.equilibrium(bearing, speed=3.0 * OMEGA, load=(0.0, -1.0))
     assert "let oil flow through" in str(told.value) and "may carry no such load" not in str(told.value)
+
+
+def test_a_cool_film_is_not_to_blame():
+    """A load onto the edge of an arc has no position, whatever the temperature."""
+    thermal = ehd.LumpedThermal(supply_temperature=SUPPLY)
+    size = {"journal_radius": R, "length": L, "radial_clearance": C, "lubricant": OIL, "thermal": thermal}
+    halves = ehd.JournalBearing(**size, arcs=ehd.offset_halves(preload=0.6))
+    with pytest.raises(ehd.FilmError, match="onto the trailing edge of arcs") as told:
+        ehd.equilibrium(halves, speed=-OMEGA, load=(-3e3, -3e3))
+    assert "heat limits the load" not in str(told.value)
