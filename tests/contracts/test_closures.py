@@ -151,18 +151,19 @@ def test_squeeze_off_equals_zero_rates_bit_for_bit(make_bearing, closure, film):
 
 @every_closure
 @both_films
-def test_a_wall_out_of_reach_changes_no_bit(make_bearing, closure, film):
+def test_a_wall_out_of_reach_changes_nothing_but_rounding(make_bearing, closure, film):
+    """A plain film has a kernel of its own, which the compiler may round otherwise than the kernels of all others."""
     wall = ehd.RegularisedWall(onset=1e-6)
     plain, walled = (build_model(make_bearing(0.8, cavitation=closure(), film=film, contact=k)) for k in (None, wall))
     rng = np.random.default_rng(4)
     for _ in range(30):
         motion = _random_motion(rng, plain.bearing, largest=0.95)
         a, b = plain.evaluate(motion), walled.evaluate(motion)
-        np.testing.assert_array_equal(a.wrench, b.wrench)
+        np.testing.assert_allclose(b.wrench, a.wrench, rtol=0, atol=1e-13 * np.abs(a.wrench).max())
         # the tangent of a film with a limiter takes the way through fields: the same sums in another order
         one = a.tangent()
         np.testing.assert_allclose(b.tangent(), one, rtol=0, atol=1e-11 * np.abs(one).max(axis=0).max())
-        assert a.quantities() == b.quantities()
+        assert b.quantities() == pytest.approx(a.quantities(), rel=1e-11, abs=1e-18, nan_ok=True)
 
 
 @every_closure
