@@ -10,7 +10,7 @@ import pytest
 # and shear thinning with cavities that keep their oil take as long to compile as those of all other films. An audit
 # tries shear thinning on every film.
 OF_FILMS = re.compile(
-    "tests/(benchmarks|contracts|coupling|film/(lubricant|solvers)|hard_cases|joint|mechanisms|validation)/"
+    "tests/(benchmarks|contracts|coupling|film/(lubricant|solvers|thrust)|hard_cases|joint|mechanisms|validation)/"
 )
 LONG_TO_COMPILE = (
     ("densi|dense|compress|dowson", ""),
