@@ -449,7 +449,13 @@ class LobeTerm:
                 at_step = np.abs(x - step) < TOUCHING
                 dams[part] = np.outer(np.where(at_step, 0.5, x < step), depth)
                 links[part] += np.outer(face < step, depth)
-                self.slopes[0, part] = -np.outer(at_step, depth * grid.weight_z) / np.maximum(grid.weight[part], 1e-300)
+                # rows outside of seals have no weight, and no slopes
+                np.divide(
+                    -np.outer(at_step, depth * grid.weight_z),
+                    grid.weight[part],
+                    out=self.slopes[0, part],
+                    where=grid.weight[part] > 0.0,
+                )
         self.values += dams
         following = np.where((grid.link_x == 0.0)[:, None], self.values, np.roll(self.values, -1, axis=0))
         self.between = links - 0.5 * (self.values + following)

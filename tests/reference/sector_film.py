@@ -13,8 +13,9 @@ from scipy.sparse.linalg import spsolve
 
 
 def sector_film(motion, *, inner, outer, first, extent, clearance, viscosity, crown=0.0, shape=(161, 81)):
-    """Load, moments of the pressure about x and y on a collar above, its torque, and the peak pressure.
+    """Load, moments of the pressure about x and y on a collar above, its torque, peak pressure, and flows; (9,).
 
+    The flows leave at the edges first in theta, last in theta, inner and outer, those of Couette flow in a full gap.
     ``motion``: zeta, bx, by, their rates, the spin; the collar's gap is clearance + zeta - bx x - by y + crown's share.
     """
     zeta, bx, by, zeta_t, bx_t, by_t, spin = motion
@@ -63,4 +64,9 @@ def sector_film(motion, *, inner, outer, first, extent, clearance, viscosity, cr
     slope = R * (bx * np.sin(T) - by * np.cos(T))
     pull = viscosity * spin * R**2 / H + 0.5 * H * np.gradient(P, dt, axis=0) + P * slope
     X, Y = R * np.cos(T), R * np.sin(T)
-    return np.array([*((P * part * weight).sum() for part in (1.0, Y, -X)), -(pull * weight).sum(), P.max()])
+    moved, (p_t, p_r) = 0.5 * spin * R * H, np.gradient(P, dt, dr, edge_order=2)
+    along, across = moved - H**3 / (12.0 * viscosity * R) * p_t, -(H**3) / (12.0 * viscosity) * R * p_r
+    over_radius, over_angle = dr * ends[1], dt * ends[0]
+    flows = -along[0] @ over_radius, along[-1] @ over_radius, -over_angle @ across[:, 0], over_angle @ across[:, -1]
+    sums = (P * part * weight for part in (1.0, Y, -X))
+    return np.array([*(own.sum() for own in sums), -(pull * weight).sum(), P.max(), *flows])

@@ -55,7 +55,7 @@ def test_sectors():
         size = {"inner": pads.inner_radius, "outer": RO, "first": -pads.pivot_angle, "extent": pads.extent}
         size |= {"clearance": C, "viscosity": MU, "crown": pads.crown}
         coarse, fine = (sector_film(motion[:7], **size, shape=shape) for shape in ((61, 31), (121, 61)))
-        load, mx, my, torque, _ = fine + (fine - coarse) / 3.0
+        load, mx, my, torque, *_ = fine + (fine - coarse) / 3.0
         length, width = RO * pads.extent, RO - pads.inner_radius
         if load < 0.02 * MU * abs(motion[6]) * RO * length * width * min(length, width) / (30e-6) ** 2:
             continue  # torn all over: nothing is carried that a share could be of

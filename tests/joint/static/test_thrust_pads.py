@@ -48,7 +48,7 @@ def test_balance_of_an_independent_film(options, speed):
     size = {"inner": pads.inner_radius, "outer": 0.1, "first": -pads.pivot_angle, "extent": pads.extent}
     size |= {"clearance": pads.clearance, "viscosity": MU, "crown": pads.crown}
     coarse, fine = (sector_film(motion, **size, shape=shape) for shape in ((61, 31), (121, 61)))
-    force, mx, my, torque, peak = fine + (fine - coarse) / 3.0
+    force, mx, my, torque, peak, *flows = fine + (fine - coarse) / 3.0
     assert pads.pads * force == pytest.approx(load, rel=3e-3)
     assert abs(mx / force) < 5e-4 * 0.1 * pads.extent
     assert abs(my / force + reach) < 5e-4 * (0.1 - pads.inner_radius)
@@ -58,8 +58,12 @@ def test_balance_of_an_independent_film(options, speed):
     # the extrapolated peak is that of vertices
     assert found.peak_pressure == pytest.approx(peak, rel=5e-3)
     assert found.minimum_gap == pytest.approx(found.gap.min()) and found.maximum_gap == found.gap.max()
-    # behind a crown the film is torn, and carries on what it has there
-    assert found.flows.sum() == pytest.approx(0.0, abs=1e-12 * np.abs(found.flows).max())
+    flows, behind = pads.pads * np.array(flows), int(speed > 0.0)
+    if pads.crown:
+        # behind a crown the film is torn: it carries on what it has there, less than the Couette flow of a full gap
+        flows[behind] -= flows.sum()
+    # second order on either side; those of a crown are worst, by its thin film in the middle
+    assert found.flows == pytest.approx(flows, abs=3e-3 * np.abs(flows).max())
     assert np.all(found.flows[:2] * [-speed, speed] > 0.0) and np.all(found.flows[2:] > 0.0)
     assert found.residual < 1e-9
 
