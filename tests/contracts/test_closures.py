@@ -80,9 +80,22 @@ def test_many_random_states_of_swift_stieber(make_bearing, film):
         fresh.forget()
         cold = fresh.evaluate(motion)
         assert warm.status is cold.status is ehd.Status.CONVERGED
-        # 40 or 41 on different processors, in a film at speeds of 1e-322 m/s; 100 end it
-        assert max(warm.iterations, cold.iterations) <= 50
+        assert max(warm.iterations, cold.iterations) <= 40
         assert np.abs(warm.wrench - cold.wrench).max() <= 1e-12 * np.abs(cold.wrench).max()
+
+
+def test_nothing_is_left_over_where_round_off_alone_drives(make_bearing):
+    """Along an even gap a journal that slides drives no oil but by round-off of the flows; pressures before lead
+    nowhere."""
+    bearing = make_bearing(0.8, film=ehd.FiniteLength(n_theta=96, n_z=10))
+    rng, model = np.random.default_rng(5), build_model(bearing)
+    for _ in range(300):
+        model.evaluate(_random_motion(rng, bearing))
+        motion = _random_motion(rng, bearing)
+        motion[2:9], motion[9] = 0.0, rng.normal()
+        sliding = model.evaluate(motion)
+        assert sliding.status is ehd.Status.CONVERGED and sliding.iterations <= 3
+        assert np.abs(model.solver.pressure).max() < 1e-12
 
 
 @every_closure

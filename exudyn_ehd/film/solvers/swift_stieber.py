@@ -26,7 +26,7 @@ from exudyn_ehd.film.cavitation.states import ROUNDING
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.kernels import I0
 from exudyn_ehd.film.reynolds.links import lacks
-from exudyn_ehd.film.solvers.newton import FAR, LEFT, REUSABLE
+from exudyn_ehd.film.solvers.newton import EVEN, FAR, LEFT, REUSABLE
 
 # s that a vertex starts from whose pressure says nothing of it; a smaller one costs steps.
 START = 1e-3
@@ -219,13 +219,12 @@ def find_film(links, fixed, pc, in_cells, forth, is_known, line, active, factor,
     """
     f, s, known, free, pressures = line[0], line[6], fixed.reshape(-1), active.reshape(-1), P.reshape(-1)
     line_terms(links[0], links[2], fixed, in_cells, line)
-    above, ruptures = np.empty(P.shape), False
+    above, even = np.empty(P.shape), EVEN * np.abs(links[2]).max()
     p = above.reshape(-1)
     for c in range(f.size):
         p[c] = pressures[c] - pc
-        ruptures |= f[c] > 0.0
-    # pressures that are left over in a film at rest lead nowhere
-    if is_known and ruptures:
+    # pressures that are left over lead nowhere in a film at rest, or where nothing but round-off drives it
+    if is_known and f.max() > even:
         place_line(line, fixed, active, above)
     else:
         for c in range(f.size):
