@@ -1245,6 +1245,10 @@ warm = ehd.LumpedThermal(supply_temperature=313.15)
 closed = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, thermal=warm)
 ehd.steady_spherical(closed, place=(0.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 100.0))
 
+wet = ehd.Lubricant(temperature_law=ehd.TableViscosity(temperatures=(300, 330), viscosities=(0.05, 0.02)))
+hot = dict(ball_radius=0.01, lubricant=wet, thermal=ehd.LumpedThermal(supply_temperature=313, housing_conductance=1))
+ehd.steady_spherical(ehd.SphericalBearing(radial_clearance=1e-5, **hot), place=(0, 0, 0), angular_velocity=(1e3, 0, 0))
+
 grid = ehd.slider_grid(length=0.1, width=0.1, n_x=16, n_z=8)
 ehd.solve_film(grid, np.ones((3, 3)), lubricant=oil)
 
