@@ -84,14 +84,7 @@ class StressRecovery:
         _, near = scipy.spatial.cKDTree(corners.mean(axis=1)).query(positions, k=min(27, len(corners)))
         count = near.size // len(positions)
         nodes, target = corners[near.ravel()], np.repeat(positions, count, axis=0)
-        natural = np.tile(kind.nodes.mean(axis=0), (len(nodes), 1))
-        for _ in range(20):
-            value, slope = kind.shapes(natural)
-            error = np.einsum("ea,eai->ei", value, nodes) - target
-            jacobian = np.einsum("ear,eai->eir", slope, nodes)
-            step = np.linalg.solve(jacobian, error[..., None])[..., 0]
-            # divergent candidates stay bounded and lose
-            natural = np.clip(natural - step, -1.6, 1.6)
+        natural = kind.solve(nodes, lambda x, slope, own: (x - target[own], slope))
         outside = kind.outside(natural).reshape(-1, count)
         best = outside.argmin(axis=1)
         if (lost := outside.min(axis=1) > 1e-6).any():

@@ -198,7 +198,7 @@ def near_faces(corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarr
 
 
 def invert_faces(kind: Face, corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Natural coordinates (n, 2) of points (n,) on a face each, by Newton's method on theta(r, s) and z(r, s).
+    """Natural coordinates (n, 2) at which theta(r, s) and z(r, s) of a face are those of points (n,), one face each.
 
     Parameters
     ----------
@@ -208,24 +208,13 @@ def invert_faces(kind: Face, corner: np.ndarray, theta: np.ndarray, z: np.ndarra
     theta, z : ndarray, shape (n,)
         [rad], [m]
     """
-    natural = np.full((len(corner), 2), kind.middle)
-    moving = np.arange(len(corner))
-    for _ in range(20):
-        value, gradient = kind.shapes(natural[moving])
-        nodes = corner[moving]
-        x = (value[:, None] @ nodes)[:, 0]
-        slope = gradient.transpose(0, 2, 1) @ nodes
-        error = wrapped(np.arctan2(x[:, 1], x[:, 0]) - theta[moving]), x[:, 2] - z[moving]
-        turn = (x[:, 0, None] * slope[..., 1] - x[:, 1, None] * slope[..., 0]) / (x[:, :2] ** 2).sum(axis=1)[:, None]
-        rise = slope[..., 2]
-        det = turn[:, 0] * rise[:, 1] - turn[:, 1] * rise[:, 0]
-        r, s = error[0] * rise[:, 1] - error[1] * turn[:, 1], error[1] * turn[:, 0] - error[0] * rise[:, 0]
-        step = np.stack([r, s], axis=1) / det[:, None]
-        natural[moving] = np.clip(natural[moving] - step, -1.5, 1.5)
-        moving = moving[np.abs(step).max(axis=1) >= 1e-13]
-        if not moving.size:
-            break
-    return natural
+
+    def residual(x: np.ndarray, slope: np.ndarray, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        error = np.stack([wrapped(np.arctan2(x[:, 1], x[:, 0]) - theta[own]), x[:, 2] - z[own]], axis=1)
+        turn = (x[:, 0, None] * slope[:, 1] - x[:, 1, None] * slope[:, 0]) / (x[:, :2] ** 2).sum(axis=1)[:, None]
+        return error, np.stack([turn, slope[:, 2]], axis=1)
+
+    return kind.solve(corner, residual)
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:

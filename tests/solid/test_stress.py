@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.kinds import hex_shapes
+from exudyn_ehd.solid.elements.kinds import HEX20
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery, von_mises
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
@@ -40,7 +40,7 @@ def test_located_points_map_back_to_their_positions():
     positions = np.stack([r * np.cos(theta), r * np.sin(theta), z], axis=1)
     points = RECOVERY.locate(positions)
     nodes = MESH.nodes[MESH.elements[points.element]]
-    assert np.allclose(np.einsum("na,nai->ni", hex_shapes(points.natural)[0], nodes), positions, atol=1e-13)
+    assert np.allclose(np.einsum("na,nai->ni", HEX20.shapes(points.natural)[0], nodes), positions, atol=1e-13)
     with pytest.raises(InputError, match="must lie inside the solid, got"):
         RECOVERY.locate(np.array([[0.0, 0.0, 0.0]]))
 

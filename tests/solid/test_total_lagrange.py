@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.solid.elements.blocks import smallest_volume_ratio
-from exudyn_ehd.solid.elements.kinds import GAUSS8, GAUSS27, HEX_EDGES, HEX_NODES, IRONS14, hex_shapes
+from exudyn_ehd.solid.elements.kinds import GAUSS8, GAUSS27, HEX20, HEX_EDGES, HEX_NODES, IRONS14
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
@@ -45,7 +45,7 @@ def readable_force(solid, u):
     force = np.zeros_like(u)
     for nodes in solid.mesh.elements:
         for point, weight in zip(solid.quadrature.points, solid.quadrature.weights, strict=True):
-            natural = hex_shapes(point)[1][0]
+            natural = HEX20.shapes(point)[1][0]
             jacobian = solid.mesh.nodes[nodes].T @ natural
             G = natural @ np.linalg.inv(jacobian)
             F = np.eye(3) + u[nodes].T @ G
@@ -225,7 +225,7 @@ def test_damped_tangent_is_exact_in_the_rate():
 
 def test_shape_functions_carry_the_isoparametric_map():
     nodes = SMALL.nodes[SMALL.elements[0]]
-    assert np.allclose(hex_shapes(np.zeros(3))[0] @ nodes, (nodes[8:].sum(axis=0) - nodes[:8].sum(axis=0)) / 4)
+    assert np.allclose(HEX20.shapes(np.zeros(3))[0] @ nodes, (nodes[8:].sum(axis=0) - nodes[:8].sum(axis=0)) / 4)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Description of a kind of element and of its faces; shape functions of simplices, and their gradients.
+"""Description of a kind of element and of its faces, and their shape functions.
 
 Functions take natural coordinates (p, d) of points, and return values (p, n) and gradients (p, n, d) of n nodes.
 
@@ -12,9 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
+
+Residual: TypeAlias = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Residual (m, d) and its derivatives (m, d, d) to natural coordinates, of positions (m, 3), their derivatives
+(m, 3, d), and the numbers (m,) of the points."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -24,18 +29,20 @@ class Cell:
     Parameters
     ----------
     nodes : ndarray, shape (n, d)
-        Natural coordinates.
-    shapes : function
-        Shape functions (p, n) and their gradients (p, n, d) at natural coordinates (p, d).
+        Natural coordinates of the corners, and of the middles of the edges if the cell is quadratic.
     """
 
     nodes: np.ndarray
-    shapes: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
     @property
     def is_simplex(self) -> bool:
         """Return whether it is a triangle or a tetrahedron."""
         return bool(self.nodes.min() >= 0.0)
+
+    def shapes(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return shape functions (p, n) and their gradients (p, n, d) at natural coordinates (p, d)."""
+        shapes = simplex_shapes if self.is_simplex else serendipity_shapes
+        return shapes(self.nodes, np.atleast_2d(points))
 
     def outside(self, natural: np.ndarray) -> np.ndarray:
         """Return the distance of points (p, d) beyond the cell, in natural coordinates; negative inside."""
@@ -43,22 +50,69 @@ class Cell:
             return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)
         return np.abs(natural).max(axis=1) - 1.0
 
+    def solve(self, corners: np.ndarray, residual: Residual) -> np.ndarray:
+        """Natural coordinates (m, d) of points at which a residual vanishes, by Newton's method.
 
-def linear_simplex(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        Points that leave their cell stay within 1.5 of its middle.
+
+        Parameters
+        ----------
+        corners : ndarray, shape (m, n, 3)
+            Nodes of every point's cell [m].
+        residual : Residual
+        """
+        natural = np.tile(self.nodes.mean(axis=0), (len(corners), 1))
+        moving = np.arange(len(corners))
+        for _ in range(20):
+            value, slope = self.shapes(natural[moving])
+            nodes = corners[moving]
+            error, jacobian = residual((value[:, None] @ nodes)[:, 0], nodes.swapaxes(1, 2) @ slope, moving)
+            step = np.linalg.solve(jacobian, error[..., None])[..., 0]
+            natural[moving] = np.clip(natural[moving] - step, -1.5, 1.5)
+            moving = moving[np.abs(step).max(axis=1) >= 1e-13]
+            if not moving.size:
+                break
+        return natural
+
+
+def with_middles(corners: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Natural coordinates of the nodes: corners (c, d), then the middles of edges (k, 2)."""
+    return np.concatenate([corners, corners[edges].mean(axis=1)])
+
+
+def barycentric(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Barycentric coordinates L of a triangle or a tetrahedron, the shape functions of its corners."""
-    points = np.atleast_2d(points)
     p, d = points.shape
     slopes = np.vstack([-np.ones(d), np.eye(d)])
     return np.column_stack([1.0 - points.sum(axis=1), points]), np.broadcast_to(slopes, (p, d + 1, d))
 
 
-def quadratic_simplex(edges: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Shape functions L_i (2 L_i - 1) of the corners and 4 L_i L_j of the nodes on edges i-j, shape (e, 2)."""
-    L, dL = linear_simplex(points)
-    i, j = edges.T
+def simplex_shapes(nodes: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Shape functions L_i (2 L_i - 1) of the corners and 4 L_i L_j of the nodes on edges i-j; L_i of corners alone."""
+    L, dL = barycentric(points)
+    if len(nodes) == L.shape[1]:
+        return L, dL
+    i, j = np.nonzero(barycentric(nodes)[0] == 0.5)[1].reshape(-1, 2).T
     value = np.concatenate([L * (2.0 * L - 1.0), 4.0 * L[:, i] * L[:, j]], axis=1)
     ends, between = (4.0 * L - 1.0)[:, :, None] * dL, L[:, i, None] * dL[:, j] + L[:, j, None] * dL[:, i]
     return value, np.concatenate([ends, 4.0 * between], axis=1)
+
+
+def serendipity_shapes(nodes: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Shape functions of the quadratic square (d = 2) and cube (d = 3), with x_i = xi_i xi_ia of node a.
+
+    Corners: N = prod(1 + x_i) (sum x_i - d + 1) / 2^d; the node on an edge along k: N = (1 - xi_k^2) times the product
+    of the other 1 + x_i, over 2^(d - 1).
+    """
+    x, d, along = points[:, None], nodes.shape[1], nodes == 0.0
+    is_corner = ~along.any(axis=1)
+    factors, slopes = np.where(along, 1.0 - x**2, 1.0 + x * nodes), np.where(along, -2.0 * x, nodes)
+    product = factors.prod(axis=2)
+    bubble = np.where(is_corner, 0.5 * ((x * nodes).sum(axis=2) - d + 1.0), 1.0)
+    rise = np.where(is_corner[:, None], 0.5 * nodes, 0.0)
+    others = np.stack([np.delete(factors, i, axis=2).prod(axis=2) for i in range(d)], axis=2)
+    gradient = others * slopes * bubble[..., None] + product[..., None] * rise
+    return product * bubble / 2 ** (d - 1), gradient / 2 ** (d - 1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,8 +157,6 @@ class Element(Cell):
         Corner, corner, mid-edge node.
     faces : ndarray of int, shape (f, a)
         Normals x_,r × x_,s point outward.
-    shapes : function
-        Shape functions (p, n) and their gradients (p, n, 3) at natural coordinates (p, 3).
     rules : dict
         Quadratures of the stiffness by their names; the first is the default.
     exact : Quadrature
@@ -158,28 +210,27 @@ class Face(Cell):
 
     Parameters
     ----------
-    nodes, shapes
+    nodes
         As in `Cell`, d = 2.
-    corners : int
-        4 of a quadrilateral, 3 of a triangle.
-    outline : ndarray of int
-        Nodes around the face, closed.
     triangles : ndarray of int, shape (t, 3)
         Flat triangles that make it up.
     """
 
-    corners: int
-    outline: np.ndarray
     triangles: np.ndarray
 
     @property
-    def middle(self) -> float:
-        """Both natural coordinates of the middle."""
-        return 0.0 if self.corners == 4 else 1.0 / 3.0
+    def corners(self) -> int:
+        """Number of corners: 4 of a quadrilateral, 3 of a triangle."""
+        return 3 if self.is_simplex else 4
+
+    @property
+    def outline(self) -> np.ndarray:
+        """Nodes around the face, closed."""
+        return np.append(np.arange(len(self.nodes)).reshape(-1, self.corners).T, 0)
 
     def from_square(self, points: np.ndarray) -> np.ndarray:
         """Natural coordinates of points (n, 2) of the square [-1, 1]^2; its last side is a triangle's last corner."""
-        if self.corners == 4:
+        if not self.is_simplex:
             return points
         x, y = 0.5 * (1.0 + points.T)
         return np.stack([x * (1.0 - y), y], axis=1)
@@ -192,65 +243,35 @@ class Face(Cell):
         x, w = np.polynomial.legendre.leggauss(n)
         points = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
         weights = np.einsum("i,j->ij", w, w).ravel()
-        if self.corners == 3:
+        if self.is_simplex:
             weights *= (1.0 - points[:, 1]) / 8.0
         return self.from_square(points), weights
 
     @cached_property
     def rule(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Weights (q,) for loads, and there the shape functions (q, a) and their gradients (q, a, 2)."""
-        points, weights = self.gauss(3 if self.corners == 4 else 4)
+        points, weights = self.gauss(4 if self.is_simplex else 3)
         value, gradient = self.shapes(points)
         return weights, value, gradient
 
 
-_SQUARE = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)
-
-
-def _quadrilateral(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    points = np.atleast_2d(points)
-    r, s = points.T
-    value = np.empty((len(points), 8))
-    gradient = np.empty((len(points), 8, 2))
-    for a, (ra, sa) in enumerate(_SQUARE):
-        if a < 4:
-            value[:, a] = (1 + r * ra) * (1 + s * sa) * (r * ra + s * sa - 1) / 4
-            gradient[:, a, 0] = ra * (1 + s * sa) * (2 * r * ra + s * sa) / 4
-            gradient[:, a, 1] = sa * (1 + r * ra) * (r * ra + 2 * s * sa) / 4
-        elif ra == 0:
-            value[:, a] = (1 - r**2) * (1 + s * sa) / 2
-            gradient[:, a, 0] = -r * (1 + s * sa)
-            gradient[:, a, 1] = sa * (1 - r**2) / 2
-        else:
-            value[:, a] = (1 - s**2) * (1 + r * ra) / 2
-            gradient[:, a, 0] = ra * (1 - s**2) / 2
-            gradient[:, a, 1] = -s * (1 + r * ra)
-    return value, gradient
+def _around(corners: list[tuple[float, float]]) -> np.ndarray:
+    """Corners and middles of the edges between neighbours, in order."""
+    count = np.arange(len(corners))
+    return with_middles(np.array(corners), np.stack([count, np.roll(count, -1)], axis=1))
 
 
 QUADRILATERAL = Face(
-    nodes=_SQUARE,
-    corners=4,
-    shapes=_quadrilateral,
-    outline=np.array([0, 4, 1, 5, 2, 6, 3, 7, 0]),
+    nodes=_around([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]),
     triangles=np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)]),
 )
 """Eight nodes, serendipity: the face of a 20-node hexahedron."""
 TRIANGLE = Face(
-    nodes=np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]),
-    corners=3,
-    shapes=partial(quadratic_simplex, np.array([(0, 1), (1, 2), (2, 0)])),
-    outline=np.array([0, 3, 1, 4, 2, 5, 0]),
+    nodes=_around([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]),
     triangles=np.array([(0, 3, 5), (3, 1, 4), (4, 2, 5), (3, 4, 5)]),
 )
 """Six nodes: the face of a 10-node tetrahedron."""
-FLAT_TRIANGLE = Face(
-    nodes=np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]),
-    corners=3,
-    shapes=linear_simplex,
-    outline=np.array([0, 1, 2, 0]),
-    triangles=np.array([(0, 1, 2)]),
-)
+FLAT_TRIANGLE = Face(nodes=TRIANGLE.nodes[:3], triangles=np.array([(0, 1, 2)]))
 """Three nodes."""
 
 

@@ -40,17 +40,9 @@ rule           force  tangent  displacement error
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
-from exudyn_ehd.solid.elements.element import Element, Quadrature, face_of, linear_simplex, quadratic_simplex
-
-
-def _with_middles(corners: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Natural coordinates of the nodes: corners, then the middles of edges."""
-    return np.concatenate([corners, corners[edges[:, :2]].mean(axis=1)])
-
+from exudyn_ehd.solid.elements.element import Element, Quadrature, barycentric, face_of, with_middles
 
 _HEX_CORNERS = np.array(
     [
@@ -66,7 +58,7 @@ HEX_EDGES = np.array(
     ]
 )
 """Edges as (corner, corner, mid-edge node), shape (12, 3)."""
-HEX_NODES = _with_middles(_HEX_CORNERS, HEX_EDGES)
+HEX_NODES = with_middles(_HEX_CORNERS, HEX_EDGES[:, :2])
 """Natural coordinates of the nodes, shape (20, 3)."""
 
 HEX_FACES = np.array(
@@ -110,44 +102,6 @@ GAUSS8 = gauss_cube(2)
 """Reduced integration: cheapest and softest. Needs two rows of elements along or across the wall."""
 
 
-def hex_shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return N_a and their gradients at natural coordinates.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-
-    Returns
-    -------
-    value : ndarray, shape (n, 20)
-        Corners: N = 1/8 (1 + x)(1 + y)(1 + z)(x + y + z - 2) with x = xi xi_a and so on; mid-edge nodes:
-        N = 1/4 (1 - xi^2)(1 + y)(1 + z) for an edge along xi, and its permutations.
-    gradient : ndarray, shape (n, 20, 3)
-    """
-    points = np.atleast_2d(points)
-    count = len(points)
-    value = np.empty((count, 20))
-    gradient = np.empty((count, 20, 3))
-    for a, node in enumerate(HEX_NODES):
-        linear = 1 + points * node
-        if a < 8:
-            bubble = (points * node).sum(axis=1) - 2
-            product = linear.prod(axis=1)
-            value[:, a] = product * bubble / 8
-            for i in range(3):
-                others = linear[:, (i + 1) % 3] * linear[:, (i + 2) % 3]
-                gradient[:, a, i] = node[i] * others * (bubble + linear[:, i]) / 8
-        else:
-            along = int(np.flatnonzero(node == 0)[0])
-            j, k = (along + 1) % 3, (along + 2) % 3
-            parabola = 1 - points[:, along] ** 2
-            value[:, a] = parabola * linear[:, j] * linear[:, k] / 4
-            gradient[:, a, along] = -points[:, along] * linear[:, j] * linear[:, k] / 2
-            gradient[:, a, j] = parabola * node[j] * linear[:, k] / 4
-            gradient[:, a, k] = parabola * linear[:, j] * node[k] / 4
-    return value, gradient
-
-
 HEX20 = Element(
     name="20-node hexahedra",
     abaqus="C3D20",
@@ -156,7 +110,6 @@ HEX20 = Element(
     nodes=HEX_NODES,
     edges=HEX_EDGES,
     faces=HEX_FACES,
-    shapes=hex_shapes,
     rules={"IRONS14": IRONS14, "GAUSS27": GAUSS27, "GAUSS8": GAUSS8},
     exact=GAUSS27,
     sampling=GAUSS8,
@@ -170,10 +123,8 @@ TET_EDGES = np.array([(0, 1, 4), (1, 2, 5), (2, 0, 6), (0, 3, 7), (1, 3, 8), (2,
 """Edges as (corner, corner, mid-edge node), shape (6, 3)."""
 TET_FACES = np.array([(0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (2, 0, 3, 6, 7, 9)])
 """6-node triangles whose normal x_,r × x_,s points outward, shape (4, 6)."""
-
-_TET_CORNERS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
-tet_shapes = partial(quadratic_simplex, TET_EDGES[:, :2])
-"""Shape functions (p, 10) and their gradients (p, 10, 3) at natural coordinates (p, 3)."""
+TET_NODES = with_middles(np.eye(4)[:, 1:], TET_EDGES[:, :2])
+"""Natural coordinates of the nodes, shape (10, 3)."""
 
 
 def _orbits(degree: int, four: list[tuple[float, float]], six: list[tuple[float, float]]) -> Quadrature:
@@ -201,9 +152,6 @@ WALKINGTON14 = _orbits(
 """Fourteen points, exact for the mass of a straight-edged element and for a curved patch under constant strain. N. J.
 Walkington, Quadrature on simplices of arbitrary dimension, 2000."""
 
-TET_NODES = _with_middles(_TET_CORNERS, TET_EDGES)
-"""Natural coordinates of the nodes, shape (10, 3)."""
-
 TET10 = Element(
     name="10-node tetrahedra",
     abaqus="C3D10",
@@ -212,11 +160,10 @@ TET10 = Element(
     nodes=TET_NODES,
     edges=TET_EDGES,
     faces=TET_FACES,
-    shapes=tet_shapes,
     rules={"HAMMER4": HAMMER4, "WALKINGTON14": WALKINGTON14},
     exact=WALKINGTON14,
     sampling=HAMMER4,
-    extrapolation=linear_simplex(TET_NODES)[0] @ np.linalg.inv(linear_simplex(HAMMER4.points)[0]),
+    extrapolation=barycentric(TET_NODES)[0] @ np.linalg.inv(barycentric(HAMMER4.points)[0]),
 )
 """The 10-node tetrahedron."""
 
