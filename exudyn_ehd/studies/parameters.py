@@ -284,7 +284,7 @@ def parameter_study(
         Number of processes on this machine.
     executor : Executor or None, default None
         An executor of processes, from `concurrent.futures` or with its interface, in place of ``processes``; it stays
-        open. More than 512 rows go to it in parts.
+        open.
     mpi, hosts : not supported any more, default False, ()
         An `InputError` names the executor that takes their place.
     file : path or None, default None

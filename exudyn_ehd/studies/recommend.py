@@ -44,8 +44,6 @@ Options: TypeAlias = dict[str, Any]
 LADDER = ((32, 4), (48, 6), (64, 8), (96, 10), (128, 12), (192, 16))
 LEVELS = ((64, 6), (128, 12), (256, 24))
 MARGIN = 1.5
-# Of the eccentricity; of bearings with supply or a profile, whose film changes with the place of these in it.
-DIRECTIONS, UNEVEN_DIRECTIONS = 12, 24
 # Largest distance of eccentricity ratios at which errors are measured.
 SPACING = 0.1
 # Ranges in which the recommendation was tried.
@@ -263,11 +261,12 @@ def _unknown(bearing: JournalBearing, quantity: str, asked: Sequence[tuple[str, 
 def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
     """Directions of the eccentricity, rad: all around or where asked, over a column of the coarsest grid.
 
-    All around too where supply areas turn with the journal: they pass every angle to the eccentricity.
+    They are 12, or 24 of bearings whose film changes with the place of supply or profile in it. All around too where
+    supply areas turn with the journal: they pass every angle to the eccentricity.
     """
     if any(area.rotating for area in bearing.supply):
         direction = None
-    many = UNEVEN_DIRECTIONS if (bearing.supply or bearing.profiles) and direction is None else DIRECTIONS
+    many = 24 if (bearing.supply or bearing.profiles) and direction is None else 12
     count = np.arange(many)
     # multiples of the golden ratio, without whole parts, spread over every column of the ladder's grids
     places = 2.0 * math.pi / LADDER[0][0] * (0.5 * (math.sqrt(5.0) - 1.0) * count % 1.0 - 0.5)

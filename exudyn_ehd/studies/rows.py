@@ -9,7 +9,7 @@ import numbers
 import pathlib
 import pickle
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from contextlib import nullcontext
 from typing import Any, TypeAlias
@@ -22,9 +22,6 @@ Point = dict[str, Any]
 Function = Callable[[Point], Any]
 _FORMAT = "exudyn_ehd parameter_study 1"
 _WHERE = "parameter_study"
-# Largest number of parts in which rows go to an executor: with more, sending takes longer; with fewer, the slowest
-# worker ends later than the others.
-_MOST_PARTS = 512
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,15 +46,11 @@ class Row:
 Rows: TypeAlias = Iterator[tuple[int, Row]]
 
 
-def evaluated(function: Function, points: Sequence[Point]) -> list[Row]:
-    """Call a function at points; what it raises becomes the row's error, so that it does not take the others along.
+def evaluated(function: Function, point: Point) -> Row:
+    """Call a function at a point; what it raises becomes the row's error, so that it does not take the others along.
 
     The lines that runs log are left out: a study has its table.
     """
-    return [_evaluated(function, point) for point in points]
-
-
-def _evaluated(function: Function, point: Point) -> Row:
     start, results, error = time.perf_counter(), {}, ""
     try:
         with without_lines():
@@ -89,42 +82,36 @@ def rows_of(function: Function, points: Mapping[int, Point], processes: int, exe
     They come as ``(index, row)`` in the order in which they are finished.
     """
     if executor is None and processes == 1:
-        yield from ((index, evaluated(function, [point])[0]) for index, point in points.items())
+        yield from ((index, evaluated(function, point)) for index, point in points.items())
         return
     with ProcessPoolExecutor(processes) if executor is None else nullcontext(executor) as pool:
         yield from _on_executor(function, points, pool)
 
 
 def _on_executor(function: Function, points: Mapping[int, Point], executor: Executor) -> Rows:
-    """Compute the rows by an executor, which stays open; rows that have not begun are cancelled if the study ends.
-
-    Many rows go in parts, so that sending them takes no share of the time.
-    """
+    """Compute the rows by an executor, which stays open; rows that have not begun are cancelled if the study ends."""
     if isinstance(executor, ProcessPoolExecutor):
         require_picklable(function)
-    order, size = list(points), math.ceil(len(points) / _MOST_PARTS)
-    parts: dict[Future[list[Row]], list[int]] = {}
+    futures: dict[Future[Row], int] = {}
     try:
-        for k in range(0, len(order), size):
-            part = order[k : k + size]
+        for index, point in points.items():
             try:
-                future = executor.submit(evaluated, function, [points[index] for index in part])
+                future = executor.submit(evaluated, function, point)
             except RuntimeError as error:
                 # an executor that has broken, or was shut down, takes no more
-                yield from ((index, Row({}, _in_one_line(error))) for index in part)
+                yield index, Row({}, _in_one_line(error))
                 continue
             if not isinstance(future, Future):
                 raise InputError(
                     f"{_WHERE}: executor must hand out futures of concurrent.futures, got those of {executor!r}; of a "
                     "dask Client give client.get_executor()."
                 )
-            parts[future] = part
-        for future in as_completed(parts):
+            futures[future] = index
+        for future in as_completed(futures):
             lost: BaseException | None = CancelledError("by the executor") if future.cancelled() else future.exception()
-            rows = future.result() if lost is None else [Row({}, _in_one_line(lost))] * len(parts[future])
-            yield from zip(parts[future], rows, strict=True)
+            yield futures[future], future.result() if lost is None else Row({}, _in_one_line(lost))
     finally:
-        for future in parts:
+        for future in futures:
             future.cancel()
 
 

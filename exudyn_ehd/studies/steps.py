@@ -28,7 +28,7 @@ from exudyn.itemInterface import (
     ObjectRigidBody2D,
 )
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+from scipy.interpolate import PchipInterpolator
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint
@@ -38,8 +38,8 @@ from exudyn_ehd.progress import without_lines
 from exudyn_ehd.status import EHDError, InputError, RunError, require_number, require_plausible, require_type, warn_user
 from exudyn_ehd.studies.film_errors import order_of
 
+# Steps a period of the coarsest run, and number of runs, each with twice the steps of the one before.
 FEWEST, LEVELS = 90, 7
-FEWEST_ROWS = 8
 # Safety factor: other moving parts of a mechanism add to the error of its bearing.
 MARGIN = 2.0
 # Changes that fall faster from run to run tell of a first run too coarse to belong to the order of the others.
@@ -137,8 +137,8 @@ def recommend_steps(
     require_number("recommend_steps: period", period, "s", above=0.0)
     require_number("recommend_steps: mass", mass, "kg", above=0.0)
     cycle, spins = _require_cycle(load, speed)
-    motion = _periodic(np.broadcast_to(spins, len(cycle)), period)
-    force = _periodic(cycle, period)
+    motion = _two_periods(np.broadcast_to(spins, len(cycle)), period)
+    force = _two_periods(cycle, period)
     runs: list[np.ndarray] = []
     changes: list[float] = []
     evidence: list[str] = []
@@ -147,7 +147,7 @@ def recommend_steps(
         try:
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
-                runs.append(_second_period(bearing, steps, motion, force, mass))
+                runs.append(_second_period(bearing, steps, period, motion, force, mass))
         except EHDError as failure:
             return StepRecommendation(
                 found=False, reason=f"the film fails with {steps} steps a period: {failure}", evidence=tuple(evidence)
@@ -176,10 +176,9 @@ def recommend_steps(
 def _require_cycle(load: ArrayLike, speed: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Load (n, 2) and spin, one number or (n,)."""
     cycle, spins = np.asarray(load, dtype=float), np.asarray(speed, dtype=float)
-    if cycle.ndim != 2 or cycle.shape[1] != 2 or len(cycle) < FEWEST_ROWS or not np.all(np.isfinite(cycle)):
+    if cycle.ndim != 2 or cycle.shape[1] != 2 or len(cycle) < 8 or not np.all(np.isfinite(cycle)):
         raise InputError(
-            f"recommend_steps: load must be an array (n, 2) of finite forces in N, n >= {FEWEST_ROWS}, got shape "
-            f"{cycle.shape}."
+            f"recommend_steps: load must be an array (n, 2) of finite forces in N, n >= 8, got shape {cycle.shape}."
         )
     if spins.shape not in ((), (len(cycle),)) or not np.all(np.isfinite(spins)):
         raise InputError(
@@ -199,29 +198,26 @@ def _bounds(changes: list[float]) -> list[float]:
     return [MARGIN * (sum(changes[k:]) + behind) for k in range(len(changes) - 1)]
 
 
-def _periodic(values: np.ndarray, period: float) -> CubicHermiteSpline:
-    """Return a periodic function through values at equal intervals that stays between neighbours: monotone cubics."""
-    times = np.linspace(0.0, period, len(values) + 1)
-    known = np.concatenate([values[-1:], values, values[:2]])
-    around = period / len(values) * np.arange(-1, len(values) + 2)
-    slopes = PchipInterpolator(around, known).derivative()(times)
-    return CubicHermiteSpline(times, known[1:-1], slopes, extrapolate="periodic")
+def _two_periods(values: np.ndarray, period: float) -> PchipInterpolator:
+    """Return two periods, from time 0, of a function that stays between values (n, ...) at equal intervals.
+
+    Monotone cubics; an interval more on either side gives the slopes at the ends.
+    """
+    rows = np.arange(-1, 2 * len(values) + 2)
+    return PchipInterpolator(period / len(values) * rows, values[rows % len(values)])
 
 
 def _second_period(
-    bearing: JournalBearing, steps: int, spin: CubicHermiteSpline, force: CubicHermiteSpline, mass: float
+    bearing: JournalBearing,
+    steps: int,
+    period: float,
+    spin: PchipInterpolator,
+    force: PchipInterpolator,
+    mass: float,
 ) -> np.ndarray:
     """Minimum film thickness (steps + 1,) over the second period."""
-    period, turned = float(force.x[-1]), spin.antiderivative()
-    whole = float(turned(period))
-
-    def angle(t: float) -> float:
-        cycles, rest = divmod(t, period)
-        return cycles * whole + float(turned(rest))
-
-    def pull(_: object, t: float, load: object) -> list[float]:
-        x, y = force(t)
-        return [float(x), float(y), 0.0]
+    turned = spin.antiderivative()
+    start = float(turned(0.0))
 
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -242,11 +238,13 @@ def _second_period(
     mbs.AddObject(
         ObjectConnectorCoordinate(
             markerNumbers=[fixed, rotation],
-            offsetUserFunction=lambda mbs, t, item, offset: angle(t),
+            offsetUserFunction=lambda mbs, t, item, offset: float(turned(t)) - start,
             offsetUserFunction_t=lambda mbs, t, item, offset: float(spin(t)),
         )
     )
-    mbs.CreateForce(itemNumber=body, loadVector=[0.0, 0.0, 0.0], loadVectorUserFunction=pull)
+    mbs.CreateForce(
+        itemNumber=body, loadVector=[0.0, 0.0, 0.0], loadVectorUserFunction=lambda mbs, t, load: [*force(t), 0.0]
+    )
     items = [mbs.CreateGround(), body]
     joint = CreateLubricatedJoint(
         mbs, name="journal", itemNumbers=items, position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing

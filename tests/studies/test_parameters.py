@@ -9,7 +9,7 @@ import math
 import multiprocessing
 import os
 import time
-from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import exudyn as exu
@@ -225,27 +225,6 @@ class Watched(ProcessPoolExecutor):
 def slow(parameters):
     time.sleep(0.05)
     return parameters["x"]
-
-
-def test_many_rows_go_in_parts_and_come_back_in_order():
-    class Here(ProcessPoolExecutor):
-        parts = 0
-
-        def submit(self, function, *arguments):
-            self.parts += 1
-            future = Future()
-            future.set_result(function(*arguments))
-            return future
-
-    pool, x = Here(1), list(range(1300))
-    table = ehd.parameter_study(cubed, {"x": x}, executor=pool, show_progress=False)
-    np.testing.assert_array_equal(table["value"], np.array(x) ** 3)
-    # rows of three, the last part shorter
-    assert pool.parts == 434
-
-
-def cubed(parameters):
-    return parameters["x"] ** 3
 
 
 @pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="needs processes that are forks")

@@ -34,19 +34,20 @@ def test_loads_stay_between_their_rows():
     """Loads that come and go at once are not exceeded; cubic splines went 13 % beyond. Periodic, with its slope."""
     rng = np.random.default_rng(1)
     load = 1e4 * rng.integers(0, 2, (24, 2))
-    force, t = tried._periodic(load, 0.02), np.linspace(0.0, 0.02, 2001)
+    force, t = tried._two_periods(load, 0.02), np.linspace(0.0, 0.02, 2001)
     # round-off of the cubics' powers
     assert force(t).min() >= -1e-8 and force(t).max() <= 1e4 + 1e-8
     assert force(0.02 + t[1:]) == pytest.approx(force(t[1:]), abs=1e-6)
     wave = np.cos(2.0 * math.pi * (np.arange(24) + 0.5) / 24)[:, None]
     # a peak between two rows is flattened to their value
-    error = tried._periodic(wave, 0.02)(t)[:, 0] - np.cos(2.0 * math.pi * (t / 0.02 + 0.5 / 24))
+    error = tried._two_periods(wave, 0.02)(t)[:, 0] - np.cos(2.0 * math.pi * (t / 0.02 + 0.5 / 24))
     assert np.abs(error).max() < 1.01 * (1.0 - math.cos(math.pi / 24))
 
 
 def _true_error(bearing, steps, speed, period, load, mass):
-    motion, force = tried._periodic(np.broadcast_to(speed, len(load)), period), tried._periodic(load, period)
-    coarse, fine = (tried._second_period(bearing, n, motion, force, mass) for n in (steps, 4 * steps))
+    motion = tried._two_periods(np.broadcast_to(speed, len(load)), period)
+    force = tried._two_periods(load, period)
+    coarse, fine = (tried._second_period(bearing, n, period, motion, force, mass) for n in (steps, 4 * steps))
     floor = max(fine.min(), tried.THINNEST * bearing.radial_clearance)
     return np.abs(coarse - fine[::4]).max() / floor
 
