@@ -11,26 +11,20 @@ from dataclasses import dataclass
 
 import matplotlib
 import numpy as np
-from matplotlib.colors import Colormap, Normalize
+from matplotlib.colors import Colormap, Normalize, to_rgba_array
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled, span
 from exudyn_ehd.pictures.records import FilmRecord, Target, label, unit_for
-from exudyn_ehd.pictures.style import BLACK, VERMILION, headed, new_figure, picture, style_ticks, styled, write
+from exudyn_ehd.pictures.style import BLACK, VERMILION, WIDE, headed, new_figure, picture, style_ticks, styled, write
 from exudyn_ehd.solid.elements.element import Face, face_of
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError
 
-# Size of a bearing in space, inch.
-BEARING = (4.7, 4.0)
-# Shares of the bore radius.
+# Clearance and height of the hill, as shares of the bore radius.
 CLEARANCE, HILL = 0.22, 0.75
-# Facets around, rows along.
-COLUMNS, ROWS = 120, 31
-# Colours of the journal.
-SIDE, CAP = (0.72, 0.74, 0.78), (0.82, 0.84, 0.87)
 
 
 def plot_bearing(
@@ -59,23 +53,23 @@ def plot_bearing(
     matplotlib Figure
     """
     unit = unit_for("pressure", film.pressure)
-    low, high = colour_limits(unit(film.pressure), PRESSURE)
-    norm, colours = Normalize(low, high), matplotlib.colormaps[PRESSURE.colours]
-    around, along = np.linspace(*span(film), COLUMNS + 1), np.linspace(film.z[0], film.z[-1], ROWS)
+    norm = Normalize(*colour_limits(unit(film.pressure)))
+    colours = matplotlib.colormaps[PRESSURE.colours]
+    around, along = np.linspace(*span(film), 121), np.linspace(film.z[0], film.z[-1], 31)
     p = resampled(film, film.pressure, around, along)
     z = along / film.bearing.journal_radius
     hill = pressure_surface(around, z, p)
-    journal = journal_surface(film, np.linspace(0.0, 2.0 * np.pi, COLUMNS + 1), z)
+    journal = journal_surface(film, np.linspace(0.0, 2.0 * np.pi, 121), z)
     own = ax is None
-    with picture(ax, BEARING, path, where="plot_bearing", projection="3d", computed_zorder=False) as (figure, ax):
+    with picture(ax, WIDE, path, where="plot_bearing", projection="3d", computed_zorder=False) as (figure, ax):
         quads, values = quads_of(hill), quads_of(unit(p)[..., None])[..., 0].mean(axis=1)
         quads, values = quads[~np.isnan(values)], values[~np.isnan(values)]
         sides, caps = quads_of(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
         # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four
         # corners, since it pads shorter ones with whatever the memory holds, and scales the axes by it
         polygons = _turned(np.concatenate([quads, sides, caps]))
-        greys = [np.tile([*shade, 1.0], (len(part), 1)) for shade, part in ((SIDE, sides), (CAP, caps))]
-        faces = np.concatenate([colours(norm(values)), *greys])
+        greys = to_rgba_array(["0.74"] * len(sides) + ["0.84"] * len(caps))
+        faces = np.concatenate([colours(norm(values)), greys])
         ax.add_collection3d(Poly3DCollection(polygons, facecolors=faces, edgecolors=faces, linewidths=0.2, zorder=1))
         ring = np.stack([np.cos(around), np.sin(around)], axis=1)
         ring[np.isnan(p[:, 0])] = np.nan
@@ -163,16 +157,6 @@ def look_at(ax: Axes3D, box: np.ndarray, camera: tuple[float, float], *, zoom: f
     ax.view_init(elev=camera[0], azim=camera[1])
 
 
-# Coordinates along the picture's first, second and vertical axis: y is upright.
-ORDER = [2, 0, 1]
-# Camera angles, degrees.
-ELEVATION, AZIMUTH = 18.0, 25.0
-# Flat quadrilaterals along each side of an element's face.
-FACETS = 3
-# Type of a figure of several panels, pt.
-TYPE_SIZE = 10.0
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Frame:
     """One deformed shape with a field on its nodes.
@@ -205,18 +189,19 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Fi
         raise InputError("contour_figure frames must hold at least one Frame, got none; pass what is to be drawn.")
     columns = min(3, int(np.ceil(np.sqrt(len(frames)))))
     rows = -(-len(frames) // columns)
-    low = min(float(np.min(frame.values)) for frame in frames)
-    high = max(float(np.max(frame.values)) for frame in frames)
-    norm = Normalize(low, high if high > low else low + 1.0)
+    norm = Normalize(*colour_limits(np.array([frame.values for frame in frames])))
     colours = matplotlib.colormaps["viridis"]
-    box = _box(mesh, frames)
+    points = _turned(np.concatenate([mesh.nodes, *(mesh.nodes + frame.displacements for frame in frames)]))
+    box = np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
+    # elevation and azimuth, degrees
+    camera = 18.0, -65.0
     plots = []
-    with styled(TYPE_SIZE):
+    with styled(10.0):
         figure = new_figure((3.4 * columns + 1.0, 3.3 * rows))
         for i, frame in enumerate(frames):
             axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
-            _draw(axes, mesh, frame, norm, colours)
-            look_at(axes, box, (ELEVATION, AZIMUTH), zoom=1.1)
+            _draw(axes, mesh, frame, norm, colours, camera)
+            look_at(axes, box, camera, zoom=1.1)
             axes.set_proj_type("ortho")
             axes.set_title(frame.title, y=1.0)
             plots.append(axes)
@@ -226,24 +211,21 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Fi
     return figure
 
 
-def _box(mesh: BushMesh, frames: Sequence[Frame]) -> np.ndarray:
-    points = np.concatenate([mesh.nodes] + [mesh.nodes + frame.displacements for frame in frames])[:, ORDER]
-    return np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
-
-
-def _draw(axes: Axes3D, mesh: BushMesh, frame: Frame, norm: Normalize, colours: Colormap) -> None:
+def _draw(
+    axes: Axes3D, mesh: BushMesh, frame: Frame, norm: Normalize, colours: Colormap, camera: tuple[float, float]
+) -> None:
     """Draw the faces of a deformed mesh: facets in the colours of the field, and their outlines."""
-    kind, faces = face_of(mesh.boundary), (mesh.nodes + frame.displacements)[:, ORDER][mesh.boundary]
+    kind, faces = face_of(mesh.boundary), _turned(mesh.nodes + frame.displacements)[mesh.boundary]
     facets, values = _facets(kind, faces, frame.values[mesh.boundary])
     # closed polylines through the corners and mid-edge nodes, towards the viewer so that no facet of their own face
     # hides them
-    elevation, azimuth = np.radians([ELEVATION, AZIMUTH])
-    camera = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
-    depth = faces @ camera
-    outlines = faces[:, kind.outline] + np.multiply.outer(depth.max(axis=1) - depth.mean(axis=1), camera)[:, None]
+    elevation, azimuth = np.radians(camera)
+    sight = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+    depth = faces @ sight
+    outlines = faces[:, kind.outline] + np.multiply.outer(depth.max(axis=1) - depth.mean(axis=1), sight)[:, None]
     corners = faces[:, : kind.corners]
     normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
-    outlines = outlines[normals @ camera > 0.0]
+    outlines = outlines[normals @ sight > 0.0]
     # one collection, which matplotlib sorts by depth, and with as many corners each, since it pads shorter polygons
     # with whatever the memory holds
     facets = np.concatenate([facets, np.repeat(facets[:, -1:], outlines.shape[1] - 4, axis=1)], axis=1)
@@ -254,11 +236,10 @@ def _draw(axes: Axes3D, mesh: BushMesh, frame: Frame, norm: Normalize, colours: 
 
 
 def _facets(kind: Face, corners: np.ndarray, nodal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Flat quadrilaterals (m, 4, 3) and their mean values (m,) of faces (f, a, 3)."""
-    ticks = np.linspace(-1, 1, FACETS + 1)
+    """Flat quadrilaterals (m, 4, 3), 3 x 3 of them on every face (f, a, 3), and their mean values (m,)."""
+    ticks = np.linspace(-1, 1, 4)
     r, s = np.meshgrid(ticks, ticks, indexing="ij")
     shapes, _ = kind.shapes(kind.from_square(np.stack([r.ravel(), s.ravel()], axis=1)))
     points = np.einsum("pa,fai->fpi", shapes, corners)
     fields = np.einsum("pa,fa->fp", shapes, nodal)
-    grids = (-1, FACETS + 1, FACETS + 1)
-    return quads_of(points.reshape(*grids, 3)), quads_of(fields.reshape(*grids, 1)).mean(axis=1).ravel()
+    return quads_of(points.reshape(-1, 4, 4, 3)), quads_of(fields.reshape(-1, 4, 4, 1)).mean(axis=1).ravel()

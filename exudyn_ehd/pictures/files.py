@@ -8,10 +8,8 @@ instant. Everything stands in the joint frame, in SI units.
 
 from __future__ import annotations
 
-import importlib
 import pathlib
 from collections.abc import Sequence
-from types import ModuleType
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
@@ -22,7 +20,7 @@ from matplotlib.figure import Figure
 
 from exudyn_ehd.film.arcs import columns_of_arcs
 from exudyn_ehd.pictures.histories import draw_clearance
-from exudyn_ehd.pictures.maps import PRESSURE, draw_map, draw_rupture, field_values, on_picture
+from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, draw_map, draw_rupture, field_values, on_picture
 from exudyn_ehd.pictures.records import HistoryRecord, JointFilm, label, unit_for
 from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, WIDE, style_ticks, styled
 from exudyn_ehd.status import InputError, require_integer, require_number
@@ -43,12 +41,11 @@ class Frames:
 
     def __init__(self, films: Sequence[JointFilm], history: HistoryRecord) -> None:
         self.films, self.history = films, history
-        largest = max(float(np.max(film.pressure)) for film in films)
-        lowest = min(float(np.min(film.pressure)) for film in films)
-        self.unit = unit_for("pressure", max(abs(largest), abs(lowest)))
+        extremes = np.array([(film.pressure.min(), film.pressure.max()) for film in films])
+        self.unit = unit_for("pressure", extremes)
         self.length = unit_for("length", history.radial_clearance)
         self.time = unit_for("time", history.time)
-        limits = float(self.unit(lowest)), float(self.unit(max(largest, lowest + 1.0)))
+        limits = colour_limits(self.unit(extremes))
         with styled():
             self.figure = Figure(figsize=(PAGE, WIDE[1]), layout="constrained")
             self.left, self.right = self.figure.subplots(1, 2, width_ratios=(1.0, 1.75))
@@ -153,7 +150,12 @@ def export_films(
     InputError
         Without meshio, or for other endings.
     """
-    meshio = _meshio()
+    try:
+        import meshio
+    except ImportError:
+        raise InputError(
+            "export_vtk needs the package meshio, which is not installed; pip install meshio (or exudyn-ehd[vtk])."
+        ) from None
     target = pathlib.Path(path)
     if target.suffix != ".pvd":
         raise InputError(
@@ -227,12 +229,3 @@ def _recovery(bush: object) -> StressRecovery:
 
     assert isinstance(bush, ANCFBush | ModalBush)
     return StressRecovery(mesh=bush.build_mesh(), material=bush.material)
-
-
-def _meshio() -> ModuleType:
-    try:
-        return importlib.import_module("meshio")
-    except ImportError:
-        raise InputError(
-            "export_vtk needs the package meshio, which is not installed; pip install meshio (or exudyn-ehd[vtk])."
-        ) from None

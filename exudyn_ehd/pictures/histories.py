@@ -31,14 +31,6 @@ from exudyn_ehd.pictures.style import (
 )
 from exudyn_ehd.status import InputError
 
-# Height of one panel of traces, inch; margins and title have half of it.
-PANEL = 1.35
-# Of a waterfall: duration of one spectrum over that of the history, steps that it takes at least, steps from one
-# spectrum to the next and frequencies, over those of a spectrum; smallest amplitude shown over the largest.
-_SPECTRUM, _LEAST, _SHIFT, _FINER, _FLOOR = 0.05, 16, 0.125, 4, 1e-3
-# Distances of ticks on an axis of angles, degrees.
-_TICKS = [15.0, 30.0, *(45.0 * 2.0**k for k in range(40))]
-
 
 def plot_orbit(
     history: HistoryRecord,
@@ -228,9 +220,10 @@ def plot_traces(
             if text:
                 panel.legend()
         if angle is not None:
-            # at most nine ticks on fractions or multiples of a turn
-            span = float(np.ptp(unit(along)))
-            panels[-1].xaxis.set_major_locator(MultipleLocator(next(b for b in _TICKS if span <= 8.0 * b)))
+            # at most nine ticks on fractions or multiples of a turn, degrees
+            distances = [15.0, 30.0, *(45.0 * 2.0**k for k in range(40))]
+            widest = float(np.ptp(unit(along))) / 8.0
+            panels[-1].xaxis.set_major_locator(MultipleLocator(next(b for b in distances if b >= widest)))
         panels[-1].set_xlabel(label("time" if angle is None else angle_text, unit))
         write(figure, path)
     return figure
@@ -272,10 +265,10 @@ def spectra(
     of_place = str(getattr(quantity, "value", quantity)) == "eccentricity"
     values = history.eccentricity[:, 0] if of_place else getattr(history, _checked(history, quantity, "plot_waterfall"))
     duration, steps = float(np.ptp(history.time)) or 1.0, history.time.size - 1
-    count = round(_SPECTRUM * steps if window is None else window / duration * steps)
-    if not _LEAST <= count <= steps:
+    count = round(0.05 * steps if window is None else window / duration * steps)
+    if not 16 <= count <= steps:
         raise InputError(
-            f"plot_waterfall: window must hold at least {_LEAST} of the history's {steps} steps, which take "
+            f"plot_waterfall: window must hold at least 16 of the history's {steps} steps, which take "
             f"{duration:.4g} s, got {count} steps{'' if window is None else f' in {window!r} s'}."
         )
     frequency, time, amplitude = signal.spectrogram(
@@ -283,8 +276,8 @@ def spectra(
         steps / duration,
         window="hann",
         nperseg=count,
-        noverlap=count - max(round(_SHIFT * count), 1),
-        nfft=_FINER * count,
+        noverlap=count - round(count / 8),
+        nfft=4 * count,
         detrend="linear",
         scaling="spectrum",
         mode="magnitude",
@@ -343,7 +336,7 @@ def plot_waterfall(
     largest = float(amplitude[below].max()) or 1.0
     unit, along = unit_for(kind, largest), unit_for("time", time) if speed is None else RPM
     # amplitudes of a temperature without its offset
-    across, shown = along(time if speed is None else at), unit.factor * np.maximum(amplitude[below].T, _FLOOR * largest)
+    across, shown = along(time if speed is None else at), unit.factor * np.maximum(amplitude[below].T, 1e-3 * largest)
     with picture(ax, WIDE, path, title=title) as (figure, ax):
         colours = ax.pcolormesh(frequency[below], across, shown, norm=LogNorm(), shading="nearest", rasterized=True)
         for order, style in ((1.0, ":"), (0.5, "--")):
@@ -356,7 +349,7 @@ def plot_waterfall(
 
 def _new_panels(count: int, title: str, path: Target) -> np.ndarray:
     """Axes below each other in a new figure."""
-    figure = new_figure((WIDE[0], PANEL * (count + 0.5)), path)
+    figure = new_figure((WIDE[0], 1.35 * (count + 0.5)), path)
     figure.suptitle(title)
     panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
     for panel in panels:

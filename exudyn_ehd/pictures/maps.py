@@ -19,7 +19,7 @@ from exudyn_ehd.film.arcs import TOUCHING, columns_of_arcs
 from exudyn_ehd.film.supply.areas import covers, placed
 from exudyn_ehd.pictures.records import FilmRecord, Target, Unit, label, shown, unit_for
 from exudyn_ehd.pictures.style import BLACK, GREY, TALL, WIDE, headed, picture, style_ticks
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import ROUNDING, InputError
 
 # Points of a picture around and along.
 FINE = (721, 121)
@@ -88,18 +88,6 @@ def field_values(film: FilmRecord, field: MapField) -> np.ndarray:
         joints = "" if hasattr(film, field.name) else " Films of joints have it: joint.film()."
         raise InputError(f"plot_{field.name}: this film has no {field.text}; {field.absent}{joints}")
     return np.broadcast_to(np.asarray(values, dtype=float), film.pressure.shape)
-
-
-def closed_ring(theta: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Angles 0 .. 2 pi (k,) and values (k, m) of a field on a closed ring, both edges interpolated at 0.
-
-    The ring is a sequence of vertices from any start; linear between them.
-    """
-    angle = np.mod(theta, math.tau)
-    # an angle a rounding below a turn is the angle 0
-    angle[angle > math.tau * (1.0 - 1e-12)] = 0.0
-    around = np.unique(np.concatenate(([0.0], angle, [math.tau])))
-    return around, _around(theta, values, around)
 
 
 def _around(theta: np.ndarray, values: np.ndarray, angles: np.ndarray) -> np.ndarray:
@@ -183,7 +171,7 @@ def draw_map(
 ) -> AxesImage:
     """Draw the map with axes and outlines into ``ax``; returns the image. ``limits`` of colours in its unit."""
     values = unit(on_picture(film, field_values(film, field), prescribed_ends=field.name != "fill"))
-    low, high = limits or colour_limits(values, field)
+    low, high = limits or ((0.0, 1.0) if field.name == "fill" else colour_limits(values))
     first, last = np.degrees(span(film))
     image = ax.imshow(
         values.T,
@@ -212,14 +200,12 @@ def draw_map(
     return image
 
 
-def colour_limits(values: np.ndarray, field: MapField) -> tuple[float, float]:
-    """Colour limits: the values' range, 0 to 1 for a fraction; never empty."""
-    if field.name == "fill":
-        return 0.0, 1.0
+def colour_limits(values: np.ndarray) -> tuple[float, float]:
+    """Colour limits: the values' range; never empty."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     # a uniform field (a single temperature, a concentric journal) to rounding
-    if high - low <= 1e-9 * max(abs(low), abs(high)):
-        half = 0.5 * max(abs(low), 1.0) * 0.02
+    if high - low <= ROUNDING * max(abs(low), abs(high)):
+        half = 0.01 * max(abs(low), 1.0)
         return low - half, high + half
     return low, high
 
@@ -228,21 +214,17 @@ def draw_rupture(ax: Axes, film: FilmRecord) -> ContourSet | None:
     """Draw the boundary of the unbroken film; None if there is none inside."""
     # vertices with a prescribed pressure are none of the solver's: full where the pressure is above the cavity's
     full = film.unbroken | (film.pressure > film.bearing.cavitation.cavity_pressure)
-    theta, whole = film.theta, full.astype(float)
-    arcs = columns_of_arcs(theta, film.bearing.bore_arcs)
-    for part in arcs:
+    whole = full.astype(float)
+    for part in columns_of_arcs(film.theta, film.bearing.bore_arcs):
         whole[[part.start, part.stop - 1]] = whole[[part.start + 1, part.stop - 2]]
-    if not arcs:
-        theta, whole = closed_ring(theta, whole)
-    elif len(arcs) > 1:
-        theta = np.linspace(0.0, math.tau, FINE[0])
-        whole = resampled(film, whole, theta, film.z)
     inner = whole[:, 1:-1]
-    if inner.size == 0 or np.nanmin(inner) == np.nanmax(inner):
+    if inner.size == 0 or inner.min() == inner.max():
         return None
     # prescribed end rows count as neither: the boundary runs straight into the ends
     whole[:, 0], whole[:, -1] = whole[:, 1], whole[:, -2]
-    edge = ax.contour(np.degrees(theta), 1e3 * film.z, whole.T, levels=[0.5], colors=["white"])
+    theta = np.linspace(*span(film), FINE[0])
+    drawn = resampled(film, whole, theta, film.z)
+    edge = ax.contour(np.degrees(theta), 1e3 * film.z, drawn.T, levels=[0.5], colors=["white"])
     edge.set(**{name: value for name, value in RUPTURE.items() if name != "color"})
     return edge
 

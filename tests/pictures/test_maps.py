@@ -74,17 +74,6 @@ def test_rupture_line_bounds_the_pressure(film):
     assert min(row) == 1.0
 
 
-def test_a_ring_that_starts_anywhere_is_closed_at_zero():
-    theta = np.arange(8) * np.pi / 4 + 2.9
-    values = np.cos(theta)[:, None] * np.ones(3)
-    angle, closed = maps.closed_ring(theta, values)
-    assert angle[0] == 0.0 and angle[-1] == 2.0 * np.pi and np.all(np.diff(angle) > 0.0)
-    np.testing.assert_array_equal(closed[0], closed[-1])
-    # linear between vertices 45 degrees apart: cos 22.5 deg at worst
-    assert np.cos(np.pi / 8) <= closed[0, 0] <= 1.0
-    np.testing.assert_allclose(closed[1:-1, 1], np.cos(angle[1:-1]), atol=1e-12)
-
-
 def test_missing_fields_are_named(film):
     with pytest.raises(InputError, match=r"plot_fill: this film has no film fraction.*ElrodAdams"):
         film.plot_fill()
@@ -93,9 +82,9 @@ def test_missing_fields_are_named(film):
 
 
 def test_uniform_fields_have_a_colour_range():
-    low, high = maps.colour_limits(np.full((4, 3), 40.0), maps.FIELDS["temperature"])
+    low, high = maps.colour_limits(np.full((4, 3), 40.0))
     assert low < 40.0 < high
-    low, high = maps.colour_limits(np.zeros((4, 3)), maps.FIELDS["pressure"])
+    low, high = maps.colour_limits(np.zeros((4, 3)))
     assert low < 0.0 < high
 
 
