@@ -21,7 +21,7 @@ a bore.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -40,14 +40,18 @@ from exudyn_ehd.status import (
     Checked,
     InputError,
     PlausibilityWarning,
+    require_bool,
     require_number,
     require_type,
     warn_user,
 )
 from exudyn_ehd.storage import cached_arrays
 
-# Limits of a modal bush's tolerance. Below the smallest, the waves of its search do not suffice.
-SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
+
+def require_tolerance(where: str, tolerance: float) -> float:
+    """Return the tolerance of a choice of modes, or raise `InputError`."""
+    # below 2e-3 the waves of the search do not suffice
+    return require_number(where, tolerance, at_least=2e-3, at_most=0.2, hint="0.07 is a good start.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +80,7 @@ class Rayleigh(Checked):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Solid:
+class _Solid(Checked):
     """Common part of both kinds of bush; parameters as in `ANCFBush`."""
 
     mesh: HollowCylinder | BushMesh
@@ -84,6 +88,7 @@ class _Solid:
     quadrature: Quadrature | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         kind = type(self).__name__
         if not isinstance(self.mesh, HollowCylinder | BushMesh):
             raise InputError(
@@ -93,10 +98,6 @@ class _Solid:
         require_type(f"{kind}.material", self.material, SaintVenantKirchhoff)
         element = HEX20 if isinstance(self.mesh, HollowCylinder) else self.mesh.element
         object.__setattr__(self, "quadrature", own_rule(kind, element, self.quadrature))
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(field.default, bool) and not isinstance(value, bool):
-                raise InputError(f"{kind}.{field.name} must be True or False, got {value!r}.")
 
     def build_mesh(self) -> BushMesh:
         """Return the mesh, bush frame."""
@@ -136,6 +137,8 @@ class ANCFBush(_Solid):
 
     damping: Rayleigh | None = None
     parallel: bool = False
+
+    checks: ClassVar = {"parallel": require_bool}
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -202,19 +205,11 @@ class ModalBush(_Solid):
     tolerance: float = 0.07
     tilted: bool = True
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_tolerance("ModalBush.tolerance", self.tolerance)
+    checks: ClassVar = {"tolerance": require_tolerance, "tilted": require_bool}
 
     def solid(self, mesh: BushMesh) -> TotalLagrange:
         """Return the solid on a mesh."""
         return TotalLagrange(mesh=mesh, material=self.material, quadrature=self.quadrature)
-
-
-def require_tolerance(where: str, tolerance: float) -> float:
-    """Return the tolerance of a choice of modes, or raise `InputError`."""
-    hint = "0.07 is a good start."
-    return require_number(where, tolerance, at_least=SMALLEST_TOLERANCE, at_most=LARGEST_TOLERANCE, hint=hint)
 
 
 def require_bore(mesh: HollowCylinder | BushMesh, radius: float, length: float) -> None:
@@ -235,10 +230,6 @@ def require_bore(mesh: HollowCylinder | BushMesh, radius: float, length: float) 
             f"JournalBearing.bush must be at least as long as the film, {length:g} m about its mid-plane, got "
             f"a bore from {ends[0]:g} to {ends[1]:g} m."
         )
-
-
-# Elements around a bore, of which fewer are warned of: on 8 the minimum film thickness is 3 to 9 % off.
-FEWEST_AROUND = 12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -311,10 +302,10 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
         If the tolerance takes more waves than the search allows.
     """
     mesh = bush.build_mesh()
-    if (around := mesh.bore.cuts[0].size) < FEWEST_AROUND:
+    if (around := mesh.bore.cuts[0].size) < 12:
         warn_user(
-            f"ModalBush.mesh: a bore of {around} elements around is unusual, bearings have {FEWEST_AROUND} or more: "
-            "films on 8 are 3 to 9 % thicker than on 40. Refine the mesh.",
+            f"ModalBush.mesh: a bore of {around} elements around is unusual, bearings have 12 or more: films "
+            "on 8 are 3 to 9 % thicker than on 40. Refine the mesh.",
             PlausibilityWarning,
         )
     length = 2.0 * float(min(-mesh.bore.z.min(), mesh.bore.z.max())) if length is None else length

@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from scipy.sparse import csr_matrix, spmatrix
@@ -33,12 +33,8 @@ from exudyn_ehd.solid.linear import held_solution
 from exudyn_ehd.solid.mesh import require_frame
 from exudyn_ehd.solid.pressure_modes import ALONG, AROUND, FilmSurface, film_modes, film_points
 from exudyn_ehd.solid.unrolled import Surface, patch
-from exudyn_ehd.status import SMALL, InputError, require_bool, require_number, require_vector
+from exudyn_ehd.status import POSITIVE, SMALL, Checked, InputError, require_bool, require_number, require_vector
 
-# Largest angle between neighbouring nodes of a bore, rad.
-LARGEST_SPACING = 0.6
-# Spread of the radii of nodes on one surface, over the radius: facets.
-SURFACE = 5e-3
 # Largest distance of a point beyond a face, in natural coordinates: facets, and films as long as the bore.
 OUTSIDE = 0.02
 
@@ -147,8 +143,10 @@ def find_bore(
         # a little beyond the film: other bores on the same axis don't count
         member = (np.abs(r - radius) <= tolerance * radius) & (np.abs(positions[:, 2]) <= 0.75 * length)
         if member.any():
-            # a bore's surface is what is nearest to its axis; the next layer of a fine mesh may be within the tolerance
-            member &= r >= r[member].max() - SURFACE * radius if outer else r <= r[member].min() + SURFACE * radius
+            # a bore's surface is what is nearest to its axis, up to the spread of radii by facets; the next layer of a
+            # fine mesh may be within the tolerance
+            spread = 5e-3 * radius
+            member &= r >= r[member].max() - spread if outer else r <= r[member].min() + spread
         chosen = np.flatnonzero(member)
     else:
         chosen = np.array(nodes, dtype=int)
@@ -165,10 +163,10 @@ def find_bore(
         )
     angle = np.sort(np.arctan2(positions[chosen, 1], positions[chosen, 0]))
     gap = np.diff(np.append(angle, angle[0] + 2.0 * np.pi)).max()
-    if gap > LARGEST_SPACING:
+    if gap > 0.6:
         raise InputError(
-            f"{where}: the nodes on the bore leave {gap:.3g} rad of it without any, at most {LARGEST_SPACING:g} rad "
-            "are allowed; give a closed bore, or a finer mesh."
+            f"{where}: the nodes on the bore leave {gap:.3g} rad of it without any, at most 0.6 rad are allowed; give "
+            "a closed bore, or a finer mesh."
         )
     z = positions[chosen, 2]
     if max(z.min() + 0.5 * length, 0.5 * length - z.max()) > SMALL * length:
@@ -180,7 +178,7 @@ def find_bore(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FESurface:
+class FESurface(Checked):
     """A surface of an ObjectFFRFreducedOrder under the film; see `FEBore` and `FEJournal`."""
 
     fem: BodyMesh
@@ -189,13 +187,13 @@ class FESurface:
     settled: bool = True
     exact_jacobian: bool = True
 
+    checks: ClassVar = {"radius_tolerance": POSITIVE, "settled": require_bool, "exact_jacobian": require_bool}
+
     def __post_init__(self) -> None:
+        super().__post_init__()
         own = type(self).__name__
         if not hasattr(self.fem, "elements"):
             raise InputError(f"{own}.fem must be the FEMinterface that the body was made of, got {self.fem!r}.")
-        require_bool(f"{own}.settled", self.settled)
-        require_bool(f"{own}.exact_jacobian", self.exact_jacobian)
-        require_number(f"{own}.radius_tolerance", self.radius_tolerance, above=0.0)
         if self.nodes is not None:
             try:
                 numbers = np.asarray(self.nodes)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,13 +17,21 @@ from exudyn_ehd.solid.journal.harmonics import SHAPES, SLOPES, WEIGHTS
 from exudyn_ehd.solid.mesh import BushMesh, Line
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.solid.unrolled import Surface
-from exudyn_ehd.status import InputError, require_number, require_vector
+from exudyn_ehd.status import Checked, InputError, require_number, require_vector
 
 LoadHistory = Callable[[float], float]
 
 
+def _require_history(where: str, history: object) -> None:
+    if not callable(history):
+        raise InputError(
+            f"{where} must be a function of time or None, got {history!r}; write history=lambda t: ... for a load "
+            "that varies."
+        )
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LineLoad:
+class LineLoad(Checked):
     """Force per length along a line of a bush, of constant direction.
 
     Parameters
@@ -44,9 +54,10 @@ class LineLoad:
     force_per_length: tuple[float, float, float] | np.ndarray
     history: LoadHistory | None = None
 
-    def __post_init__(self) -> None:
-        require_vector("LineLoad.force_per_length", self.force_per_length, 3, "N/m")
-        _require_history("LineLoad.history", self.history)
+    checks: ClassVar = {
+        "force_per_length": partial(require_vector, size=3, unit="N/m"),
+        "history": _require_history,
+    }
 
     def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
         """Return int N_a q ds as nodal forces, shape (n, 3) [N]."""
@@ -61,7 +72,7 @@ class LineLoad:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SurfaceLoad:
+class SurfaceLoad(Checked):
     """Force per area on a surface of a bush, of constant direction.
 
     Parameters
@@ -87,10 +98,11 @@ class SurfaceLoad:
     distribution: np.ndarray | None = None
     history: LoadHistory | None = None
 
+    checks: ClassVar = {"traction": partial(require_vector, size=3, unit="Pa"), "history": _require_history}
+
     def __post_init__(self) -> None:
-        require_vector("SurfaceLoad.traction", self.traction, 3, "Pa")
+        super().__post_init__()
         _require_distribution("SurfaceLoad.distribution", self.distribution, self.surface)
-        _require_history("SurfaceLoad.history", self.history)
 
     def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
         """Return int N_a t dA as nodal forces, shape (n, 3) [N]."""
@@ -103,7 +115,7 @@ class SurfaceLoad:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _SurfacePressure:
+class _SurfacePressure(Checked):
     """Pressure along the inward normal of a surface; parameters as in `DeadPressure`."""
 
     surface: Surface
@@ -111,11 +123,11 @@ class _SurfacePressure:
     distribution: np.ndarray | None = None
     history: LoadHistory | None = None
 
+    checks: ClassVar = {"pressure": partial(require_number, unit="Pa"), "history": _require_history}
+
     def __post_init__(self) -> None:
-        name = type(self).__name__
-        require_number(f"{name}.pressure", self.pressure, "Pa")
-        _require_distribution(f"{name}.distribution", self.distribution, self.surface)
-        _require_history(f"{name}.history", self.history)
+        super().__post_init__()
+        _require_distribution(f"{type(self).__name__}.distribution", self.distribution, self.surface)
 
     def forces(self, positions: np.ndarray) -> np.ndarray:
         """Return -int N_a p n da at positions (n, 3) [m] and history = 1, shape (n, 3) [N]."""
@@ -196,7 +208,7 @@ class FollowerPressure(_SurfacePressure):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Gravity:
+class Gravity(Checked):
     """Weight of the bush: its density times an acceleration.
 
     Parameters
@@ -214,9 +226,7 @@ class Gravity:
     acceleration: tuple[float, float, float] | np.ndarray
     history: LoadHistory | None = None
 
-    def __post_init__(self) -> None:
-        require_vector("Gravity.acceleration", self.acceleration, 3, "m/s^2")
-        _require_history("Gravity.history", self.history)
+    checks: ClassVar = {"acceleration": partial(require_vector, size=3, unit="m/s^2"), "history": _require_history}
 
 
 BushLoad = LineLoad | SurfaceLoad | DeadPressure | FollowerPressure | Gravity
@@ -245,14 +255,6 @@ def _at_points(distribution: np.ndarray | None, surface: Surface) -> np.ndarray:
     if distribution is None:
         return np.ones((len(surface.faces), len(surface.kind.rule[0])))
     return np.asarray(distribution, dtype=float)[surface.local_faces] @ surface.kind.rule[1].T
-
-
-def _require_history(where: str, history: LoadHistory | None) -> None:
-    if history is not None and not callable(history):
-        raise InputError(
-            f"{where} must be a function of time or None, got {history!r}; write history=lambda t: ... for a load "
-            "that varies."
-        )
 
 
 def _require_distribution(where: str, distribution: np.ndarray | None, surface: Surface) -> None:

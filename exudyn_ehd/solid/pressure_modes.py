@@ -69,8 +69,6 @@ MEASURE = (0.9,), (0.5,), (0.8, 2.4, 0.8 + np.pi, 2.4 + np.pi), (3,), (-0.4, 0.6
 # Larger, it takes waves around later, and terms along the axis sooner. Of 0, 0.25, 0.5, 0.75 and 1 the films of nine
 # bushes take 470, 435, 420, 395 and 395 modes together within 1 %, and 490, 470, 445, 445 and 455 within 0.5 %.
 WAVE_WEIGHT = 0.75
-# Waves of the gap over its slope.
-WAVY = 0.7
 # Directions of the eccentricity in the films that measure the error, rad: by the golden angle, so that none lies to
 # the elements around as another does.
 DIRECTIONS = 0.2 + np.pi * (3.0 - np.sqrt(5.0)) * np.arange(6)
@@ -87,8 +85,6 @@ CERTAIN = 1e3
 # a uniform traction around the bore moves radially, over pressures of the same size. Where the latter is smaller, the
 # film's shear, a hundredth of its pressure, moves the bore by 1e-4 of what the pressure does.
 NOTICED = 0.01
-# Singular values this close belong to a pair, cos and sin, that the number of modes must not part.
-PAIR = 1e-3
 # Vertices around and along of the fit of films by candidates.
 FIT = 256, 64
 # Least number of points around and along on the film's surface: beyond the orders of the pressures.
@@ -223,7 +219,8 @@ def _films(choice: tuple, tilted: bool, directions: np.ndarray) -> list[SampleFi
     for e, decay, phi in itertools.product(eccentricities, decays, directions):
         turn, turned = np.exp(1j * phi), [(1.0 - e) * s * np.exp(1j * u) for s in shares for u in phases]
         found += [SampleFilm(e * turn, b * turn, 0, 0.0, 0.0, decay) for b in ([0.0, *turned] if tilted else [0.0])]
-        found += [SampleFilm(e * turn, 0.0, n, WAVY * a * turn**n, 0.0, decay) for n in waves for a in turned]
+        # waves of the gap are 0.7 of its slope
+        found += [SampleFilm(e * turn, 0.0, n, 0.7 * a * turn**n, 0.0, decay) for n in waves for a in turned]
         found += [SampleFilm(e * turn, 0.0, 0, 0.0, k * (1.0 - e), decay) for k in crowns]
     return found
 
@@ -351,7 +348,8 @@ def fewest_modes(
             f"the modes' tolerance {tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial "
             f"order {LARGEST_AXIAL} (error {least:.2g}); raise it, or take an ANCFBush."
         )
-    while high < sizes.size and sizes[high] > (1.0 - PAIR) * sizes[high - 1]:
+    # singular values within 0.1 % belong to a pair, cos and sin, that the number of modes must not part
+    while high < sizes.size and sizes[high] > 0.999 * sizes[high - 1]:
         high += 1
     return high, error(high)
 

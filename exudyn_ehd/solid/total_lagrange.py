@@ -16,7 +16,7 @@ from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
-from scipy.sparse import csr_matrix, kron
+from scipy.sparse import bsr_matrix, csr_matrix, kron
 
 from exudyn_ehd.solid.elements import blocks, kernels
 from exudyn_ehd.solid.elements.element import Element, Quadrature
@@ -286,20 +286,15 @@ class Pattern:
         """Return the pattern of a connectivity (m, a) over n nodes."""
         key = elements[:, :, None].astype(np.int64) * n + elements[:, None, :]
         pairs, place = np.unique(key, return_inverse=True)
-        row, column = pairs // n, pairs % n
-        count = np.bincount(row, minlength=n)
-        start = np.concatenate([[0], np.cumsum(count)])
-        rank = np.arange(len(pairs)) - start[row]
-        slot = 9 * start[row] + 3 * rank
-        indptr = np.concatenate([[0], np.cumsum(np.repeat(3 * count, 3))]).astype(np.int32)
-        indices = np.empty(9 * len(pairs), dtype=np.int32)
-        for i in range(3):
-            for j in range(3):
-                indices[slot + 3 * i * count[row] + j] = 3 * column + j
+        row, column = np.divmod(pairs, n)
+        start = np.searchsorted(row, np.arange(n + 1))
+        blocks = bsr_matrix((np.zeros((len(pairs), 3, 3)), column, start), shape=(3 * n, 3 * n)).tocsr()
+        # behind the nine entries of every pair of earlier nodes, and three of every earlier pair of this one
+        slot = 9 * start[row] + 3 * (np.arange(len(pairs)) - start[row])
         return cls(
-            indptr=indptr,
-            indices=indices,
-            stride=3 * count.astype(np.int64),
+            indptr=blocks.indptr,
+            indices=blocks.indices,
+            stride=np.diff(blocks.indptr)[::3].astype(np.int64),
             slot=slot[place].reshape(key.shape).astype(np.int32),
         )
 

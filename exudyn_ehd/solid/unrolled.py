@@ -12,9 +12,6 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.solid.elements.element import Face, face_of
 from exudyn_ehd.status import SMALL, InputError
 
-# Share of the faces that are smaller than a small one.
-SMALL_FACES = 0.1
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Surface:
@@ -65,13 +62,13 @@ class Surface:
         """Angles [rad], 0 to 2 pi, and places z [m], ascending, at which integrals over the faces are parted.
 
         The lines of their corners if these are as few as a structured mesh has; others are cut evenly, in steps of
-        half a small face.
+        half a small face, which a tenth of the faces are smaller than.
         """
         ends = self.positions[self.local_faces[:, : self.kind.corners]]
         _, spread, low, high = _extents(self.positions[self.local_faces])
         angles = _distinct(np.arctan2(ends[..., 1], ends[..., 0]) % (2.0 * np.pi), 2.0 * np.pi)
         places = _distinct(ends[..., 2], float(np.ptp(ends[..., 2])))
-        around, along = (0.5 * float(np.quantile(size, SMALL_FACES)) for size in (2.0 * spread, high - low))
+        around, along = (0.5 * float(np.quantile(size, 0.1)) for size in (2.0 * spread, high - low))
         if angles.size * around > 2.0 * np.pi:
             angles = np.arange(0.0, 2.0 * np.pi, around)
         if (places.size - 1) * along > places[-1] - places[0]:

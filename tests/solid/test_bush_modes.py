@@ -131,7 +131,7 @@ def test_loads_carry_the_pressures_resultant():
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"tolerance": 0.0}, {"tolerance": 0.5}, {"tilted": 1}, {"mesh": 3}, {"material": 2.1e11}]
+    "wrong", [{"tolerance": 0.0}, {"tolerance": 0.5}, {"tilted": 2}, {"mesh": 3}, {"material": 2.1e11}]
 )
 def test_wrong_values_are_named(wrong):
     given = {"mesh": CYLINDER, "material": STEEL} | wrong

@@ -21,8 +21,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil, log, log1p
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -31,7 +32,7 @@ from exudyn_ehd.solid import pressure_modes as films
 from exudyn_ehd.solid.bush import ModalBush, require_tolerance
 from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
-from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
+from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_bool, require_type, require_vector
 from exudyn_ehd.storage import cached_arrays
 
 
@@ -77,7 +78,7 @@ class HeldBands:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElasticJournal:
+class ElasticJournal(Checked):
     """A linear elastic solid or hollow pin as a bearing's journal, reduced to modes of its surface.
 
     It is a cylinder that follows the film without inertia: only film and contact deform it. Its mass is its body's;
@@ -125,12 +126,16 @@ class ElasticJournal:
     tolerance: float = 0.05
     tilted: bool = True
 
+    checks: ClassVar = {
+        "inner_radius": partial(NOT_NEGATIVE, hint="0 is a solid pin."),
+        "tolerance": require_tolerance,
+        "tilted": require_bool,
+    }
+
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_type("ElasticJournal.material", self.material, SaintVenantKirchhoff)
         require_type("ElasticJournal.held", self.held, HeldEnds, HeldBands, type(None))
-        require_number("ElasticJournal.inner_radius", self.inner_radius, "m", at_least=0.0, hint="0 is a solid pin.")
-        require_tolerance("ElasticJournal.tolerance", self.tolerance)
-        require_bool("ElasticJournal.tilted", self.tilted)
         object.__setattr__(self, "span", _place("ElasticJournal.span", self.span))
 
     @property
@@ -147,9 +152,9 @@ class ElasticJournal:
                 f"bush={type(bush).__name__}(...): its modes follow those of such a bush and have no mass; take one, "
                 "or leave one out."
             )
-        if not self.inner_radius <= THINNEST * radius:
+        if not self.inner_radius <= 0.95 * radius:
             raise InputError(
-                f"ElasticJournal.inner_radius must be at most {THINNEST:g} of the journal radius {radius:g} m, got "
+                f"ElasticJournal.inner_radius must be at most 0.95 of the journal radius {radius:g} m, got "
                 f"{self.inner_radius:g} m; thinner tubes are shells, which take other elements."
             )
         if low > -half or high < half:
@@ -170,10 +175,6 @@ class ElasticJournal:
             )
 
 
-# Largest inner radius, over the outer one.
-THINNEST = 0.95
-
-
 def _place(where: str, value: tuple[float, float]) -> tuple[float, float]:
     low, high = require_vector(where, value, 2, "m").tolist()
     if not low < high:
@@ -181,13 +182,9 @@ def _place(where: str, value: tuple[float, float]) -> tuple[float, float]:
     return low, high
 
 
-# Version of the algorithm, like `exudyn_ehd.solid.pressure_modes.FORMAT`, which counts here too.
+# Version of the algorithm, like `exudyn_ehd.solid.pressure_modes.FORMAT`, which counts here too: raise it with every
+# change of the mesh.
 FORMAT = 4
-# Elements through the wall and under the film, and waves around of the search; from this tolerance on the second set
-# does. Compliance of a solid pin off by 2e-4 at 8 waves around and 5e-3 at 24, by 6e-3 at 8 of the second set.
-FINE, COARSE, COARSE_FROM = (8, 16, films.LARGEST_WAVE), (5, 8, 20), 0.1
-# Growth of the elements inwards and away from the film.
-GROWTH_INWARDS, GROWTH_OUTWARDS = 1.25, 1.8
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -242,20 +239,10 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
         If the tolerance takes more waves than the search allows.
     """
     described = (FORMAT, journal.material.lame, journal.span, journal.held, journal.inner_radius)
-    choice = (
-        journal.tolerance,
-        journal.tilted,
-        radius,
-        length,
-        FINE,
-        COARSE,
-        COARSE_FROM,
-        GROWTH_INWARDS,
-        GROWTH_OUTWARDS,
-    )
+    choice = journal.tolerance, journal.tilted, radius, length
     data = cached_arrays(
         "journal_modes",
-        (*described, *choice, films.FIT, films.FORMAT),
+        (*described, *choice, films.FORMAT),
         lambda: _Reduction(journal, radius, length).modes(),
     )
     error = float(data.pop("error"))
@@ -267,12 +254,12 @@ class _Reduction:
 
     def __init__(self, journal: ElasticJournal, radius: float, length: float) -> None:
         self.journal, self.half = journal, 0.5 * length
-        radial, axial, self.waves = FINE if journal.tolerance < COARSE_FROM else COARSE
+        # elements through the wall and under the film, and waves around: the compliance of a solid pin is off by 2e-4
+        # at 8 waves around and 5e-3 at 24, on the second mesh by 6e-3 at 8
+        radial, axial, self.waves = (8, 16, films.LARGEST_WAVE) if journal.tolerance < 0.1 else (5, 8, 20)
         self.edges = film_edges(length, axial)
         places = _beyond(self.edges, journal)
-        growth = np.concatenate(([0.0], np.cumsum(GROWTH_INWARDS ** np.arange(radial)[::-1])))
-        r = journal.inner_radius + (radius - journal.inner_radius) * growth / growth[-1]
-        self.body = Cylinder(r, places, journal.material.lame)
+        self.body = Cylinder(wall_edges(journal.inner_radius, radius, radial), places, journal.material.lame)
         first = 2 * int(np.argmin(np.abs(places + self.half)))
         self.film = slice(first, first + 2 * axial + 1)
         self.surface = 3 * self.body.surface[self.film]
@@ -379,15 +366,22 @@ def film_edges(length: float, count: int) -> np.ndarray:
     return 0.5 * length * np.sin(np.linspace(-0.5, 0.5, count + 1) * np.pi)
 
 
+def wall_edges(inner: float, outer: float, count: int) -> np.ndarray:
+    """Edges (count + 1,) of the elements through a wall, each by a quarter larger than the next one outwards."""
+    growth = np.concatenate(([0.0], np.cumsum(1.25 ** np.arange(count)[::-1])))
+    return inner + (outer - inner) * growth / growth[-1]
+
+
 def _beyond(film: np.ndarray, journal: ElasticJournal) -> np.ndarray:
     """Edges of the elements along z: those under the film, and beside it ones that grow away from every change."""
+    growth = 1.8
     bounds = sorted({*journal.span, *(place for band in journal.bands for place in band), film[0], film[-1]})
     edges, least = [film], film[1] - film[0]
     for low, high in itertools.pairwise(bounds):
         if high - low > 1e-9 * film[-1] and not (low >= film[0] and high <= film[-1]):
             half = 0.5 * (high - low)
-            count = max(1, ceil(log1p(half / least * (GROWTH_OUTWARDS - 1.0)) / log(GROWTH_OUTWARDS)))
-            part = np.cumsum(GROWTH_OUTWARDS ** np.arange(count))
+            count = max(1, ceil(log1p(half / least * (growth - 1.0)) / log(growth)))
+            part = np.cumsum(growth ** np.arange(count))
             part *= half / part[-1]
             edges += [low + part, high - part[:-1], np.array([low, high])]
     # neighbours share their ends up to rounding

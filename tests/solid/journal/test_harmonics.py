@@ -7,7 +7,7 @@ from scipy.sparse.linalg import splu
 
 import exudyn_ehd as ehd
 from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
-from exudyn_ehd.solid.journal.modes import FINE, GROWTH_INWARDS, ElasticJournal, HeldBands, HeldEnds, _Reduction
+from exudyn_ehd.solid.journal.modes import ElasticJournal, HeldBands, HeldEnds, _Reduction, wall_edges
 from tests.reference.elastic_rings import bore_displacement, cylinder_yielding
 from tests.sampling import sample
 
@@ -18,9 +18,8 @@ A = 0.01
 
 def cylinder(inner, z, nu=NU):
     """A cylinder with as many elements through the wall as a journal has."""
-    growth = np.concatenate(([0.0], np.cumsum(GROWTH_INWARDS ** np.arange(FINE[0])[::-1])))
     material = ehd.SaintVenantKirchhoff(youngs_modulus=E, poisson_ratio=nu, density=7800.0)
-    return Cylinder(inner + (A - inner) * growth / growth[-1], z, material.lame)
+    return Cylinder(wall_edges(inner, A, 8), z, material.lame)
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.45])
