@@ -52,11 +52,6 @@ if TYPE_CHECKING:
     from exudyn_ehd.solid.journal.modes import ElasticJournal
     from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 
-SMALLEST_CLEARANCE_RATIO = 1e-4
-LARGEST_CLEARANCE_RATIO = 1e-2
-# Beyond it nothing is a thin film, or lengths are in other units.
-THICKEST_FILM_RATIO = 0.1
-
 
 @dataclass(frozen=True, kw_only=True)
 class Periodic:
@@ -211,10 +206,11 @@ class JournalBearing(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.radial_clearance > THICKEST_FILM_RATIO * self.journal_radius:
+        # beyond it nothing is a thin film, or lengths are in other units
+        if self.radial_clearance > 0.1 * self.journal_radius:
             raise InputError(
-                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a "
-                f"thin film, got {self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, "
+                "JournalBearing.radial_clearance must be at most 0.1 of the journal radius for a thin film, got "
+                f"{self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, "
                 "usual clearances a thousandth of the radius."
             )
         for name, types in _OPTIONS.items():
@@ -303,12 +299,11 @@ class JournalBearing(Checked):
                 f"RegularisedWall.onset must be below the radial clearance {self.radial_clearance:g} m, got "
                 f"{self.contact.onset:g} m; the wall would touch a concentric journal."
             )
-        ratio = self.radial_clearance / self.journal_radius
-        if not SMALLEST_CLEARANCE_RATIO <= ratio <= LARGEST_CLEARANCE_RATIO:
+        ratio = self.clearance_ratio
+        if not 1e-4 <= ratio <= 1e-2:
             warn_user(
-                f"JournalBearing: the clearance ratio c/R is {ratio:.3g}, outside {SMALLEST_CLEARANCE_RATIO:g} to "
-                f"{LARGEST_CLEARANCE_RATIO:g}; radial_clearance is radial (bore radius - journal radius), not "
-                "diametral, and in metres.",
+                f"JournalBearing: the clearance ratio c/R is {ratio:.3g}, outside 0.0001 to 0.01; radial_clearance is "
+                "radial (bore radius - journal radius), not diametral, and in metres.",
                 PlausibilityWarning,
             )
 

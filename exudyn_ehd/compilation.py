@@ -12,7 +12,6 @@ from numba.core import event
 
 from exudyn_ehd.progress import tell
 
-PACKAGE = __name__.split(".")[0]
 MESSAGE = "exudyn_ehd: compiling kernels, once per installation (about 20 s for a first film) ..."
 
 
@@ -51,7 +50,7 @@ class Compilations(event.Listener):
 
 
 def _is_own(event: event.Event) -> bool:
-    return bool(event.data["dispatcher"].py_func.__module__.split(".")[0] == PACKAGE)
+    return bool(event.data["dispatcher"].py_func.__module__.startswith("exudyn_ehd."))
 
 
 COMPILATIONS = Compilations()

@@ -8,6 +8,7 @@ The limits are far outside it. Both hold for the magnitude: each argument checks
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 
@@ -19,8 +20,8 @@ class Kind(NamedTuple):
     unit : str
     refused_below, low, high, refused_above : float
         Sizes in that unit; between ``low`` and ``high`` nothing is said.
-    others : tuple of (str, float)
-        Units that are taken by mistake, the likeliest first, in ``unit``.
+    others : tuple of str
+        Units of `UNITS` that are taken by mistake, the likeliest first.
     note : str
         A last sentence for the message.
     """
@@ -30,18 +31,25 @@ class Kind(NamedTuple):
     low: float
     high: float
     refused_above: float
-    others: tuple[tuple[str, float], ...] = ()
+    others: tuple[str, ...] = ()
     note: str = ""
 
 
-_SMALL = (("mm", 1e-3), ("micrometres", 1e-6))
-_FINE = (("micrometres", 1e-6), ("mm", 1e-3), ("nm", 1e-9))
-_STRESS = (("GPa", 1e9), ("MPa", 1e6))
-_PRESSURE = (("bar", 1e5), ("MPa", 1e6), ("GPa", 1e9))
-_DEGREES = (("degrees", 0.017453292519943295),)
+UNITS = {
+    **{"mm": 1e-3, "micrometres": 1e-6, "nm": 1e-9, "mm/s": 1e-3, "mm/s2": 1e-3, "cm3": 1e-6, "mm3": 1e-9, "l": 1e-3},
+    **{"bar": 1e5, "MPa": 1e6, "GPa": 1e9, "1/MPa": 1e-6, "1/GPa": 1e-9, "mPa s": 1e-3, "N/mm": 1e3, "N/um": 1e6},
+    **{"degrees": math.radians(1.0), "rev/min": math.pi / 30.0, "microseconds": 1e-6, "l/min": 1e-3 / 60.0},
+    **{"g": 1e-3, "t": 1e3, "g/cm3": 1e3, "t/mm3": 1e12, "g m2": 1e-3, "kg mm2": 1e-6, "kJ/(kg K)": 1e3},
+    **{"mm3/s": 1e-9, "mm3/(N m)": 1e-9, "mm2/N": 1e-6},
+}
+"""SI values of units that are taken by mistake."""
+_SMALL = ("mm", "micrometres")
+_FINE = ("micrometres", "mm", "nm")
+_STRESS = ("GPa", "MPa")
+_PRESSURE = ("bar", "MPa", "GPa")
 _KELVIN = "0 degrees Celsius are 273.15 K"
 _RADIANS = "use math.radians for degrees"
-_TURN = 6.2832
+_OILS = "mineral oils have 0.005 to 1; gases are compressible, which these films are not"
 
 KINDS: dict[str, Kind] = {
     "size": Kind("m", 1e-7, 1e-5, 3.0, 10.0, _SMALL),
@@ -54,54 +62,46 @@ KINDS: dict[str, Kind] = {
     "gap": Kind("m", 0.0, 1e-10, 0.01, 1e3, _FINE),
     "form": Kind("m", 0.0, 1e-10, 2e-3, 0.05, _FINE),
     "roughness": Kind("m", 1e-11, 1e-9, 3e-5, 1e-3, _FINE),
-    "wall": Kind("m", 1e-12, 1e-9, 1e-4, 0.01, (*_SMALL, ("nm", 1e-9))),
+    "wall": Kind("m", 1e-12, 1e-9, 1e-4, 0.01, (*_SMALL, "nm")),
     "layer": Kind("m", 1e-9, 1e-7, 0.1, 1.0, _SMALL),
-    "angle": Kind("rad", 0.0, 0.0, _TURN, 2.0 * _TURN, _DEGREES, _RADIANS),
-    "angles": Kind("rad", 0.0, 0.0, 2.0 * _TURN, 1e3, _DEGREES, _RADIANS),
-    "width": Kind("rad", 1e-9, 1e-4, 3.2, _TURN, _DEGREES, _RADIANS),
-    "tilt": Kind("rad", 0.0, 0.0, 0.05, 1.0, _DEGREES, _RADIANS),
-    "viscosity": Kind(
-        "Pa s",
-        1e-18,
-        1e-4,
-        6.0,
-        1e4,
-        (("mPa s", 1e-3),),
-        "mineral oils have 0.005 to 1; gases are compressible, which these films are not",
-    ),
-    "oil density": Kind("kg/m3", 10.0, 500.0, 3000.0, 3e4, (("g/cm3", 1e3),)),
-    "density": Kind("kg/m3", 15.0, 300.0, 2.5e4, 1e9, (("g/cm3", 1e3), ("t/mm3", 1e12))),
-    "specific heat": Kind("J/(kg K)", 50.0, 500.0, 1e4, 1e5, (("kJ/(kg K)", 1e3),)),
-    "specific heat of a solid": Kind("J/(kg K)", 20.0, 100.0, 3000.0, 1e5, (("kJ/(kg K)", 1e3),)),
+    "angle": Kind("rad", 0.0, 0.0, 6.2832, 12.5664, ("degrees",), _RADIANS),
+    "angles": Kind("rad", 0.0, 0.0, 12.5664, 1e3, ("degrees",), _RADIANS),
+    "width": Kind("rad", 1e-9, 1e-4, 3.2, 6.2832, ("degrees",), _RADIANS),
+    "tilt": Kind("rad", 0.0, 0.0, 0.05, 1.0, ("degrees",), _RADIANS),
+    "viscosity": Kind("Pa s", 1e-18, 1e-4, 6.0, 1e4, ("mPa s",), _OILS),
+    "oil density": Kind("kg/m3", 10.0, 500.0, 3000.0, 3e4, ("g/cm3",)),
+    "density": Kind("kg/m3", 15.0, 300.0, 2.5e4, 1e9, ("g/cm3", "t/mm3")),
+    "specific heat": Kind("J/(kg K)", 50.0, 500.0, 1e4, 1e5, ("kJ/(kg K)",)),
+    "specific heat of a solid": Kind("J/(kg K)", 20.0, 100.0, 3000.0, 1e5, ("kJ/(kg K)",)),
     "temperature": Kind("K", 1.0, 200.0, 700.0, 3000.0, note=_KELVIN),
     "oil temperature": Kind("K", 180.0, 210.0, 600.0, 1000.0, note=_KELVIN),
     "pressure": Kind("Pa", 0.0, 50.0, 2e8, 5e9, _PRESSURE, "it is a gauge pressure"),
     "cavity pressure": Kind("Pa", 0.0, 50.0, 1e7, 1e10, _PRESSURE, "it is a gauge pressure, vacuum is -1e5"),
-    "stress": Kind("Pa", 0.0, 50.0, 1e10, 1e13, (("MPa", 1e6), ("bar", 1e5), ("GPa", 1e9))),
+    "stress": Kind("Pa", 0.0, 50.0, 1e10, 1e13, ("MPa", "bar", "GPa")),
     "wall pressure": Kind("Pa", 1e3, 1e5, 1e12, 1e14, _STRESS),
     "modulus": Kind("Pa", 1e3, 5e5, 2.5e12, 1e18, _STRESS),
-    "pressure coefficient": Kind("1/Pa", 0.0, 0.0, 1e-6, 1e-4, (("1/GPa", 1e-9), ("1/MPa", 1e-6))),
-    "compressibility": Kind("1/Pa", 0.0, 0.0, 1e-8, 1e-6, (("1/GPa", 1e-9),)),
+    "pressure coefficient": Kind("1/Pa", 0.0, 0.0, 1e-6, 1e-4, ("1/GPa", "1/MPa")),
+    "compressibility": Kind("1/Pa", 0.0, 0.0, 1e-8, 1e-6, ("1/GPa",)),
     "law's pressure": Kind("Pa", 1e5, 1e7, 1e10, 1e12, _STRESS),
     "temperature coefficient": Kind("1/K", 0.0, 1e-5, 0.2, 2.0),
     "expansion": Kind("1/K", 0.0, 0.0, 1e-3, 0.1),
     "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
-    "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, (("microseconds", 1e-6),)),
-    "volume": Kind("m3", 0.0, 1e-12, 1.0, 100.0, (("cm3", 1e-6), ("mm3", 1e-9), ("l", 1e-3))),
-    "flow": Kind("m3/s", 0.0, 0.0, 0.1, 100.0, (("l/min", 1e-3 / 60.0), ("mm3/s", 1e-9))),
+    "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, ("microseconds",)),
+    "volume": Kind("m3", 0.0, 1e-12, 1.0, 100.0, ("cm3", "mm3", "l")),
+    "flow": Kind("m3/s", 0.0, 0.0, 0.1, 100.0, ("l/min", "mm3/s")),
     "seal": Kind("m3/(s Pa m)", 0.0, 0.0, 1.0, 1e9),
     "time": Kind("s", 0.0, 0.0, 1e7, 1e12),
     "rate": Kind("1/s", 0.0, 0.0, 1e7, 1e12),
     "damping time": Kind("s", 0.0, 0.0, 1.0, 1e3),
-    "sliding speed": Kind("m/s", 0.0, 0.0, 10.0, 1e3, (("mm/s", 1e-3),)),
-    "surface speed": Kind("m/s", 0.0, 0.0, 1e3, 1e6, (("mm/s", 1e-3),)),
-    "velocity": Kind("m/s", 0.0, 0.0, 1e4, 3e8, (("mm/s", 1e-3),)),
-    "acceleration": Kind("m/s2", 0.0, 0.0, 5e3, 1e9, (("mm/s2", 1e-3),)),
-    "spin": Kind("rad/s", 0.0, 0.0, 1e5, 1e9, (("rev/min", 0.10471975511965977),)),
-    "wear rate": Kind("m2/N", 0.0, 0.0, 1e-10, 1e-8, (("mm3/(N m)", 1e-9), ("mm2/N", 1e-6))),
-    "mass": Kind("kg", 1e-12, 1e-6, 1e6, 1e9, (("g", 1e-3), ("t", 1e3))),
-    "moment of inertia": Kind("kg m2", 1e-20, 1e-12, 1e6, 1e12, (("g m2", 1e-3), ("kg mm2", 1e-6))),
-    "stiffness": Kind("N/m", 1e-3, 1e4, 1e13, 1e18, (("N/um", 1e6), ("N/mm", 1e3))),
+    "sliding speed": Kind("m/s", 0.0, 0.0, 10.0, 1e3, ("mm/s",)),
+    "surface speed": Kind("m/s", 0.0, 0.0, 1e3, 1e6, ("mm/s",)),
+    "velocity": Kind("m/s", 0.0, 0.0, 1e4, 3e8, ("mm/s",)),
+    "acceleration": Kind("m/s2", 0.0, 0.0, 5e3, 1e9, ("mm/s2",)),
+    "spin": Kind("rad/s", 0.0, 0.0, 1e5, 1e9, ("rev/min",)),
+    "wear rate": Kind("m2/N", 0.0, 0.0, 1e-10, 1e-8, ("mm3/(N m)", "mm2/N")),
+    "mass": Kind("kg", 1e-12, 1e-6, 1e6, 1e9, ("g", "t")),
+    "moment of inertia": Kind("kg m2", 1e-20, 1e-12, 1e6, 1e12, ("g m2", "kg mm2")),
+    "stiffness": Kind("N/m", 1e-3, 1e4, 1e13, 1e18, ("N/um", "N/mm")),
     "damping": Kind("N s/m", 0.0, 0.0, 1e11, 1e18),
     "force": Kind("N", 0.0, 0.0, 1e9, 1e15),
     "line force": Kind("N/m", 0.0, 0.0, 1e10, 1e14),
@@ -319,7 +319,7 @@ def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
     kind = kind_of(where)
     if kind is None or size == 0.0 or kind.low <= size <= kind.high:
         return None
-    meant = ((unit, factor * size) for unit, factor in kind.others if kind.low <= factor * size <= kind.high)
+    meant = ((unit, UNITS[unit] * size) for unit in kind.others if kind.low <= UNITS[unit] * size <= kind.high)
     advice = next((f"if it is in {unit}, give {number:.3g}." for unit, number in meant), "check its unit.")
     usual = f"{kind.low:g} to {kind.high:g}" if kind.low else f"up to {kind.high:g}"
     text = f"bearings have {usual} {kind.unit}; {advice}" + (f" ({kind.note})" if kind.note else "")

@@ -17,8 +17,8 @@ import os
 import pathlib
 import shutil
 import tempfile
-import time
 import types
+import uuid
 import warnings
 import zipfile
 import zlib
@@ -33,8 +33,8 @@ from exudyn_ehd.progress import announced
 from exudyn_ehd.status import EHDError, InputError
 
 CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
-# Bytes of all arrays kept, and s after which the temporary file of a writer that was killed goes too
-LARGEST_CACHE, LONGEST_WRITE = 3e8, 3600.0
+# Bytes of all arrays kept.
+LARGEST_CACHE = 3e8
 
 Arrays = dict[str, np.ndarray]
 
@@ -64,18 +64,14 @@ def replacing(path: str | pathlib.Path, *, binary: bool = False) -> Iterator[Any
     """
     target = pathlib.Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
-    number, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    temporary = target.with_name(f".{target.name}.{uuid.uuid4().hex}")
+    options: dict[str, Any] = {"mode": "xb"} if binary else {"mode": "x", "encoding": "utf-8", "newline": ""}
     try:
-        options: dict[str, Any] = {"mode": "wb"} if binary else {"mode": "w", "encoding": "utf-8", "newline": ""}
-        with os.fdopen(number, **options) as file:
+        with open(temporary, **options) as file:
             yield file
-        # mkstemp makes a file for its owner's eyes alone
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
-        os.replace(name, target)
+        temporary.replace(target)
     except BaseException:
-        pathlib.Path(name).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
 
 
@@ -233,16 +229,17 @@ def read_arrays(path: str | pathlib.Path, form: str) -> dict[str, np.ndarray] | 
 
 
 def _make_room(newest: pathlib.Path) -> None:
-    """Remove the files that were not used for longest, until the others are within the limit; ``newest`` stays."""
+    """Remove the files that were not used for longest, until the others are within the limit; ``newest`` stays.
+
+    Temporary files of writers that were killed are among them.
+    """
     files, total = [], newest.stat().st_size
     for path in newest.parent.iterdir():
         # another process may remove what this one looks at
         with suppress(FileNotFoundError):
-            status = path.stat()
-            if path.suffix == ".bin" and path != newest:
+            if ".bin" in path.suffixes and path != newest:
+                status = path.stat()
                 files.append((status.st_mtime, status.st_size, path))
-            elif path.name.startswith(".") and ".bin." in path.name and time.time() - status.st_mtime > LONGEST_WRITE:
-                path.unlink()
     for _, size, path in sorted(files, reverse=True):
         total += size
         if total > LARGEST_CACHE:

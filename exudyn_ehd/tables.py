@@ -95,12 +95,6 @@ def unit_of(name: str, more: Mapping[str, str] | None = None) -> str | None:
     return UNITS.get(name)
 
 
-def heads(names: Sequence[str], more: Mapping[str, str] | None = None) -> list[str]:
-    """Column heads: name [unit]."""
-    units = [unit_of(name, more) for name in names]
-    return [name if unit is None else f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
-
-
 def printed(
     columns: Mapping[str, np.ndarray], more: Mapping[str, str] | None = None
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
@@ -127,7 +121,8 @@ def rows_of(
 ) -> Iterator[list[str]]:
     """Yield heads with units, then a row of texts per line of columns (n,): numbers by ``write``, and the remarks."""
     remarks = remarks or {}
-    yield [*heads(list(columns), more), *remarks]
+    units = {name: unit_of(name, more) for name in columns}
+    yield [*(name if unit is None else f"{name} [{unit}]" for name, unit in units.items()), *remarks]
     for k, row in enumerate(zip(*columns.values(), strict=True)):
         yield [*(write(value) for value in row), *(texts[k] for texts in remarks.values())]
 
