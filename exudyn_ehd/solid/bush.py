@@ -313,15 +313,8 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
     steel = bush.material.youngs_modulus, bush.material.poisson_ratio
     described = pressure_modes.FORMAT, steel, bush.tolerance, bush.tilted, length
     key = described, mesh.nodes, mesh.elements, surfaces, bush.quadrature
-
-    def compute() -> dict[str, np.ndarray]:
-        modes = compute_modes(bush, mesh, length)
-        return {"displacements": modes.displacements, "stiffness": modes.stiffness, "error": np.array(modes.error)}
-
-    data = cached_arrays("bush_modes", key, compute)
-    return BoreModes(
-        mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
-    )
+    data = cached_arrays("bush_modes", key, lambda: compute_modes(bush, mesh, length))
+    return BoreModes(mesh=mesh, error=float(data.pop("error")), **data)
 
 
 def film_surface(bore: Surface, length: float) -> FilmSurface:
@@ -331,17 +324,13 @@ def film_surface(bore: Surface, length: float) -> FilmSurface:
     return FilmSurface(bore, (theta[covered], z[covered], weight[covered]), length, np.eye(3))
 
 
-def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> BoreModes:
-    """Compute the modes of a bush on its mesh under a film: one factorisation, one solution per pressure."""
+def compute_modes(bush: ModalBush, mesh: BushMesh, length: float) -> dict[str, np.ndarray]:
+    """Arrays of `BoreModes` of a bush on its mesh under a film: one factorisation, one solution per pressure."""
     solve = held_solution(bush.solid(mesh).tangent(np.zeros_like(mesh.nodes)), mesh.outer.nodes)
     surface = film_surface(mesh.bore, length)
     found = film_modes(surface, solve, mesh.nodes.size, bush.tilted, bush.tolerance)
     modes = orthogonal_on(mesh.bore.radial(found.modes.T)) @ found.modes.T
     shape = mesh.bore.radial(modes)
     peak = shape[np.arange(len(shape)), np.argmax(np.abs(shape), axis=1)]
-    return BoreModes(
-        mesh=mesh,
-        displacements=(modes / peak[:, None]).reshape(len(peak), -1, 3),
-        stiffness=1.0 / peak**2,
-        error=found.error,
-    )
+    displacements = (modes / peak[:, None]).reshape(len(peak), -1, 3)
+    return {"displacements": displacements, "stiffness": 1.0 / peak**2, "error": np.array(found.error)}

@@ -44,12 +44,6 @@ import numpy as np
 
 from exudyn_ehd.solid.elements.element import Element, Quadrature, barycentric, face_of, with_middles
 
-_HEX_CORNERS = np.array(
-    [
-        *[(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)],
-        *[(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],
-    ]
-)
 HEX_EDGES = np.array(
     [
         *[(0, 1, 8), (1, 2, 9), (2, 3, 10), (3, 0, 11)],
@@ -58,20 +52,16 @@ HEX_EDGES = np.array(
     ]
 )
 """Edges as (corner, corner, mid-edge node), shape (12, 3)."""
-HEX_NODES = with_middles(_HEX_CORNERS, HEX_EDGES[:, :2])
-"""Natural coordinates of the nodes, shape (20, 3)."""
-
-HEX_FACES = np.array(
-    [
-        (0, 4, 7, 3, 16, 15, 19, 11),
-        (1, 2, 6, 5, 9, 18, 13, 17),
-        (0, 1, 5, 4, 8, 17, 12, 16),
-        (3, 7, 6, 2, 19, 14, 18, 10),
-        (0, 3, 2, 1, 11, 10, 9, 8),
-        (4, 5, 6, 7, 12, 13, 14, 15),
-    ]
+HEX_NODES = with_middles(
+    np.array(
+        [
+            *[(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)],
+            *[(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],
+        ]
+    ),
+    HEX_EDGES[:, :2],
 )
-"""Faces xi = -1, +1, eta = -1, +1, zeta = -1, +1 as 8-node quadrilaterals whose normal x_,r × x_,s points outward."""
+"""Natural coordinates of the nodes, shape (20, 3)."""
 
 
 def gauss_cube(n: int) -> Quadrature:
@@ -109,7 +99,17 @@ HEX20 = Element(
     fem="Hex20",
     nodes=HEX_NODES,
     edges=HEX_EDGES,
-    faces=HEX_FACES,
+    # xi = -1, +1, eta = -1, +1, zeta = -1, +1
+    faces=np.array(
+        [
+            (0, 4, 7, 3, 16, 15, 19, 11),
+            (1, 2, 6, 5, 9, 18, 13, 17),
+            (0, 1, 5, 4, 8, 17, 12, 16),
+            (3, 7, 6, 2, 19, 14, 18, 10),
+            (0, 3, 2, 1, 11, 10, 9, 8),
+            (4, 5, 6, 7, 12, 13, 14, 15),
+        ]
+    ),
     rules={"IRONS14": IRONS14, "GAUSS27": GAUSS27, "GAUSS8": GAUSS8},
     exact=GAUSS27,
     sampling=GAUSS8,
@@ -121,8 +121,6 @@ HEX20 = Element(
 
 TET_EDGES = np.array([(0, 1, 4), (1, 2, 5), (2, 0, 6), (0, 3, 7), (1, 3, 8), (2, 3, 9)])
 """Edges as (corner, corner, mid-edge node), shape (6, 3)."""
-TET_FACES = np.array([(0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (2, 0, 3, 6, 7, 9)])
-"""6-node triangles whose normal x_,r × x_,s points outward, shape (4, 6)."""
 TET_NODES = with_middles(np.eye(4)[:, 1:], TET_EDGES[:, :2])
 """Natural coordinates of the nodes, shape (10, 3)."""
 
@@ -159,7 +157,7 @@ TET10 = Element(
     fem="Tet10",
     nodes=TET_NODES,
     edges=TET_EDGES,
-    faces=TET_FACES,
+    faces=np.array([(0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (2, 0, 3, 6, 7, 9)]),
     rules={"HAMMER4": HAMMER4, "WALKINGTON14": WALKINGTON14},
     exact=WALKINGTON14,
     sampling=HAMMER4,

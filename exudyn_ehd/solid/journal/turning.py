@@ -30,8 +30,8 @@ from exudyn_ehd.solid.journal.modes import JournalModes
 from exudyn_ehd.solid.pressure_modes import AROUND
 from exudyn_ehd.status import ROUNDING, InputError
 
-# Waves around, of AROUND angles; share of a mode's largest residual displacement on the film.
-LARGEST_WAVE, NEGLIGIBLE = AROUND // 4, 2e-4
+# Share of a mode's largest residual displacement on the film.
+NEGLIGIBLE = 2e-4
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,7 +110,8 @@ class TurningJournal:
         # below it the residual is rounding of the rigid fit
         floor = ROUNDING * np.abs(self.surface.displacements).max(axis=(0, 1))
         size = np.maximum(np.abs(inward).max(axis=(0, 1)), np.maximum(floor, np.finfo(float).tiny))
-        spectrum = np.fft.rfft(inward, axis=0)[: LARGEST_WAVE + 1] * (2.0 / AROUND)
+        # waves of four angles or more
+        spectrum = np.fft.rfft(inward, axis=0)[: AROUND // 4 + 1] * (2.0 / AROUND)
         spectrum[0] *= 0.5
         waves, phases, profiles, rows = [], [], [], []
         for n, wave in enumerate(spectrum):
