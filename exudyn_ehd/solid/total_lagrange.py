@@ -150,25 +150,24 @@ class TotalLagrange:
         require_number("TotalLagrange.viscosity_time", self.viscosity_time, "s", at_least=0.0)
 
     @cached_property
-    def _geometry(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Elements sorted by colour, colour limits, G (m, nq, 3, n) and w (m, nq)."""
+    def _geometry(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Elements (m, n), G (m, nq, 3, n) and w (m, nq)."""
         assert self.quadrature is not None
-        order, limits = _colouring(self.mesh.elements)
-        elements = np.ascontiguousarray(self.mesh.elements[order])
+        elements = np.ascontiguousarray(self.mesh.elements)
         gradient, weight = self.mesh.element.reference_gradients(self.mesh.nodes[elements], self.quadrature)
         if weight.min() <= 0:
             raise InputError(
                 "TotalLagrange.mesh must have elements of positive volume, got a non-positive Jacobian in element "
-                f"{order[weight.min(axis=1).argmin()]}; check the node order and the mid-edge nodes of the mesh."
+                f"{weight.min(axis=1).argmin()}; check the node order and the mid-edge nodes of the mesh."
             )
-        return elements, limits, np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), weight
+        return elements, np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), weight
 
     @cached_property
     def _blocks(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Natural gradients (3 q, n), their transpose, and the geometry of blocks of the sorted elements."""
+        """Natural gradients (3 q, n), their transpose, and the geometry of blocks of elements."""
         assert self.quadrature is not None
         natural = self.mesh.element.shapes(self.quadrature.points)[1]
-        inverse, weight = self.mesh.element.inverse_jacobians(self.mesh.nodes[self._geometry[0]], self.quadrature)
+        inverse, weight = self.mesh.element.inverse_jacobians(self.mesh.nodes[self.mesh.elements], self.quadrature)
         N = np.ascontiguousarray(natural.transpose(0, 2, 1)).reshape(-1, natural.shape[1])
         return N, np.ascontiguousarray(N.T), blocks.blocks_of(inverse, weight)
 
@@ -177,9 +176,21 @@ class TotalLagrange:
         return (0,) * self.mesh.element.size
 
     @cached_property
-    def pattern(self) -> Pattern:
-        """The fixed sparsity pattern of the tangent."""
-        return Pattern.of(self._geometry[0], len(self.mesh.nodes))
+    def _pattern(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Fixed sparsity pattern of the tangent, of 3 x 3 node blocks, and the place of every element's blocks in it.
+
+        CSR structure, ``indptr`` and ``indices``; entries in each of the three rows of a node (n,); entry (3 I, 3 J) of
+        every node pair of every element (m, a, a).
+        """
+        elements, n = self._geometry[0].astype(np.int64), len(self.mesh.nodes)
+        pairs, place = np.unique(elements[:, :, None] * n + elements[:, None, :], return_inverse=True)
+        row, column = np.divmod(pairs, n)
+        start = np.searchsorted(row, np.arange(n + 1))
+        whole = bsr_matrix((np.zeros((len(pairs), 3, 3)), column, start), shape=(3 * n, 3 * n)).tocsr()
+        # behind the nine entries of every pair of earlier nodes, and three of every earlier pair of this one
+        slot = (9 * start[row] + 3 * (np.arange(len(pairs)) - start[row])).astype(np.int32)
+        stride = np.diff(whole.indptr)[::3].astype(np.int64)
+        return whole.indptr, whole.indices, stride, slot[place].reshape(*elements.shape, -1)
 
     def force(self, u: np.ndarray, v: np.ndarray | None = None) -> np.ndarray:
         """Return the internal force, shape (n, 3) [N], of displacements u [m] and velocities v [m/s], shape (n, 3)."""
@@ -197,38 +208,28 @@ class TotalLagrange:
         Symmetric and exact without damping; with a viscosity time the term beta dF/dt of the strain rate's variation
         is left out, which is of the size of strain rate times beta.
         """
-        values = self.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
-        return self.pattern.matrix(values)
-
-    def tangent_values(
-        self, u: np.ndarray, v: np.ndarray | None = None, *, position_factor: float = 1.0, velocity_factor: float = 0.0
-    ) -> np.ndarray:
-        """Return the values of `tangent` in the order of `pattern`, shape (nnz,)."""
-        elements, colours, G, w = self._geometry
+        elements, G, w = self._geometry
+        indptr, indices, stride, slot = self._pattern
         u, v, law = self._state(u, v)
-        pattern = self.pattern
-        data = np.empty(pattern.size)
+        data = np.empty(len(indices))
         factors = (position_factor, position_factor + self.viscosity_time * velocity_factor)
-        state = (self._size, u, v, law, *factors, pattern.stride, pattern.slot, data)
-        if self.parallel:
-            kernels.tangent_parallel(G, w, elements, colours, *state)
-        else:
-            kernels.tangent_serial(G, w, elements, *state)
-        return data
+        state = (self._size, u, v, law, *factors, stride, slot, data)
+        kernel = kernels.tangent_parallel if self.parallel else kernels.tangent_serial
+        kernel(G, w, elements, *state)
+        return csr_matrix((data, indices, indptr), shape=(u.size, u.size), copy=False)
 
     def energy(self, u: np.ndarray) -> float:
         """Return the strain energy [J]."""
-        elements, _, G, w = self._geometry
+        elements, G, w = self._geometry
         H = np.einsum("eai,eqja->eqij", np.asarray(u)[elements], G)
         return float(np.sum(w * self.material.energy_density(H)))
 
     def inversion(self, u: np.ndarray) -> str:
         """Return a message on an element that displacements u (n, 3) turn inside out, with a remedy; empty if none."""
         N, _, X = self._blocks
-        ratio, row = blocks.smallest_volume_ratio(N, X, self._geometry[0], np.ascontiguousarray(u, dtype=float))
+        ratio, element = blocks.smallest_volume_ratio(N, X, self._geometry[0], np.ascontiguousarray(u, dtype=float))
         if not ratio <= 0.0:
             return ""
-        element = int(_colouring(self.mesh.elements)[0][row])
         place = self.mesh.nodes[self.mesh.elements[element]].mean(axis=0)
         return (
             f"element {element} at {place[0]:.4g}, {place[1]:.4g}, {place[2]:.4g} m has turned inside out (det F = "
@@ -262,53 +263,6 @@ class TotalLagrange:
         return u, v, kernels.Law(*self.material.lame, self.viscosity_time, neo_hooke)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Pattern:
-    """CSR pattern of 3 x 3 node blocks and the place of every element's blocks in it.
-
-    Parameters
-    ----------
-    indptr, indices : ndarray of int32
-        CSR structure, shapes (3 n + 1,) and (nnz,).
-    stride : ndarray of int64, shape (n,)
-        Entries in each of the three rows of a node.
-    slot : ndarray of int32, shape (m, a, a)
-        Entry (3 I, 3 J) of every node pair of every element.
-    """
-
-    indptr: np.ndarray
-    indices: np.ndarray
-    stride: np.ndarray
-    slot: np.ndarray
-
-    @classmethod
-    def of(cls, elements: np.ndarray, n: int) -> Pattern:
-        """Return the pattern of a connectivity (m, a) over n nodes."""
-        key = elements[:, :, None].astype(np.int64) * n + elements[:, None, :]
-        pairs, place = np.unique(key, return_inverse=True)
-        row, column = np.divmod(pairs, n)
-        start = np.searchsorted(row, np.arange(n + 1))
-        blocks = bsr_matrix((np.zeros((len(pairs), 3, 3)), column, start), shape=(3 * n, 3 * n)).tocsr()
-        # behind the nine entries of every pair of earlier nodes, and three of every earlier pair of this one
-        slot = 9 * start[row] + 3 * (np.arange(len(pairs)) - start[row])
-        return cls(
-            indptr=blocks.indptr,
-            indices=blocks.indices,
-            stride=np.diff(blocks.indptr)[::3].astype(np.int64),
-            slot=slot[place].reshape(key.shape).astype(np.int32),
-        )
-
-    @property
-    def size(self) -> int:
-        """Number of entries."""
-        return len(self.indices)
-
-    def matrix(self, values: np.ndarray) -> csr_matrix:
-        """Return the CSR matrix with these values; no copy."""
-        order = len(self.indptr) - 1
-        return csr_matrix((values, self.indices, self.indptr), shape=(order, order), copy=False)
-
-
 def own_rule(where: str, element: Element, rule: Quadrature | None) -> Quadrature:
     """The quadrature of a stiffness, by default the element's usual one.
 
@@ -324,20 +278,3 @@ def own_rule(where: str, element: Element, rule: Quadrature | None) -> Quadratur
             f"{where}.quadrature of a mesh of {element.name} must be {', '.join(element.rules)} or None, got {rule!r}."
         )
     return rule
-
-
-def _colouring(elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Greedy colouring: element order sorted by colour, and the limits of the colours in it."""
-    # bits of the colours at each node; Python's integers have any number of them
-    used = [0] * (int(elements.max()) + 1)
-    colour = np.empty(len(elements), dtype=np.int64)
-    for e, nodes in enumerate(elements.tolist()):
-        taken = 0
-        for node in nodes:
-            taken |= used[node]
-        free = ((~taken) & (taken + 1)).bit_length() - 1
-        colour[e] = free
-        for node in nodes:
-            used[node] |= 1 << free
-    order = np.argsort(colour, kind="stable")
-    return order, np.concatenate([[0], np.cumsum(np.bincount(colour))])

@@ -33,7 +33,7 @@ def test_uniaxial_tension_is_the_closed_form(stretch):
     # straight mid-edge nodes do not matter: the deformation is affine
     force = SOLID.force(u)
     stress = MU * (stretch - 1.0 / stretch) + LAM * np.log(stretch * a * a) / stretch
-    volume = SOLID._geometry[3].sum()
+    volume = SOLID._geometry[2].sum()
     pull = force[MESH.end_high.nodes, 2].sum()
     assert pull == pytest.approx(stress * volume / 0.02, rel=1e-10)
     sides = np.setdiff1d(np.arange(len(force)), np.union1d(MESH.end_high.nodes, MESH.end_low.nodes))
@@ -49,7 +49,7 @@ def test_simple_shear_is_the_closed_form(shear):
     expected[:2, :2] = MU * np.array([[shear**2, shear], [shear, 0.0]])
     got = StressRecovery(mesh=MESH, material=RUBBER).cauchy_at_nodes(u)
     np.testing.assert_allclose(got, np.broadcast_to(expected, got.shape), atol=1e-9 * MU)
-    assert SOLID.energy(u) == pytest.approx(0.5 * MU * shear**2 * SOLID._geometry[3].sum(), rel=1e-10)
+    assert SOLID.energy(u) == pytest.approx(0.5 * MU * shear**2 * SOLID._geometry[2].sum(), rel=1e-10)
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -68,7 +68,7 @@ def test_threads_change_no_bit(seed):
     u = random_state(seed)
     parallel = dataclasses.replace(SOLID, parallel=True)
     assert np.array_equal(parallel.force(u), SOLID.force(u))
-    assert np.array_equal(parallel.tangent_values(u), SOLID.tangent_values(u))
+    assert np.array_equal(parallel.tangent(u).data, SOLID.tangent(u).data)
 
 
 def test_viscosity_adds_its_force_and_its_tangent():

@@ -11,9 +11,8 @@ J > 0; written as mu (H + F^-T H^T) and with log1p(J - 1), so that small strains
 
 Matrices (3, 3) at a point are tuples of rows.
 
-Elements come sorted by colour: two elements of one colour share no node, so that a parallel loop over one colour needs
-no locks, and serial and parallel loops add in the same order: their results are equal to rounding. Serial and parallel
-kernels are distinct functions, since numba would let them share one cache entry.
+Parallel loops leave the sums over elements to one thread, in the order of the serial loops. Serial and parallel kernels
+are distinct functions, since numba would let them share one cache entry.
 """
 
 from __future__ import annotations
@@ -251,15 +250,15 @@ def tangent_serial(G, w, elements, size, u, v, law, geometric, material, stride,
 
 
 @njit(cache=True, fastmath=FAST, parallel=True)
-def tangent_parallel(G, w, elements, colours, size, u, v, law, geometric, material, stride, slot, data_out):
-    """`tangent_serial` on several threads; elements colours[c] to colours[c + 1] share no node."""
+def tangent_parallel(G, w, elements, size, u, v, law, geometric, material, stride, slot, data_out):
+    """`tangent_serial` on several threads, with the same bits: sums are made on one."""
     data_out[:] = 0.0
-    for c in range(len(colours) - 1):
-        first, count = colours[c], colours[c + 1] - colours[c]
-        chunks = min(count, 8)
-        for chunk in prange(chunks):
-            work = np.empty(9 * len(size) + 9)
-            K = np.empty((6, len(size), len(size)))
-            for e in range(first + chunk * count // chunks, first + (chunk + 1) * count // chunks):
-                _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K)
-                _scatter(K, elements[e], size, stride, slot[e], data_out)
+    # of as many elements as the processor's cache holds
+    K = np.empty((64, 6, len(size), len(size)))
+    for first in range(0, len(elements), len(K)):
+        count = min(len(K), len(elements) - first)
+        for k in prange(count):
+            work, e = np.empty(9 * len(size) + 9), first + k
+            _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K[k])
+        for k in range(count):
+            _scatter(K[k], elements[first + k], size, stride, slot[first + k], data_out)
