@@ -12,7 +12,19 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.records import KINDS, QUANTITIES, Target, Unit, label, unit_for
-from exudyn_ehd.pictures.style import BLUE, GREY, TALL, VERMILION, WIDE, new_figure, picture, style_ticks, styled, write
+from exudyn_ehd.pictures.style import (
+    BLUE,
+    GREY,
+    TALL,
+    VERMILION,
+    WIDE,
+    draw_clearance,
+    new_panels,
+    picture,
+    style_ticks,
+    styled,
+    write,
+)
 from exudyn_ehd.tables import unit_of
 
 RPM, HERTZ = Unit("1/min", 30.0 / np.pi), Unit("Hz", 0.5 / np.pi)
@@ -78,8 +90,7 @@ def plot_positions(
 ) -> Figure:
     """Draw the loci of journals (k, j, 2), over their clearances, over the speeds (k,)."""
     with picture(ax, TALL, path) as (figure, ax):
-        around = np.linspace(0.0, 2.0 * np.pi, 181)
-        ax.plot(np.cos(around), np.sin(around), "--", color=GREY, lw=0.8, label="clearance")
+        draw_clearance(ax, 1.0, "clearance")
         slowest = int(np.argmin(np.abs(speeds)))
         for k, name in enumerate(names):
             (line,) = ax.plot(*places[:, k].T, ("-", "--", ":")[k % 3], lw=1.4, label=name)
@@ -100,8 +111,7 @@ def plot_response(
 ) -> Figure:
     """Draw named amplitudes (k,) in m and phases (k,) in rad over the speeds (k,), dotted where not stable."""
     with styled():
-        figure = new_figure(TALL, path)
-        upper, lower = figure.subplots(2, 1, sharex=True)
+        upper, lower = new_panels(2, TALL, path)
         unit = unit_for("length", np.concatenate([amplitude for _, amplitude, _ in curves]))
         x = RPM(np.abs(speeds))
         for text, amplitude, phase in curves:
@@ -110,13 +120,9 @@ def plot_response(
                 panel.plot(x, np.where(stable, np.nan, y), ":", color=line.get_color())
         upper.set(ylabel=label("amplitude", unit), ylim=(0.0, None))
         lower.set(xlabel=label("speed", RPM), ylabel="phase relative to\nthe unbalance [°]")
-        for panel in (upper, lower):
-            style_ticks(panel, grid=True)
-            panel.margins(x=0.0)
         upper.legend()
-        figure.align_ylabels([upper, lower])
-        write(figure, path)
-    return figure
+        write(upper.figure, path)
+    return upper.figure
 
 
 def plot_map(

@@ -19,10 +19,9 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 from exudyn_ehd.film.arcs import columns_of_arcs
-from exudyn_ehd.pictures.histories import draw_clearance
 from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, draw_map, draw_rupture, field_values, on_picture
 from exudyn_ehd.pictures.records import HistoryRecord, JointFilm, label, unit_for
-from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, WIDE, style_ticks, styled
+from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, WIDE, draw_clearance, style_ticks, styled
 from exudyn_ehd.status import InputError, require_integer, require_number
 from exudyn_ehd.storage import replacing
 
@@ -49,7 +48,8 @@ class Frames:
         with styled():
             self.figure = Figure(figsize=(PAGE, WIDE[1]), layout="constrained")
             self.left, self.right = self.figure.subplots(1, 2, width_ratios=(1.0, 1.75))
-            draw_clearance(self.left, history.radial_clearance, self.length)
+            radius = float(self.length(history.radial_clearance))
+            draw_clearance(self.left, radius, f"clearance {radius:.4g} {self.length.symbol}")
             (self.trail,) = self.left.plot([], [], color=BLUE, lw=0.8)
             (self.point,) = self.left.plot([], [], "o", color=VERMILION)
             self.left.set(xlabel=label("x", self.length), ylabel=label("y", self.length), aspect="equal")

@@ -14,16 +14,16 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from exudyn_ehd.pictures.curves import REACH, RPM
-from exudyn_ehd.pictures.records import QUANTITIES, HistoryRecord, Target, Unit, label, unit_for
+from exudyn_ehd.pictures.records import QUANTITIES, HistoryRecord, Target, label, unit_for
 from exudyn_ehd.pictures.style import (
     BLUE,
-    GREY,
     SKY,
     TALL,
     VERMILION,
     WIDE,
+    draw_clearance,
     headed,
-    new_figure,
+    new_panels,
     picture,
     style_ticks,
     styled,
@@ -69,7 +69,7 @@ def plot_orbit(
     unit = unit_for("length", c)
     own = ax is None
     with picture(ax, TALL, path, title=title) as (figure, ax):
-        draw_clearance(ax, c, unit)
+        draw_clearance(ax, float(unit(c)), f"clearance {unit(c):.4g} {unit.symbol}")
         e = history.eccentricity
         if ends:
             half = 0.5 * history.length
@@ -80,16 +80,6 @@ def plot_orbit(
         ax.set(xlabel=label("x", unit), ylabel=label("y", unit), aspect="equal")
         _mark_ends(ax, unit(e), line.get_color(), None if own else text)
     return figure
-
-
-def draw_clearance(ax: Axes, c: float, unit: Unit) -> None:
-    """Draw the clearance circle, once per radius and axes."""
-    name = f"clearance {unit(c):.4g} {unit.symbol}"
-    if any(line.get_label() == name for line in ax.lines):
-        return
-    around = np.linspace(0.0, 2.0 * np.pi, 181)
-    ax.plot(unit(c) * np.cos(around), unit(c) * np.sin(around), "--", color=GREY, lw=0.8, label=name)
-    style_ticks(ax)
 
 
 def plot_load(
@@ -205,7 +195,8 @@ def plot_traces(
     along = history.time if angle is None else np.asarray(angle, dtype=float)
     unit = unit_for("time" if angle is None else "angle", along)
     with styled():
-        panels = _new_panels(len(names), title, path) if given is None else given
+        size = WIDE[0], 1.35 * (len(names) + 0.5)
+        panels = new_panels(len(names), size, path, title) if given is None else given
         figure = panels[0].figure
         for panel, name in zip(panels, names, strict=True):
             words, kind = QUANTITIES[name]
@@ -345,18 +336,6 @@ def plot_waterfall(
         ax.legend(loc="lower right", labelcolor="white")
         style_ticks(figure.colorbar(colours, ax=ax, label=label(f"amplitude: {words}".replace("\n", " "), unit)).ax)
     return figure
-
-
-def _new_panels(count: int, title: str, path: Target) -> np.ndarray:
-    """Axes below each other in a new figure."""
-    figure = new_figure((WIDE[0], 1.35 * (count + 0.5)), path)
-    figure.suptitle(title)
-    panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-    for panel in panels:
-        style_ticks(panel, grid=True)
-        panel.margins(x=0.0)
-    figure.align_ylabels(panels)
-    return np.asarray(panels)
 
 
 def _require_steps(where: str, history: HistoryRecord) -> None:

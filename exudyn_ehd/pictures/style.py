@@ -13,6 +13,7 @@ from functools import partial
 from typing import Any, cast
 
 import matplotlib
+import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.backends import BackendFilter, backend_registry
@@ -107,6 +108,18 @@ def new_figure(size: tuple[float, float], path: Target = None) -> Figure:
     return Figure(figsize=size, layout="constrained")
 
 
+def new_panels(count: int, size: tuple[float, float], path: Target = None, title: str = "") -> np.ndarray:
+    """Axes (count,) below each other in a new figure, with grids and one axis along; call it inside `styled`."""
+    figure = new_figure(size, path)
+    figure.suptitle(title)
+    panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    for panel in panels:
+        style_ticks(panel, grid=True)
+        panel.margins(x=0.0)
+    figure.align_ylabels(panels)
+    return np.asarray(panels)
+
+
 @contextmanager
 def picture(
     ax: Axes | None,
@@ -159,6 +172,15 @@ def picture(
 def headed(title: str, text: str) -> str:
     """A text under its title, if there is one."""
     return f"{title}\n{text}" if title else text
+
+
+def draw_clearance(ax: Axes, radius: float, name: str) -> None:
+    """Draw a clearance circle about the origin, once per name and axes."""
+    if any(line.get_label() == name for line in ax.lines):
+        return
+    around = np.linspace(0.0, 2.0 * np.pi, 181)
+    ax.plot(radius * np.cos(around), radius * np.sin(around), "--", color=GREY, lw=0.8, label=name)
+    style_ticks(ax)
 
 
 def style_ticks(ax: Axes, *, grid: bool = False) -> None:
