@@ -80,17 +80,15 @@ PRINTED = {
     "rad": ("deg", 180.0 / np.pi),
     **dict.fromkeys(("journal_radius", "length", "minimum_gap_z", "axial_position"), ("mm", 1e3)),
 }
-PREFIXES = ("mean_", "largest_", "smallest_")
-SUFFIX = "_time"
 
 
 def unit_of(name: str, more: Mapping[str, str] | None = None) -> str | None:
     """SI unit of a column's name, None if it is not known; ``more`` comes first."""
     if more and name in more:
         return more[name]
-    if name.endswith(SUFFIX):
+    if name.endswith("_time"):
         return "s"
-    for prefix in PREFIXES:
+    for prefix in ("mean_", "largest_", "smallest_"):
         name = name.removeprefix(prefix)
     return UNITS.get(name)
 

@@ -26,7 +26,6 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.limits import advice
 from exudyn_ehd.joint.balance.newton import settled_history
-from exudyn_ehd.joint.model.impedance import ImpedanceEvaluation, ImpedanceModel
 from exudyn_ehd.joint.model.quantities import supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.static.dynamic_stiffness import whirl_threshold
@@ -34,8 +33,6 @@ from exudyn_ehd.status import FilmError, InputError, Status
 
 LOWEST_ORDER = 0.5
 Motions: TypeAlias = Sequence[np.ndarray] | np.ndarray
-Model: TypeAlias = BearingModel | ImpedanceModel
-Evaluated: TypeAlias = Evaluation | ImpedanceEvaluation
 QuantityValues: TypeAlias = dict[str, float | np.ndarray]
 # Quantities, and what their errors are divided by; None: the largest absolute value of the reference.
 SCALES: Mapping[str, float | None] = {
@@ -133,7 +130,7 @@ def motion_at(
     return motion
 
 
-def measure_motions(model: Model, motions: Motions) -> dict[str, np.ndarray]:
+def measure_motions(model: BearingModel, motions: Motions) -> dict[str, np.ndarray]:
     """Quantities over the motions, in the frame of the eccentricity.
 
     Raises
@@ -151,22 +148,22 @@ def measure_motions(model: Model, motions: Motions) -> dict[str, np.ndarray]:
     return {name: np.array(values) for name, values in columns.items()}
 
 
-def time_of_sweep(model: Model, motions: Motions) -> float:
+def time_of_sweep(model: BearingModel, motions: Motions) -> float:
     """Processor time in s per motion, with tangent and warm starts, over as many sweeps as can be measured."""
 
     def sweep() -> None:
         for motion in motions:
-            _tangent(evaluate_at(model, motion))
+            evaluate_at(model, motion).steady_tangent()
 
     rounds, spent = timeit.Timer(sweep, timer=time.process_time).autorange()
     return spent / (rounds * len(motions))
 
 
-def _quantities(model: Model, evaluation: Evaluated, motion: np.ndarray) -> QuantityValues:
+def _quantities(model: BearingModel, evaluation: Evaluation, motion: np.ndarray) -> QuantityValues:
     angle = math.atan2(motion[1], motion[0])
     turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     radial, tangential = turn @ evaluation.wrench[:2]
-    tangent = _tangent(evaluation)
+    tangent = evaluation.steady_tangent()
     known = evaluation.quantities()
     row: QuantityValues = {
         "load": math.hypot(radial, tangential),
@@ -177,17 +174,11 @@ def _quantities(model: Model, evaluation: Evaluated, motion: np.ndarray) -> Quan
     # at rest as at any speed: the critical mass has none in it
     mass = whirl_threshold(stiffness, damping, abs(float(motion[8])) or 1.0)[1]
     row |= {"stiffness": stiffness, "damping": damping, "critical mass": mass}
-    if model.bearing.supply and isinstance(evaluation, Evaluation) and evaluation.film is not None:
+    if model.bearing.supply and evaluation.film is not None:
         row["supply flow"] = supply_flows(evaluation.film)
     return row
 
 
-def evaluate_at(model: Model, motion: np.ndarray) -> Evaluated:
+def evaluate_at(model: BearingModel, motion: np.ndarray) -> Evaluation:
     """Steady evaluation; a heated film and a flexible bore settle."""
-    if isinstance(model, ImpedanceModel):
-        return model.evaluate(motion)
-    return model.evaluate_steady(motion, settled_history(model, motion))
-
-
-def _tangent(evaluation: Evaluated) -> np.ndarray:
-    return evaluation.steady_tangent() if isinstance(evaluation, Evaluation) else evaluation.tangent()
+    return model.evaluate_steady(motion, settled_history(model, motion) if model.bearing.thermal else None)

@@ -24,7 +24,6 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.models import FilmOption, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.status import (
@@ -328,11 +327,13 @@ def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]
     return found.value, found.error
 
 
-def _model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
+def _model(bearing: JournalBearing) -> BearingModel:
     """Model on a grid whose error is measured: that it may be coarse for a profile need not be told."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PlausibilityWarning)
-        return build_model(bearing)
+        model = build_model(bearing)
+    assert isinstance(model, BearingModel)
+    return model
 
 
 def _errors(
