@@ -329,20 +329,18 @@ def require_number(
     return number
 
 
-def require_integer(where: str, value: int, *, at_least: int, hint: str = "") -> int:
-    """Return ``value`` as an int not below ``at_least``, or raise `InputError`."""
+def require_integer(where: str, value: int, *, at_least: int, at_most: int | None = None, hint: str = "") -> int:
+    """Return ``value`` as an int within bounds, or raise `InputError`."""
     tail = f"; {hint}" if hint else "."
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < at_least:
         raise InputError(f"{where} must be an integer >= {at_least}, got {value!r}{tail}")
+    if at_most is not None and value > at_most:
+        raise InputError(f"{where} must be between {at_least} and {at_most}, got {value!r}{tail}")
     return int(value)
 
 
-def require_count(where: str, value: int, *, at_least: int, hint: str = "it is of a film grid.") -> int:
-    """Return a number of vertices or intervals of a film grid in one direction, checked: up to `MOST_VERTICES`."""
-    count = require_integer(where, value, at_least=at_least, hint=hint)
-    if count > MOST_VERTICES:
-        raise InputError(f"{where} must be between {at_least} and {MOST_VERTICES}, got {value!r}; {hint}")
-    return count
+require_count = functools.partial(require_integer, at_most=MOST_VERTICES, hint="it is of a film grid.")
+"""Check of a number of vertices or intervals of a film grid in one direction."""
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
