@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, resampled, span
+from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, cylinder_points, resampled, span
 from exudyn_ehd.pictures.records import FilmRecord, Target, label, unit_for
 from exudyn_ehd.pictures.style import BLACK, VERMILION, WIDE, headed, new_figure, picture, style_ticks, styled, write
 from exudyn_ehd.solid.elements.element import Face, face_of
@@ -93,19 +93,15 @@ def pressure_surface(theta: np.ndarray, z: np.ndarray, pressure: np.ndarray) -> 
     """Points (k, m, 3) of the hill over the unit bore; pressures below ambient stay on the bore."""
     largest = float(np.nanmax(pressure))
     height = HILL / largest if largest > 0.0 else 0.0
-    r = 1.0 + height * np.maximum(pressure, 0.0)
-    return np.stack([r * np.cos(theta)[:, None], r * np.sin(theta)[:, None], np.broadcast_to(z, r.shape)], axis=-1)
+    return cylinder_points(1.0 + height * np.maximum(pressure, 0.0), theta, z)
 
 
 def journal_surface(film: FilmRecord, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Points (k, m, 3) of the journal, with the clearance enlarged to its share of the radius; z over the radius."""
     c, R = film.bearing.radial_clearance, film.bearing.journal_radius
-    x, y, bx, by = film.motion[:4]
-    at_x = CLEARANCE / c * (x + bx * z * R)
-    at_y = CLEARANCE / c * (y + by * z * R)
-    r = 1.0 - CLEARANCE
-    X, Y = at_x + r * np.cos(theta)[:, None], at_y + r * np.sin(theta)[:, None]
-    return np.stack([X, Y, np.broadcast_to(z, X.shape)], axis=-1)
+    points = cylinder_points(1.0 - CLEARANCE, theta, z)
+    points[..., :2] += CLEARANCE / c * (film.motion[:2] + np.multiply.outer(R * z, film.motion[2:4]))
+    return points
 
 
 def quads_of(points: np.ndarray) -> np.ndarray:

@@ -19,7 +19,15 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 from exudyn_ehd.film.arcs import columns_of_arcs
-from exudyn_ehd.pictures.maps import PRESSURE, colour_limits, draw_map, draw_rupture, field_values, on_picture
+from exudyn_ehd.pictures.maps import (
+    PRESSURE,
+    colour_limits,
+    cylinder_points,
+    draw_map,
+    draw_rupture,
+    field_values,
+    on_picture,
+)
 from exudyn_ehd.pictures.records import HistoryRecord, JointFilm, label, unit_for
 from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, WIDE, draw_clearance, style_ticks, styled
 from exudyn_ehd.status import InputError, require_integer, require_number
@@ -192,8 +200,7 @@ def film_mesh(
     n, m = film.pressure.shape
     delta = np.zeros((n, m)) if film.bore_displacement is None else film.bore_displacement
     r = film.bearing.journal_radius + film.bearing.radial_clearance + magnification * delta
-    x, y = r * np.cos(film.theta)[:, None], r * np.sin(film.theta)[:, None]
-    points = np.stack([x, y, np.broadcast_to(film.z, (n, m))], axis=-1).reshape(-1, 3)
+    points = cylinder_points(r, film.theta, film.z).reshape(-1, 3)
     last = [part.stop - 1 for part in columns_of_arcs(film.theta, film.bearing.bore_arcs)]
     i, j = (index.ravel() for index in np.meshgrid(np.delete(np.arange(n), last), np.arange(m - 1), indexing="ij"))
     following = (i + 1) % n

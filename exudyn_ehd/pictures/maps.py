@@ -120,6 +120,12 @@ def on_picture(film: FilmRecord, values: np.ndarray, *, prescribed_ends: bool = 
     return resampled(film, values, np.linspace(*span(film), FINE[0]), np.linspace(film.z[0], film.z[-1], FINE[1]))
 
 
+def cylinder_points(radius: np.ndarray | float, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Points (k, l, 3) at a radius (k, l), angles (k,) and places (l,) along the axis."""
+    r = np.broadcast_to(radius, (theta.size, z.size))
+    return np.stack([r * np.cos(theta)[:, None], r * np.sin(theta)[:, None], np.broadcast_to(z, r.shape)], axis=-1)
+
+
 def span(film: FilmRecord) -> tuple[float, float]:
     """First and last angle of a film, rad: those of its one arc, or a turn."""
     return (0.0, math.tau) if len(film.bearing.bore_arcs) != 1 else (float(film.theta[0]), float(film.theta[-1]))
