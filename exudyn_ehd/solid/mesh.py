@@ -19,6 +19,7 @@ from exudyn_ehd.solid.unrolled import Surface, patch, wrapped
 from exudyn_ehd.status import (
     POSITIVE,
     ROUNDING,
+    SMALL,
     Checked,
     InputError,
     require_integer,
@@ -114,9 +115,9 @@ class BushMesh:
             No grid line runs at this angle.
         """
         theta = require_number("BushMesh.generatrix theta", theta, "rad")
-        near = surface.nodes[np.abs(wrapped(surface.theta - theta)) < 1e-6]
+        gap = np.abs(wrapped(surface.theta - theta))
+        near = surface.nodes[gap < SMALL]
         if len(near) == 0:
-            gap = np.abs(wrapped(surface.theta - theta))
             raise InputError(
                 f"BushMesh.generatrix theta must be the angle of a grid line, got {theta:g} rad; the nearest one is "
                 f"{surface.theta[int(np.argmin(gap))]:g} rad: take that one or change the circumferential count."

@@ -254,13 +254,10 @@ class TotalLagrange:
         return csr_matrix(kron(self.scalar_mass, np.eye(3), format="csr"))
 
     def _state(self, u: np.ndarray, v: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, kernels.Law]:
-        shape = self.mesh.nodes.shape
-        u = np.ascontiguousarray(u, dtype=float).reshape(shape)
-        neo_hooke = isinstance(self.material, NeoHooke)
-        if v is None or self.viscosity_time == 0.0:
-            return u, u, kernels.Law(*self.material.lame, 0.0, neo_hooke)
-        v = np.ascontiguousarray(v, dtype=float).reshape(shape)
-        return u, v, kernels.Law(*self.material.lame, self.viscosity_time, neo_hooke)
+        beta = 0.0 if v is None else self.viscosity_time
+        given = (u, u if v is None else v)
+        u, v = (np.ascontiguousarray(x, dtype=float).reshape(self.mesh.nodes.shape) for x in given)
+        return u, v, kernels.Law(*self.material.lame, beta, isinstance(self.material, NeoHooke))
 
 
 def own_rule(where: str, element: Element, rule: Quadrature | None) -> Quadrature:
