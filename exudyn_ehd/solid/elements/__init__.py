@@ -2,7 +2,7 @@
 
 Module map
 ----------
-element   `Element`, what a kind is described by; `Quadrature`; cells, shape functions of simplices; kinds of faces
+element   `Element`, what describes a kind; `Quadrature`; cells, their shape functions, points in them; kinds of faces
 kinds     the 20-node hexahedron and the 10-node tetrahedron; which element a connectivity has; its boundary
 kernels   compiled laws of the materials and loops over elements: the tangent
 blocks    force of a mesh and the least volume ratio, by blocks of elements
