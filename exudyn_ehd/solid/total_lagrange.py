@@ -155,10 +155,10 @@ class TotalLagrange:
         assert self.quadrature is not None
         elements = np.ascontiguousarray(self.mesh.elements)
         gradient, weight = self.mesh.element.reference_gradients(self.mesh.nodes[elements], self.quadrature)
-        if weight.min() <= 0:
+        if (inverted := np.flatnonzero(weight.min(axis=1) <= 0)).size:
             raise InputError(
                 "TotalLagrange.mesh must have elements of positive volume, got a non-positive Jacobian in element "
-                f"{weight.min(axis=1).argmin()}; check the node order and the mid-edge nodes of the mesh."
+                f"{inverted[0]}; check the node order and the mid-edge nodes of the mesh."
             )
         return elements, np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), weight
 
