@@ -64,6 +64,16 @@ def test_the_least_volume_ratio_equals_theirs():
     assert least == pytest.approx(ratios.min(), rel=1e-12) and row == ratios.argmin()
 
 
+def test_of_elements_that_are_equal_but_for_round_off_the_first_is_named():
+    """A body turned inside out as a whole, det F = -1; a displacement that is nan hides nothing."""
+    solid = TotalLagrange(mesh=SMALL, material=SOFT)
+    u = -2.0 * SMALL.nodes
+    assert solid.inversion(u).startswith("element 0 at")
+    u[SMALL.elements[-1]] = np.nan
+    first = np.flatnonzero(np.isfinite(u[SMALL.elements]).all(axis=(1, 2)))[0]
+    assert first > 0 and solid.inversion(u).startswith(f"element {first} at")
+
+
 @pytest.mark.parametrize("rule", sample(RULES, 1, 2))
 def test_kernel_equals_its_readable_twin(rule):
     solid = TotalLagrange(mesh=SMALL, material=SOFT, quadrature=rule)

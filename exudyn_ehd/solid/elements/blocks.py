@@ -172,7 +172,7 @@ def force_parallel(N, M, X, elements, u, v, law, f_out):
 
 @njit(cache=True)
 def smallest_volume_ratio(N, X, elements, u):
-    """Smallest det F at the quadrature points, and the row of ``elements`` where it is; the last row with a nan.
+    """Smallest det F at the quadrature points, and the row of ``elements`` where it is; points with a nan are omitted.
 
     Values that differ by less than a thousandth, as those of symmetric meshes do by round-off, count as equal: the
     first one is returned.
@@ -188,6 +188,6 @@ def smallest_volume_ratio(N, X, elements, u):
         for q in range(len(N) // 3):
             for e in range(count):
                 ratio = 1.0 + volume_change(_local(flat, X[block], 9 * BLOCK * q + e, 10 * BLOCK * q + e))
-                if not ratio >= least - 1e-3 * abs(least):
+                if ratio < np.inf and not ratio >= least - 1e-3 * abs(least):
                     least, where = ratio, first + e
     return least, where
