@@ -28,7 +28,6 @@ from exudyn_ehd.film.grid import FilmGrid, axial_metric, axial_vertices, rows_be
 from exudyn_ehd.film.reynolds.gap import gap_slopes
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number, require_type
 
-TURN = 2.0 * math.pi
 # Smallest arc and smallest part of one before or behind a step, rad; fewest intervals on them.
 SMALLEST_ARC, FEWEST_ON_ARC, FEWEST_ON_PART = 0.05, 8, 4
 # Angle up to which two edges are one, rad; share of the length that a dam leaves for its lands at least.
@@ -124,7 +123,7 @@ class Arc(Checked):
 
     checks: ClassVar = {
         "start": require_number,
-        "extent": partial(require_number, at_least=SMALLEST_ARC, below=TURN, hint="leave arc out for a ring."),
+        "extent": partial(require_number, at_least=SMALLEST_ARC, below=math.tau, hint="leave arc out for a ring."),
         "leading_pressure": require_number,
         "trailing_pressure": require_number,
         "preload": partial(NOT_NEGATIVE, below=1.0, hint="it is 1 - assembled clearance / machined clearance."),
@@ -291,12 +290,12 @@ def _lobes(
     where: str, count: int, preload: float, offset: float, angle: float, width_angle: float, pressure: float
 ) -> tuple[Arc, ...]:
     """Arcs of equal extent between ``count`` grooves."""
-    spacing = TURN / count
+    spacing = math.tau / count
     require_number(f"{where}: angle", angle)
     require_number(f"{where}: width_angle", width_angle, at_least=0.0, at_most=spacing - SMALLEST_ARC)
     return tuple(
         Arc(
-            start=math.remainder(angle + 0.5 * width_angle + k * spacing, TURN),
+            start=math.remainder(angle + 0.5 * width_angle + k * spacing, math.tau),
             extent=spacing - width_angle,
             leading_pressure=pressure,
             trailing_pressure=pressure,
@@ -322,10 +321,10 @@ def check_arcs(arc: Arc | None, arcs: tuple[Arc, ...], length: float) -> None:
     arcs = arcs if arc is None else (arc,)
     ends = [part.start + part.extent for part in arcs]
     between = [
-        (after.start - end + TOUCHING) % TURN - TOUCHING
+        (after.start - end + TOUCHING) % math.tau - TOUCHING
         for after, end in zip((*arcs[1:], *arcs[:1]), ends, strict=True)
     ]
-    if sum(between) + sum(part.extent for part in arcs) > 1.5 * TURN:
+    if sum(between) + sum(part.extent for part in arcs) > 1.5 * math.tau:
         k = int(np.argmax(between))
         after = arcs[(k + 1) % len(arcs)]
         raise InputError(
@@ -378,7 +377,7 @@ def _rows(dams: list[float], n_z: int, stretch: float) -> tuple[np.ndarray, np.n
 
 def _columns(arc: Arc, n_theta: int) -> tuple[np.ndarray, ...]:
     """Angles of the columns of an arc and of the links behind them, widths, inverse distances, weights, (n,) each."""
-    half, count = 0.5 * arc.extent, max(FEWEST_ON_ARC, math.ceil(n_theta * arc.extent / TURN))
+    half, count = 0.5 * arc.extent, max(FEWEST_ON_ARC, math.ceil(n_theta * arc.extent / math.tau))
     if arc.step is None:
         x, weight = axial_vertices(count, half, 0.0)
         step = np.full(x.size, axial_metric(x)[0].max())
@@ -436,7 +435,7 @@ class LobeTerm:
     """
 
     def __init__(self, arcs: tuple[Arc, ...], grid: FilmGrid, clearance: float) -> None:
-        self.values, links, dams, *scratch = np.zeros((6, *grid.shape))
+        self.values, links, dams = np.zeros((3, *grid.shape))
         self.slopes = np.zeros((2, *grid.shape))
         for arc, (first, last) in zip(arcs, grid.edges.tolist(), strict=True):
             part = slice(first, last + 1)
@@ -444,7 +443,7 @@ class LobeTerm:
             self.values[part] += arc.lobe(grid.x[part])[:, None]
             links[part] += arc.lobe(grid.x_face[part])[:, None]
             if arc.dam is not None:
-                step, half = TURN if arc.step is None else arc.step, 0.5 * arc.dam.length / grid.reference_length
+                step, half = math.tau if arc.step is None else arc.step, 0.5 * arc.dam.length / grid.reference_length
                 depth = arc.dam.depth / clearance * (np.abs(grid.z) < half)
                 at_step = np.abs(x - step) < TOUCHING
                 dams[part] = np.outer(np.where(at_step, 0.5, x < step), depth)
@@ -457,10 +456,8 @@ class LobeTerm:
                     where=grid.weight[part] > 0.0,
                 )
         self.values += dams
-        following = np.where((grid.link_x == 0.0)[:, None], self.values, np.roll(self.values, -1, axis=0))
-        self.between = links - 0.5 * (self.values + following)
-        gap_slopes(dams, grid.width_x, grid.link_x, grid.z, *scratch)
-        self.slopes -= scratch[1:]
+        self.between = links - gap_slopes(self.values, grid)[0]
+        self.slopes -= gap_slopes(dams, grid)[1]
         self.slopes[1, :, 1:-1] += 0.5 * (dams[:, 2:] - dams[:, :-2]) / grid.weight_z[1:-1]
 
     def field(self, history: object) -> np.ndarray:

@@ -53,8 +53,16 @@ class Gradients(NamedTuple):
 
     def to_true_gap(self, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> Gradients:
         """Gradients to the true gap, of those to the film's gap that a limiter makes of it, with its slopes (n, m)."""
-        by = self.by.copy()
-        _chain(self.places, slope, bend, face_slope, by)
+        (n, m), by = slope.shape, self.by.copy()
+        i, j = np.divmod(self.places, m)
+        by[0] *= face_slope[i, j]
+        by[1] *= face_slope[i - 1, j]
+        by[2] = by[2] * slope[i, j] + by[5] * bend[i, j]
+        by[3] *= slope[i, np.minimum(j + 1, m - 1)]
+        by[4] *= slope[i, np.maximum(j - 1, 0)]
+        by[5] *= slope[i, j]
+        by[8] *= slope[(i + 1) % n, j]
+        by[9] *= slope[i - 1, j]
         return self._replace(by=by)
 
     def columns(self, shapes: np.ndarray, count: int) -> np.ndarray:
@@ -63,20 +71,15 @@ class Gradients(NamedTuple):
         add_columns(self.rows, self.places, self.by, shapes, out)
         return out
 
-    def stencil(self, shape: tuple[int, int], by_gap: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
-        """Weights and flat vertices (c, 5) of ``by_gap d/dH + by_rate d/dH_t``, for `_BY_GAP` on n columns, m rows."""
+    def matrix(self, shape: tuple[int, int], count: int, by_gap: float, by_rate: float) -> csr_matrix:
+        """``by_gap d/dH + by_rate d/dH_t`` (count, n m) of the sums on n columns and m rows, see `_BY_GAP`."""
         (n, m), at = shape, self.places
         column = at // m
         next_x, last_x = at + np.where(column + 1 < n, m, m - n * m), at - np.where(column > 0, m, m - n * m)
         # there is nothing behind the ends
         around = np.stack((at, next_x, last_x, np.minimum(at + 1, n * m - 1), np.maximum(at - 1, 0)), axis=1)
-        return self.by.T @ (by_gap * _BY_GAP + by_rate * _BY_RATE), around
-
-    def matrix(self, shape: tuple[int, int], count: int, by_gap: float, by_rate: float) -> csr_matrix:
-        """``by_gap d/dH + by_rate d/dH_t`` (count, n m) of the sums, as for `stencil`."""
-        weights, around = self.stencil(shape, by_gap, by_rate)
-        at = np.repeat(self.rows, 5), around.ravel()
-        return csr_matrix((weights.ravel(), at), shape=(count, shape[0] * shape[1]))
+        weights = self.by.T @ (by_gap * _BY_GAP + by_rate * _BY_RATE)
+        return csr_matrix((weights.ravel(), (np.repeat(self.rows, 5), around.ravel())), shape=(count, n * m))
 
     def fields(self, rows: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, ...]:
         """Gradients ``-rows . dr`` of k functionals with the weights ``rows`` (k, count).
@@ -191,23 +194,6 @@ def add_columns(rows, places, by, shapes, out):
 
 
 @njit(cache=True)
-def _chain(places, slope, bend, face_slope, by):
-    """Apply the chain rule of `Gradients.to_true_gap`."""
-    n, m = slope.shape
-    for e in range(places.size):
-        i, j = places[e] // m, places[e] % m
-        on, back = (i + 1) % n, (i - 1) % n
-        by[0, e] *= face_slope[i, j]
-        by[1, e] *= face_slope[back, j]
-        by[2, e] = by[2, e] * slope[i, j] + by[5, e] * bend[i, j]
-        by[3, e] *= slope[i, min(j + 1, m - 1)]
-        by[4, e] *= slope[i, max(j - 1, 0)]
-        by[5, e] *= slope[i, j]
-        by[8, e] *= slope[on, j]
-        by[9, e] *= slope[back, j]
-
-
-@njit(cache=True)
 def _add_fields(lam, rows, places, by, cell, face, rate, speed):
     """Add the gradients of `Gradients.fields`."""
     _, n, m = cell.shape
@@ -239,14 +225,3 @@ def functional_gradients(lam, columns, out):
             for r in range(own.size):
                 total -= own[r] * column[r]
             out[k, q] = total
-
-
-@njit(cache=True, fastmath=FAST)
-def add_rows(rows, weight, place, fields, out):
-    """Add to the ``rows`` of sums (count, r) those of fields (., r) at ``place`` times ``weight``, both (c, s)."""
-    for e in range(rows.size):
-        target = out[rows[e]]
-        for c in range(place.shape[1]):
-            own, w = fields[place[e, c]], weight[e, c]
-            for q in range(target.size):
-                target[q] += w * own[q]

@@ -43,16 +43,6 @@ class Mesh(NamedTuple):
     link_z: np.ndarray
 
 
-class Directions(NamedTuple):
-    """Normals of a ring: cosine and sine (n,) at vertices and at links i -> i+1; rows z (m,)."""
-
-    cos_x: np.ndarray
-    sin_x: np.ndarray
-    cos_f: np.ndarray
-    sin_f: np.ndarray
-    z: np.ndarray
-
-
 @dataclass(frozen=True, eq=False)
 class FilmGrid:
     """Tensor-product film grid in scaled lengths (divided by ``reference_length``).
@@ -134,13 +124,24 @@ class FilmGrid:
         return not self.edges.size
 
     @cached_property
+    def beside(self) -> tuple[np.ndarray, np.ndarray]:
+        """Columns before and behind every column (n,), itself where there is no link."""
+        here, ends = np.arange(self.x.size), self.link_x == 0.0
+        return np.where(np.roll(ends, 1), here, np.roll(here, 1)), np.where(ends, here, np.roll(here, -1))
+
+    @cached_property
+    def differences_z(self) -> np.ndarray:
+        """Slopes in z at the rows by the values at the rows (m, m), see `exudyn_ehd.film.reynolds.gap.gap_slopes`."""
+        return np.asarray(np.gradient(np.eye(self.z.size), self.z, axis=0))
+
+    @cached_property
     def mesh(self) -> tuple[np.ndarray, ...]:
         """The metric for kernels, as in `Mesh`."""
         return self.width_x, self.width_z, self.link_x, self.link_z
 
     @cached_property
     def directions(self) -> tuple[np.ndarray, ...]:
-        """Normals of a bearing, whose x is the angle theta, for kernels, as in `Directions`."""
+        """Cosine and sine (n,) of theta at vertices and at links i -> i+1, and the rows z (m,), for kernels."""
         return np.cos(self.x), np.sin(self.x), np.cos(self.x_face), np.sin(self.x_face), self.z
 
     @cached_property

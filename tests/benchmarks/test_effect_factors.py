@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.joint.model.effects import Effects
 from tests.benchmarks.accuracy.costs import effects
 from tests.benchmarks.accuracy.costs.growth import plain_bearing
 from tests.benchmarks.accuracy.table import format_costs

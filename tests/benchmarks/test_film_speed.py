@@ -121,9 +121,10 @@ class _RelaxedFilm:
         m, s, g = self.model.parts, self.model.solver, self.model.grid
         pose, rate = motion[:4] * m.pose_scale, motion[4:8] * m.pose_scale
         vx, vz = 0.5 * motion[8], 0.5 * motion[9] / g.reference_length
-        rigid_gap(pose, m.directions.cos_x, m.directions.sin_x, g.z, 1.0, s.H)
-        rigid_gap(pose, m.directions.cos_f, m.directions.sin_f, g.z, 1.0, s.HF)
-        rigid_gap(rate, m.directions.cos_x, m.directions.sin_x, g.z, 0.0, s.H_t)
+        cos_x, sin_x, cos_f, sin_f, z = g.directions
+        rigid_gap(pose, cos_x, sin_x, z, 1.0, s.H)
+        rigid_gap(pose, cos_f, sin_f, z, 1.0, s.HF)
+        rigid_gap(rate, cos_x, sin_x, z, 0.0, s.H_t)
         y = s.system
         set_links(s.H, s.HF, None, s.metric, vx, vz, y.term_fields)
         right_hand_side(y.fx, y.fz, True, s.H_t, s.area, y.b)

@@ -32,13 +32,14 @@ def _stage_runs(grid):
     states = growth.motions()
     evaluation = model.evaluate(states[0])
     film = evaluation.film
-    s, y, z, p, w = film.solver, film.solver.system, film.grid.z, film.parts, film.journal
+    s, y, w = film.solver, film.solver.system, film.journal
+    cos_x, sin_x, cos_f, sin_f, z = film.grid.directions
     vx = 0.5 * w.omega
 
     def gap():
-        rigid_gap(w.pose, p.directions.cos_x, p.directions.sin_x, z, 1.0, s.H)
-        rigid_gap(w.pose, p.directions.cos_f, p.directions.sin_f, z, 1.0, s.HF)
-        rigid_gap(w.rate, p.directions.cos_x, p.directions.sin_x, z, 0.0, s.H_t)
+        rigid_gap(w.pose, cos_x, sin_x, z, 1.0, s.H)
+        rigid_gap(w.pose, cos_f, sin_f, z, 1.0, s.HF)
+        rigid_gap(w.rate, cos_x, sin_x, z, 0.0, s.H_t)
 
     def coefficients():
         set_links(s.H, s.HF, None, s.metric, vx, 0.0, y.term_fields)
@@ -50,7 +51,7 @@ def _stage_runs(grid):
         "solve": lambda: solve_sets(y, s.work),
         "evaluation": lambda: whole.evaluate(states[0]),
         "tangent": evaluation.tangent,
-        "loads": lambda: film_loads(p, film.scales, w, film.oil, None, None, None),
+        "loads": lambda: film_loads(film.parts, film.scales, w, film.oil, None, None, None),
     }
 
 

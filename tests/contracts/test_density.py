@@ -216,7 +216,7 @@ def test_absent_law_calls_nothing(cavitation, monkeypatch):
     history = start(model)
     evaluation = model.evaluate(MOTION, history, STEP)
     assert np.all(np.isfinite(evaluation.tangent()))
-    assert model.effects.density is None and model.parts.compressible is None
+    assert model.effects.density is None and model.solver.law is None
     assert all(np.isfinite(v) for v in evaluation.quantities().values())
 
 

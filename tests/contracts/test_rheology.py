@@ -13,7 +13,7 @@ from exudyn_ehd.film.lubricant import pressure_viscosity as viscosity
 from exudyn_ehd.film.reynolds import links
 from exudyn_ehd.film.solvers import film as solver
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.joint.model.effects import Effects
 from tests.sampling import covering
 from tests.tangents import tangent_error
 
@@ -143,7 +143,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
     for module, names in (
         (links, ("plain_flux",)),
         (solver, ("link_flux",)),
-        (viscosity, ("hermite_inverse",)),
+        (viscosity, ("law_fields",)),
     ):
         for name in names:
             monkeypatch.setattr(module, name, forbidden)

@@ -274,7 +274,7 @@ def beyond_law(model, motion, past):
     law = model.effects.pressure_law
     if law is None:
         return False
-    if model.parts.compressible is not None:
+    if model.solver.law is not None:
         if isinstance(model.bearing.cavitation, ehd.SwiftStieber) and model.bearing.closure.line_in_cells:
             vertices = dataclasses.replace(model.bearing.cavitation, line_in_cells=False)
             other = build_model(dataclasses.replace(model.bearing, cavitation=vertices))
@@ -320,7 +320,7 @@ def check(model, evaluation, past):
         return "pressure below the cavity's", 0.0
     if s.closure.conserves_mass and (s.fill.min() < 0.0 or s.fill.max() > 1.0):
         return "fill outside 0 to 1", 0.0
-    if not hasattr(s.system, "kx") or model.parts.compressible is not None:
+    if not hasattr(s.system, "kx") or model.solver.law is not None:
         return None, 0.0
     error = balance_error(model)
     return ("balance" if not error <= BALANCE else None), error

@@ -22,20 +22,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.lubricant.pressure_viscosity import (
-    BEYOND,
     LARGEST_PRESSURE,
+    LawTable,
     PressureLaw,
     PressureTransform,
-    expand,
-    interval_at,
-    quintic,
+    law_at,
 )
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked
 
@@ -63,32 +61,6 @@ class DensityLaw(Protocol):
 
     def flow_work(self, p: np.ndarray) -> np.ndarray:
         """Integral of dp / (rho / rho_0) from ambient pressure, Pa."""
-
-
-class DensityTable(NamedTuple):
-    """Splines of a `CompressibleLaw` for the kernels, in one form for every density law.
-
-    Attributes
-    ----------
-    exponent, q, table, bucket, bucket_scale
-        Spline of p(q), as for `exudyn_ehd.film.lubricant.pressure_viscosity.hermite_inverse`.
-    ratio : (intervals, 7) array
-        `quintic` spline of rho(q) in the same intervals.
-    lowest, highest : float
-        Range of q, Pa.
-    a : float
-        Slope of the density ratio at ambient pressure, 1/Pa.
-    """
-
-    exponent: float
-    q: np.ndarray
-    table: np.ndarray
-    ratio: np.ndarray
-    bucket: np.ndarray
-    bucket_scale: float
-    lowest: float
-    highest: float
-    a: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,7 +151,7 @@ class DensityField:
         """Return whether scaled transformed pressures (n, m) reach the end of the law's range."""
         return bool(P.max() * self.scale >= (1.0 - ROUNDING) * self.law.kernel_table.highest)
 
-    def fields(self, floor: float) -> tuple[float, float, DensityTable, np.ndarray, bool]:
+    def fields(self, floor: float) -> tuple[float, float, LawTable, np.ndarray, bool]:
         """Law as kernels take it; ``floor``: scaled pressure below which the density stays."""
         return self.scale, floor, self.law.kernel_table, self.known, self.crosses
 
@@ -202,77 +174,20 @@ class CompressibleLaw(PressureTransform):
         self.density, self.viscosity = density, viscosity
         exponent = (0.0 if viscosity is None else viscosity.coefficient) - density.coefficient
         largest_pressure = LARGEST_PRESSURE if viscosity is None else viscosity.largest_pressure
+        self.compressibility = density.coefficient
         self._tabulate(largest_pressure, exponent or SMALLEST_EXPONENT)
-        p, (s, s_p) = self.p, self.slopes(self.p)
-        rho, rho_p, rho_pp = density.ratio(p), density.ratio_slope(p), density.ratio_bend(p)
-        # Below, q has no p; at its upper end the spline has none either.
-        lowest = -np.inf if exponent >= 0.0 else 0.999 / exponent
-        self.kernel_table = DensityTable(
-            self.alpha,
-            self.q,
-            self.table,
-            quintic(rho, rho_p * s, rho_pp * s**2 + rho_p * s * s_p, 1.0 / self.table[:, 0]),
-            self.bucket,
-            self.bucket_scale,
-            lowest,
-            self.q[-1] * (1.0 - 1e-12),
-            density.coefficient,
-        )
+
+    def densities(self, slope: np.ndarray, slope_p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Density ratio at the nodes and its first two derivatives to q, for s = dp/dq and ds/dp there."""
+        p, law = self.p, self.density
+        rho_p, rho_pp = law.ratio_slope(p), law.ratio_bend(p)
+        return law.ratio(p), rho_p * slope, rho_pp * slope**2 + rho_p * slope * slope_p
 
     def slopes(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """s = dp/dq and ds/dp, 1/Pa, for p >= 0."""
         mu, mu_p = (np.ones_like(p), np.zeros_like(p)) if self.viscosity is None else super().slopes(p)
         rho, rho_p = self.density.ratio(p), self.density.ratio_slope(p)
         return mu / rho, (mu_p * rho - mu * rho_p) / rho**2
-
-    def pressure(self, q: np.ndarray, p_out: np.ndarray, slope_out: np.ndarray, bend_out: np.ndarray) -> bool:
-        """p(q) with its first two derivatives for fields (n, m); False where q has no p."""
-        table = self.kernel_table
-        inside = bool(q.min() > table.lowest and q.max() < table.highest)
-        return inside and super().inverse(q, p_out, slope_out, bend_out)
-
-    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), r = mu(p)/mu_0 and dr/dq (1/Pa) for fields (n, m); False where q has no p and goes on in a line."""
-        return bool(viscosity_of_transformed(q, self.kernel_table, p_out, ratio_out, ratio_q_out))
-
-
-@njit(cache=True, inline="always")
-def law_at(q, law):
-    """Pressure p, Pa, and density ratio at a transformed pressure q, Pa, within the law's range; s = dp/dq and ds/dq,
-    1/Pa; the first to fourth coefficient of Taylor's polynomial of the density about q."""
-    if q > 0.0:
-        low, t = interval_at(q, law.q, law.table, law.bucket, law.bucket_scale)
-        p, s, half, _, _ = expand(law.table, low, t)
-        rho, r1, r2, r3, r4 = expand(law.ratio, low, t)
-        return p, rho, s, 2.0 * half, r1, r2, r3, r4
-    a, k = law.a, law.exponent
-    p, s = -np.log1p(-k * q) / k, 1.0 / (1.0 - k * q)
-    rho = np.exp(a * p)
-    r1 = a * s * rho
-    r2 = (a + k) / 2.0 * s * r1
-    r3 = (a + 2.0 * k) / 3.0 * s * r2
-    r4 = (a + 3.0 * k) / 4.0 * s * r3
-    return p, rho, s, k * s * s, r1, r2, r3, r4
-
-
-@njit(cache=True)
-def viscosity_of_transformed(q, law, p_out, ratio_out, ratio_q_out):
-    """p, r = mu / mu_0 = rho dp/dq and dr/dq; False where q has no p: p is nan in too much tension, and goes on in a
-    line with the density of its end at too much pressure."""
-    n, m = q.shape
-    if not q.min() > law.lowest:
-        p_out[:] = ratio_out[:] = ratio_q_out[:] = np.nan
-        return False
-    inside = True
-    for i in range(n):
-        for j in range(m):
-            x = q[i, j]
-            p, rho, s, s_q, rho_q, _, _, _ = law_at(min(x, law.highest), law)
-            if not x < law.highest:
-                inside = False
-                p, s, s_q, rho_q = p + BEYOND * (x - law.highest), BEYOND, 0.0, 0.0
-            p_out[i, j], ratio_out[i, j], ratio_q_out[i, j] = p, s * rho, s_q * rho + s * rho_q
-    return inside
 
 
 # Change of dp/dq, and an eighth of that of the density's slope, as shares, up to which Taylor's polynomial about a

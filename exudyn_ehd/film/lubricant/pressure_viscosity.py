@@ -192,6 +192,36 @@ class BoundRoelands(NamedTuple):
         return self.ratio(p) * self.coefficient * (1.0 + p / self.p0) ** (self.Z - 1.0)
 
 
+class LawTable(NamedTuple):
+    """Splines of a `PressureTransform` for the kernels, in one form for every law of viscosity and density.
+
+    Attributes
+    ----------
+    exponent : float
+        k of ``q = (1 - exp(-k p)) / k`` below ambient pressure, 1/Pa.
+    q : (intervals + 1,) array
+        Nodes of the splines, Pa.
+    table, ratio : (intervals, 7) arrays
+        `quintic` splines of p(q) and of the density ratio rho(q).
+    bucket : (b + 1,) array
+        Interval at the start of each of b equal parts of q; ``bucket_scale``: their number per pressure, 1/Pa.
+    lowest, highest : float
+        Range of q, Pa.
+    a : float
+        Slope of the density ratio at ambient pressure, 1/Pa.
+    """
+
+    exponent: float
+    q: np.ndarray
+    table: np.ndarray
+    ratio: np.ndarray
+    bucket: np.ndarray
+    bucket_scale: float
+    lowest: float
+    highest: float
+    a: float
+
+
 class PressureTransform:
     """Transform ``q = integral dp / s(p)``, s = r, whose inverse p(q) is a quintic Hermite spline.
 
@@ -213,7 +243,11 @@ class PressureTransform:
         ds/dp at p = 0, 1/Pa; not 0.
     largest_pressure : float
         End of the table, Pa.
+    kernel_table : LawTable
     """
+
+    # slope of the density ratio at ambient pressure, 1/Pa
+    compressibility = 0.0
 
     def __init__(self, viscosity: PressureLaw) -> None:
         self.viscosity: PressureLaw | None = viscosity
@@ -225,10 +259,23 @@ class PressureTransform:
         widths = self._quadrature(self.p[:-1], self.p[1:])
         self.q = np.concatenate(([0.0], np.cumsum(widths)))
         slope, slope_p = self.slopes(self.p)
-        self.table = quintic(self.p, slope, slope * slope_p, widths)
         edges = np.linspace(0.0, self.q[-1], TABLE_INTERVALS + 1)
-        self.bucket = np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1)
-        self.bucket_scale = TABLE_INTERVALS / self.q[-1]
+        self.kernel_table = LawTable(
+            alpha,
+            self.q,
+            quintic(self.p, slope, slope * slope_p, widths),
+            quintic(*self.densities(slope, slope_p), widths),
+            np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1),
+            TABLE_INTERVALS / self.q[-1],
+            # below, q has no p
+            -np.inf if alpha >= 0.0 else 0.999 / alpha,
+            self.q[-1],
+            self.compressibility,
+        )
+
+    def densities(self, slope: np.ndarray, slope_p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Density ratio at the nodes and its first two derivatives to q, for s = dp/dq and ds/dp there."""
+        return np.ones_like(self.p), np.zeros_like(self.p), np.zeros_like(self.p)
 
     def slopes(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """s = dp/dq and ds/dp, 1/Pa, for p >= 0."""
@@ -254,11 +301,14 @@ class PressureTransform:
 
         False where q has no p: there p goes on in a line, for iterations that have gone too far.
         """
-        return bool(
-            hermite_inverse(
-                q, self.alpha, self.q, self.table, self.bucket, self.bucket_scale, p_out, ratio_out, ratio_q_out
-            )
-        )
+        inside, (p_out[:], s, s_q, rho, rho_q) = self.fields(q)
+        ratio_out[:], ratio_q_out[:] = rho * s, rho * s_q + rho_q * s
+        return inside
+
+    def fields(self, q: np.ndarray) -> tuple[bool, np.ndarray]:
+        """Return whether every q has a p, and p(q), s = dp/dq, ds/dq, density ratio and its derivative (5, ...)."""
+        out = np.empty((5, *q.shape))
+        return bool(law_fields(q.reshape(-1), self.kernel_table, out.reshape(5, -1))), out
 
 
 def quintic(values: np.ndarray, slopes: np.ndarray, bends: np.ndarray, widths: np.ndarray) -> np.ndarray:
@@ -274,30 +324,22 @@ def quintic(values: np.ndarray, slopes: np.ndarray, bends: np.ndarray, widths: n
 
 
 @njit(cache=True)
-def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio_out, ratio_q_out):
-    """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table,
-    where p goes on with the slope BEYOND.
+def law_fields(q, law, out):
+    """Set p(q), s, ds/dq, density ratio and its derivative (5, count); returns whether every q (count,) has a p.
 
-    ``table`` (intervals, 7): 1 / width and the six coefficients in t = (q - q_k) / width; ``bucket`` (b + 1,): interval
-    at the start of each of b equal parts of q.
+    p is nan in too much tension, and goes on with the slope BEYOND and the density of its end at too much pressure.
     """
-    x, p, r, r_q = q.reshape(-1), p_out.reshape(-1), ratio_out.reshape(-1), ratio_q_out.reshape(-1)
-    end = q_table[-1]
     inside = True
-    for k in range(x.size):
-        v = x[k]
-        if v == 0.0:
-            p[k], r[k], r_q[k] = 0.0, 1.0, alpha
-        elif v < 0.0:
-            s = 1.0 / (1.0 - alpha * v)
-            p[k], r[k], r_q[k] = -np.log1p(-alpha * v) / alpha, s, alpha * s * s
-        elif v < end:
-            low, t = interval_at(v, q_table, table, bucket, bucket_scale)
-            p[k], r[k], half, _, _ = expand(table, low, t)
-            r_q[k] = 2.0 * half
-        else:
+    for c in range(q.size):
+        if not q[c] > law.lowest:
             inside = False
-            p[k], r[k], r_q[k] = table[-1, 1:].sum() + BEYOND * (v - end), BEYOND, 0.0
+            out[:, c] = np.nan
+            continue
+        p, rho, s, s_q, rho_q, _, _, _ = law_at(min(q[c], law.highest), law)
+        if not q[c] < law.highest:
+            inside = False
+            p, s, s_q, rho_q = p + BEYOND * (q[c] - law.highest), BEYOND, 0.0, 0.0
+        out[0, c], out[1, c], out[2, c], out[3, c], out[4, c] = p, s, s_q, rho, rho_q
     return inside
 
 
@@ -327,3 +369,22 @@ def expand(table, low, t):
         w * w * w * (c[4] + t * (4.0 * c[5] + t * 10.0 * c[6])),
         w * w * w * w * (c[5] + t * 5.0 * c[6]),
     )
+
+
+@njit(cache=True, inline="always")
+def law_at(q, law):
+    """Pressure p, Pa, and density ratio at a transformed pressure q, Pa, within the law's range; s = dp/dq and ds/dq,
+    1/Pa; the first to fourth coefficient of Taylor's polynomial of the density about q."""
+    if q > 0.0:
+        low, t = interval_at(q, law.q, law.table, law.bucket, law.bucket_scale)
+        p, s, half, _, _ = expand(law.table, low, t)
+        rho, r1, r2, r3, r4 = expand(law.ratio, low, t)
+        return p, rho, s, 2.0 * half, r1, r2, r3, r4
+    a, k = law.a, law.exponent
+    p, s = -np.log1p(-k * q) / k, 1.0 / (1.0 - k * q)
+    rho = np.exp(a * p)
+    r1 = a * s * rho
+    r2 = (a + k) / 2.0 * s * r1
+    r3 = (a + 2.0 * k) / 3.0 * s * r2
+    r4 = (a + 3.0 * k) / 4.0 * s * r3
+    return p, rho, s, k * s * s, r1, r2, r3, r4

@@ -170,15 +170,13 @@ def _moments(T_x, T_z, S, G_x, G_z, oil, points):
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FUSED)
-def profile(S, G_x, G_z, oil, points, T_x, T_z):
-    """`Profile` of one place, by Newton's method from a mean stress, which may prolong but not mislead it."""
-    return _profile(S, G_x, G_z, oil, points, T_x, T_z, EXACT)[0]
-
-
 @njit(cache=True, error_model="numpy", fastmath=FUSED, inline="always")
-def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
-    """`Profile`; the mean stress's derivatives T_zs, T_zx, T_zz; the last step's share of the stress."""
+def profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
+    """Return the `Profile` of one place, and the mean stress's derivatives T_zs, T_zx, T_zz.
+
+    By Newton's method from a mean stress, which may prolong but not mislead it, until a step is below the share
+    ``last_step`` of the stress.
+    """
     r, F, H, C, B = _moments(T_x, T_z, S, G_x, G_z, oil, points)
     for _ in range(MOST_STEPS):
         det = 1.0 / (H[0] * H[2] - H[1] * H[1])
@@ -208,25 +206,6 @@ def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
     return found, (i_xz, -m_zx, -m_zz)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FUSED)
-def _slide(S, oil, T):
-    """`Profile` of sliding alone, whose stress is the same at every height, from a stress T as `profile`."""
-    f, f_s = _fluidity(T * T, oil)
-    for _ in range(MOST_STEPS):
-        steep = f + 2.0 * f_s * T * T
-        share, rest, step = 1.0, abs(S - f * T), (S - f * T) / steep
-        if abs(step) <= EXACT * abs(T):
-            break
-        for _ in range(MOST_HALVINGS):
-            t = T + share * step
-            f, f_s = _fluidity(t * t, oil)
-            if abs(S - f * t) < rest:
-                break
-            share *= 0.5
-        T = t
-    return Profile(T + step, 0.0, 0.0, 0.0, 1.0 / steep, 0.0, 0.0, 0.0, 0.0, steep / 12.0, 0.0, f / 12.0)
-
-
 @njit(cache=True, inline="always")
 def _scale(T_x, T_z, G_x, G_z):
     """Shear stress across the film, of either flow."""
@@ -241,10 +220,7 @@ def _follow(S, G_x, G_z, oil, points, last_step, last):
     by_x = last[5] * dS + last[6] * d_x + last[7] * d_z
     by_z = last[8] * dS + last[9] * d_x + last[10] * d_z
     T_x, T_z = T_x + by_x, T_z + by_z
-    if G_x == 0.0 and G_z == 0.0:
-        p, others = _slide(S, oil, T_x), (0.0, 0.0, 0.0)
-    else:
-        p, others = _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step)
+    p, others = profile(S, G_x, G_z, oil, points, T_x, T_z, last_step)
     last[0], last[1], last[2], last[3], last[4] = S, G_x, G_z, p.T_x, p.T_z
     last[5], last[6], last[7] = p.T_xs, p.T_xx, p.T_xz
     last[8], last[9], last[10] = others

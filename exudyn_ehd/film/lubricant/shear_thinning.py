@@ -24,7 +24,6 @@ from functools import cached_property, partial
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
-from numba import njit
 from scipy.sparse import csr_matrix, diags, kron
 
 from exudyn_ehd.film.grid import FilmGrid
@@ -38,7 +37,7 @@ from exudyn_ehd.film.lubricant.shear_profile import (
     thin_links,
     thin_shear,
 )
-from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw
+from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw, drops, on_links
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
 THINS = "the law is that of an oil that thins."
@@ -165,22 +164,23 @@ class ShearThinning(LinkLaw):
 
     def place(self, grid: FilmGrid, flow_x: float) -> None:
         """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
-        self.slopes, self.cross, self.vertex = np.zeros((3, 2, *grid.shape))
         # with gradients and without: profiles of links in theta and z, and at vertices
         self.profiles = np.zeros((2, 3, *grid.shape, LAST))
         self.found = np.zeros((2, 5, *grid.shape))
         along, across = flow_x * grid.link_x, np.append(grid.link_z, 0.0)
         self.cuts = grid.cuts
-        self.links = along, across
+        self.links = np.array((along[:, None] * np.ones(across.size), np.ones((along.size, 1)) * across))
         self.weights = *_central(along), *_central(across)
-        self.lengths = [np.divide(1.0, s, out=np.zeros_like(s), where=s != 0.0) for s in self.links]
+        self.lengths = np.divide(1.0, self.links, out=np.zeros_like(self.links), where=self.links != 0.0)
 
     def see(self, P: np.ndarray) -> None:
-        """Take the gradients of the film's unknown P (n, m)."""
+        """Take the gradients (2, n, m) of the film's unknown P (n, m) on links, at vertices, and across the links."""
         self.last = self.profiles[int(P.any())]
-        gradients(P, self.links, self.weights, self.slopes, self.vertex, self.cross)
+        self.slopes = -drops(P) * self.links
         if self.cuts is not None:
             self.slopes *= self.cuts
+        self.vertex = np.array([(gradient @ P.ravel()).reshape(P.shape) for gradient in self.operators])
+        self.cross = np.array((on_links(self.vertex[1])[0], on_links(self.vertex[0])[1]))
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Multiply the conductances of the links by the thin oil's, at the gradients last seen."""
@@ -220,9 +220,7 @@ class ShearThinning(LinkLaw):
     def response(self) -> tuple[np.ndarray, ...]:
         """Fields of the last call of `apply` for Newton's matrix, as `add_tangents` and `add_corners` of
         `exudyn_ehd.film.banded.assemble` take them."""
-        along, across = self.found[:, 3].copy(), self.found[:, 4].copy()
-        across[0] *= self.lengths[0][:, None]
-        across[1] *= self.lengths[1]
+        along, across = self.found[:, 3].copy(), self.found[:, 4] * self.lengths
         if self.cuts is not None:
             across /= self.cuts
         return (along, across, *self.weights)
@@ -267,25 +265,3 @@ def _central(link: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     total = before + link
     share = np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
     return before * before * share, link * link * share
-
-
-@njit(cache=True)
-def gradients(P, links, weights, slopes_out, vertex_out, cross_out):
-    """Gradients (2, n, m) along theta and z: on links in their own direction, at vertices, and across the links."""
-    n, m = P.shape
-    back_x, on_x, back_z, on_z = weights
-    for i in range(n):
-        nxt, prv = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
-        for j in range(m):
-            rise = P[nxt, j] - P[i, j]
-            slopes_out[0, i, j] = rise * links[0][i]
-            vertex_out[0, i, j] = back_x[i] * (P[i, j] - P[prv, j]) + on_x[i] * rise
-            rise = P[i, j + 1] - P[i, j] if j + 1 < m else 0.0
-            slopes_out[1, i, j] = rise * links[1][j]
-            vertex_out[1, i, j] = on_z[j] * rise + (back_z[j] * (P[i, j] - P[i, j - 1]) if j > 0 else 0.0)
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            cross_out[0, i, j] = 0.5 * (vertex_out[1, i, j] + vertex_out[1, nxt, j])
-            far = j + 1 if j + 1 < m else j
-            cross_out[1, i, j] = 0.5 * (vertex_out[0, i, j] + vertex_out[0, i, far])

@@ -87,6 +87,14 @@ def part(x, start, stop):
 
 
 @njit(cache=True)
+def flat(x):
+    """Return a field, flat; None of None."""
+    if x is None:
+        return None
+    return x.reshape(-1)
+
+
+@njit(cache=True)
 def carried_fill(fill, film):
     """Fill (n, m) that leaves every vertex with the Couette flows; None of None."""
     if fill is None:
@@ -171,8 +179,8 @@ def film_balance(P, fill, rho, film, out):
         film.grow.reshape(-1),
         film.known.reshape(-1),
         film.kept.reshape(-1),
-        part(fill, I0, size),
-        part(rho, I0, size),
+        flat(fill),
+        flat(rho),
         across[1:],
         across[:size],
         along[m:],
@@ -194,27 +202,23 @@ def violation(r, P, fixed, pc, complementary):
 
 
 @njit(cache=True, fastmath=FAST)
-def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, prompt, out):
-    """Derivatives of the flows over links a -> b at fixed gaps to the unknown
-    at one end, b (side 1) or a (-1); by: of its density."""
-    # two loops, as one over so many arrays would not be vectorised
-    for c in range(out.size):
-        slope = -side * k[c]
-        if rho_a is not None:
-            half = 0.5 * f[c]
-            if fill_a is not None:
-                a, b = fill_a[c], fill_b[c]
-                half *= a if half >= 0.0 else b
-            slope += half * by[c]
-        out[c] = slope
-    if full is not None:
-        for c in range(out.size):
-            leaves = f[c] * prompt[c]
-            if rho_a is not None:
-                leaves *= 0.5 * (rho_a[c] + rho_b[c])
-            leaves = leaves if side * leaves < 0.0 else 0.0
-            slope = out[c]
-            out[c] = slope if full[c] else leaves
+def _link_slopes(k, f, step, fill, full, rho, rho_P, prompt, by_a, by_b):
+    """Set the derivatives of the flows over the links from vertices a to b, ``step`` behind them, at fixed gaps to the
+    unknowns at both ends; ``fill``: what flows carry."""
+    size = k.size
+    for a in range(size):
+        b = a + step if a + step < size else a + step - size
+        own, other, dense = k[a], -k[a], 1.0
+        if rho is not None:
+            dense, half = 0.5 * (rho[a] + rho[b]), 0.5 * f[a]
+            if fill is not None:
+                half *= fill[a] if half >= 0.0 else fill[b]
+            own += half * rho_P[a]
+            other += half * rho_P[b]
+        if full is not None:
+            own = own if full[a] else max(f[a], 0.0) * prompt[a] * dense
+            other = other if full[b] else min(f[a], 0.0) * prompt[b] * dense
+        by_a[a], by_b[a] = own, other
 
 
 @njit(cache=True, fastmath=FAST)
@@ -235,17 +239,6 @@ def _storage_slopes(area, full, fill, rho, by, grow, known, out):
 
 
 @njit(cache=True)
-def _link_slopes(k, f, full, fill, rho, rho_P, prompt, start, stop, there, end, by_a, by_b):
-    """Derivatives of the flows over links, from ``start`` and ``there`` on, to the unknowns at their ends a and b."""
-    k, f, at = part(k, start, stop), part(f, start, stop), (start, stop, there, end)
-    around = *both(fill, *at), *both(rho, *at)
-    here, out = (part(rho_P, start, stop), part(prompt, start, stop)), by_a[start:stop]
-    _end_slopes(k, f, -1.0, part(full, start, stop), *around, *here, out)
-    beyond, out = (part(rho_P, there, end), part(prompt, there, end)), by_b[start:stop]
-    _end_slopes(k, f, 1.0, part(full, there, end), *around, *beyond, out)
-
-
-@njit(cache=True)
 def film_slopes(fill, full, rho, rho_P, film, slopes):
     """Derivatives (5, n m) as `banded.assemble` takes them, at fixed gaps;
     unknowns are pressures where ``full``, else fills.
@@ -253,15 +246,9 @@ def film_slopes(fill, full, rho, rho_P, film, slopes):
     ``fill`` and ``full``, ``rho`` and ``rho_P`` are None together: a film that
     is full everywhere, an incompressible one.
     """
-    n, m = film.kx.shape
-    size = n * m
-    last, e, carried = size - m, size - 1, carried_fill(fill, film)
-    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        at = start, stop, there, end
-        _link_slopes(film.kx, film.fx, full, carried, rho, rho_P, film.prompt, *at, slopes[0], slopes[1])
-    _link_slopes(film.kz, film.fz, full, carried, rho, rho_P, film.prompt, I0, e, I1, size, slopes[2], slopes[3])
-    slopes[2:4, e] = 0.0
-    _storage_slopes(
-        film.area.reshape(-1), part(full, I0, size), part(fill, I0, size), part(rho, I0, size), part(rho_P, I0, size),
-        film.grow.reshape(-1), film.known.reshape(-1), slopes[4],
-    )  # fmt: skip
+    by = flat(carried_fill(fill, film)), flat(full), flat(rho), flat(rho_P), film.prompt.reshape(-1)
+    _link_slopes(film.kx.reshape(-1), film.fx.reshape(-1), film.kx.shape[1], *by, slopes[0], slopes[1])
+    # nothing flows over the last row's links
+    _link_slopes(film.kz.reshape(-1), film.fz.reshape(-1), I1, *by, slopes[2], slopes[3])
+    area, grow, known = film.area.reshape(-1), film.grow.reshape(-1), film.known.reshape(-1)
+    _storage_slopes(area, flat(full), flat(fill), flat(rho), flat(rho_P), grow, known, slopes[4])

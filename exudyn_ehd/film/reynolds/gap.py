@@ -25,6 +25,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 
@@ -54,7 +55,7 @@ def largest_eccentricity(pose, half_length):
 def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
     """Gaps of a rigid journal at vertices and links, with ``squeeze`` also their rate; returns the smallest gap.
 
-    ``at``: `exudyn_ehd.film.grid.Directions`, as a tuple; ``closed``: whether the grid is a ring. On arcs the
+    ``at``: `exudyn_ehd.film.grid.FilmGrid.directions`; ``closed``: whether the grid is a ring. On arcs the
     smallest gap is one of vertices and links; a link behind an arc's last column lies on that column.
     """
     cos_x, sin_x, cos_f, sin_f, z = at
@@ -67,74 +68,37 @@ def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
     return min(H.min(), HF.min())
 
 
-@njit(cache=True, fastmath=FAST)
-def gap_slopes(field, width, links, z, link_out, slope_x_out, slope_z_out):
-    """Mean on the links in theta and slopes of a field (n, m): central differences, one-sided at the ends of z and at
-    columns without a link.
+def gap_slopes(field: np.ndarray, grid: FilmGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Mean on the links in theta (n, m), and slopes (2, n, m) in theta and in scaled z, of a field (n, m).
 
-    Second order inside on any spacing of z, first order at its ends, as numpy.gradient. ``width`` and ``links`` (n,):
-    `FilmGrid.width_x` and `FilmGrid.link_x`; behind a column without a link its own values stand for the next ones.
+    Central differences, one-sided at the ends of z and at columns without a link: of second order inside on any spacing
+    of z, of first order at its ends. Behind a column without a link its own values stand for the next ones.
     """
-    n, m = field.shape
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        prv = prv if links[prv] != 0.0 else i
-        nxt = i + 1 if i + 1 < n else 0
-        nxt = nxt if links[i] != 0.0 else i
-        inverse = 1.0 / (2.0 * width[i])
-        for j in range(m):
-            link_out[i, j] = 0.5 * (field[i, j] + field[nxt, j])
-            slope_x_out[i, j] = (field[nxt, j] - field[prv, j]) * inverse
-        slope_z_out[i, 0] = (field[i, 1] - field[i, 0]) / (z[1] - z[0])
-        slope_z_out[i, m - 1] = (field[i, m - 1] - field[i, m - 2]) / (z[m - 1] - z[m - 2])
-        for j in range(1, m - 1):
-            low, high = z[j] - z[j - 1], z[j + 1] - z[j]
-            slope_z_out[i, j] = (
-                low * low * field[i, j + 1] - high * high * field[i, j - 1] + (high * high - low * low) * field[i, j]
-            ) / (low * high * (low + high))
+    before, after = grid.beside
+    ahead = field[after]
+    along = (ahead - field[before]) / (2.0 * grid.width_x[:, None])
+    return 0.5 * (field + ahead), np.stack((along, field @ grid.differences_z.T))
 
 
-@njit(cache=True, fastmath=FAST)
-def transposed_slopes(field, width, z, along_x_out, along_z_out):
-    """Fields whose products with any gap term are those of ``field`` with its slopes of `gap_slopes` on a ring of
-    columns of one ``width``."""
-    n, m = field.shape
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            along_x_out[i, j] = (field[prv, j] - field[nxt, j]) / (2.0 * width)
-            along_z_out[i, j] = 0.0
-        first, last = field[i, 0] / (z[1] - z[0]), field[i, m - 1] / (z[m - 1] - z[m - 2])
-        along_z_out[i, 0] -= first
-        along_z_out[i, 1] += first
-        along_z_out[i, m - 2] -= last
-        along_z_out[i, m - 1] += last
-        for j in range(1, m - 1):
-            low, high = z[j] - z[j - 1], z[j + 1] - z[j]
-            share = field[i, j] / (low * high * (low + high))
-            along_z_out[i, j + 1] += low * low * share
-            along_z_out[i, j - 1] -= high * high * share
-            along_z_out[i, j] += (high * high - low * low) * share
+def transposed_slopes(field: np.ndarray, grid: FilmGrid) -> np.ndarray:
+    """Fields (2, n, m) whose products with any gap term are those of ``field`` (n, m) with its slopes of `gap_slopes`,
+    on a ring."""
+    along = field / (2.0 * grid.width_x[:, None])
+    return np.stack((np.roll(along, 1, axis=0) - np.roll(along, -1, axis=0), field @ grid.differences_z))
 
 
-@njit(cache=True, fastmath=FAST)
-def add_gap(field, rate, width, links, z, H, HF, H_t, slope_x_out, slope_z_out):
-    """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as in `gap_slopes`.
+def add_gap(
+    field: np.ndarray, rate: np.ndarray, grid: FilmGrid, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray
+) -> tuple[float, np.ndarray]:
+    """Add an elastic gap (n, m) and its rate to the gaps and their rate.
 
-    Returns the smallest gap.
+    Returns the smallest gap, and the slopes (2, n, m) of `gap_slopes`.
     """
-    n, m = field.shape
-    link = np.empty((n, m))
-    gap_slopes(field, width, links, z, link, slope_x_out, slope_z_out)
-    smallest = np.inf
-    for i in range(n):
-        for j in range(m):
-            H[i, j] += field[i, j]
-            HF[i, j] += link[i, j]
-            H_t[i, j] += rate[i, j]
-            smallest = min(smallest, H[i, j], HF[i, j])
-    return smallest
+    link, slopes = gap_slopes(field, grid)
+    H += field
+    HF += link
+    H_t += rate
+    return float(min(H.min(), HF.min())), slopes
 
 
 class SteppedGap(FluxEffect):

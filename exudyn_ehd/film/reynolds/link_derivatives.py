@@ -12,7 +12,7 @@ from __future__ import annotations
 from numba import njit
 
 from exudyn_ehd.film.kernels import FAST, I0, I1
-from exudyn_ehd.film.reynolds.balance import part
+from exudyn_ehd.film.reynolds.balance import flat, part
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -97,7 +97,7 @@ def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
         at, law = h_x[start:stop], (part(g_x, start, stop), part(g_x_h, start, stop))
         leans, out = (part(E, start, stop), part(E, there, end)), (by[0, start:stop], by[1, start:stop])
         _pressure_flow(p[start:stop], p[there:end], width[0, start:stop], at, at, *leans, *law, *out)
-    _couette_flow(vx, width[2], part(c_x, I0, size), part(c_x_h, I0, size), h_x, h_x, up[0], by[0], by_speed[0])
+    _couette_flow(vx, width[2], flat(c_x), flat(c_x_h), h_x, h_x, up[0], by[0], by_speed[0])
     law, leans = (part(g_z, I0, e), part(g_z_h, I0, e)), (part(E, I0, e), part(E, I1, size))
     _pressure_flow(p[:e], p[1:], width[1, :e], h[:e], h[1:], *leans, *law, by[2, :e], by[3, :e])
     law, out = (part(c_z, I0, e), part(c_z_h, I0, e)), (by[2, :e], by_speed[1, :e])

@@ -162,6 +162,30 @@ class ShearFactor(Protocol):
         """
 
 
+class ShearProduct:
+    """Two shear factors that act together: their product, with the product rule for the derivatives."""
+
+    def __init__(self, first: ShearFactor, second: ShearFactor) -> None:
+        self.first, self.second = first, second
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> np.ndarray | None:
+        """Product of both factors with its derivatives, as for `ShearFactor`; one of them knows the gradients."""
+        other, other_h, other_v = np.empty_like(H), np.empty_like(H), np.empty_like(H)
+        slopes = self.first.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
+        others = self.second.factor(H, vx, other, other_h, other_v)
+        if slopes is not None:
+            slopes *= other
+        elif others is not None:
+            slopes = others * ratio_out
+        for out, by in ((ratio_h_out, other_h), (ratio_v_out, other_v)):
+            out *= other
+            out += ratio_out * by
+        ratio_out *= other
+        return slopes
+
+
 class LinkLaw(FluxEffect, ShearFactor, Protocol):
     """A law of the oil that changes what links carry and the shear.
 

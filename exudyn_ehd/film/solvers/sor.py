@@ -40,8 +40,6 @@ from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.status import POSITIVE, Checked, Status, require_count
 
 LARGEST_SWEEPS = 20_000
-# Beyond this sum of |P| (1/s) the sweeps have diverged.
-LARGEST_SUM = 1e100
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,20 +130,8 @@ class ClassicSolver(FilmSolver):
         self.set_links()
         self.set_right_hand_side()
         s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
-        sweeps = sor_solve(
-            self.H,
-            self.H_t,
-            self.squeeze,
-            vx,
-            vz,
-            self.step_x,
-            self.step_z,
-            g.fixed,
-            self.relaxation,
-            self.film.tolerance,
-            LARGEST_SWEEPS,
-            s.linear_pressure,
-        )
+        a = coefficients(self.H, self.H_t, self.squeeze, (vx, vz), (self.step_x, self.step_z))
+        sweeps = sor_solve(a, g.fixed, self.relaxation, self.film.tolerance, LARGEST_SWEEPS, s.linear_pressure)
         np.logical_not(g.fixed, out=w.active)
         w.count, w.width = number_cells(w.active, s.kx, w.order, w.number)
         clip_pressure(s.linear_pressure, g.fixed, cavity_pressure, s.pressure, w.active)
@@ -198,35 +184,26 @@ def difference_operators(
     return csr_matrix(slope_x), csr_matrix(slope_z), csr_matrix(bend_x + bend_z)
 
 
-@njit(cache=True)
-def _differences(H, prv, i, nxt, j, dx, dz):
-    """Differences of the gap in theta and in z, and the coefficients of P at a vertex and at its neighbours."""
-    h, ix, iz = H[i, j], 1.0 / (dx * dx), 1.0 / (dz * dz)
-    x, z = H[nxt, j] - H[prv, j], H[i, j + 1] - H[i, j - 1]
-    cube, lean_x, lean_z = h * h * h, 0.75 * h * h * x, 0.75 * h * h * z
-    around = (cube - lean_x) * ix, (cube + lean_x) * ix, (cube - lean_z) * iz, (cube + lean_z) * iz
-    return x, z, -2.0 * cube * (ix + iz), around
+def coefficients(
+    H: np.ndarray, H_t: np.ndarray, squeeze: bool, speeds: tuple[float, float], steps: tuple[float, float]
+) -> np.ndarray:
+    """Coefficients (n, m, 5) of Eq. (10): those of the pressures before and behind a vertex in theta and in z, and the
+    source, over that of its own pressure; for the rows between both ends."""
+    (vx, vz), (dx, dz) = speeds, steps
+    x, z = (np.roll(H, -1, axis) - np.roll(H, 1, axis) for axis in (0, 1))
+    cube, lean_x, lean_z = H**3, 0.75 * H * H * x, 0.75 * H * H * z
+    source = 0.5 * (vx * x / dx + vz * z / dz) + (H_t if squeeze else 0.0)
+    around = (cube - lean_x) / dx**2, (cube + lean_x) / dx**2, (cube - lean_z) / dz**2, (cube + lean_z) / dz**2
+    return np.stack((*around, source), axis=-1) / (-2.0 * cube * (1.0 / dx**2 + 1.0 / dz**2))[..., None]
 
 
 @njit(cache=True)
-def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, largest_sweeps, P):
-    """SOR in place; P (n, m) holds the prescribed values at fixed vertices.
+def sor_solve(a, fixed, relaxation, tolerance, largest_sweeps, P):
+    """SOR in place with `coefficients`; P (n, m) holds the prescribed values at fixed vertices.
 
     Returns the sweeps, negative if not converged.
     """
-    n, m = H.shape
-    a = np.zeros((n, m, 5))
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(1, m - 1):
-            jump_x, jump_z, diagonal, around = _differences(H, prv, i, nxt, j, dx, dz)
-            for k in range(4):
-                a[i, j, k] = around[k] / diagonal
-            source = 0.5 * (vx * jump_x / dx + vz * jump_z / dz)
-            if squeeze:
-                source += H_t[i, j]
-            a[i, j, 4] = source / diagonal
+    n, m = P.shape
     for sweep in range(1, largest_sweeps + 1):
         change = 0.0
         total = 0.0
@@ -242,7 +219,7 @@ def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, lar
                 P[i, j] += step
                 change += abs(step)
                 total += abs(P[i, j])
-        if not total < LARGEST_SUM:
+        if not total < np.inf:
             return -sweep
         if change <= tolerance * total:
             return sweep

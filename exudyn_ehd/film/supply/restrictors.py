@@ -45,7 +45,6 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, InputError, require_number
 
@@ -330,10 +329,8 @@ class Reservoirs:
         """Pressures (k,) as the film's unknown, Pa, and their derivatives to the pressures."""
         if self.law is None:
             return self.pressures, np.ones(self.pressures.size)
-        to_pressure = self.law.pressure if isinstance(self.law, CompressibleLaw) else self.law.inverse
-        q, (slope, rest) = self.law.transform(self.pressures)[None], np.empty((2, 1, self.pressures.size))
-        to_pressure(q, np.empty(q.shape), slope, rest)
-        return q[0], 1.0 / slope[0]
+        q = self.law.transform(self.pressures)
+        return q, 1.0 / self.law.fields(q)[1][1]
 
     def within(self) -> np.ndarray:
         """Return 1 for vertices ``at`` within areas with a balance (., .), else 0."""
@@ -407,8 +404,9 @@ def even_balances(a, b, k, c, store, old, start, taken, S, lowest):
     return p
 
 
-@njit(cache=True)
-def add_border(areas, number, slopes, B, C, D):
+def add_border(
+    areas: np.ndarray, number: np.ndarray, slopes: np.ndarray, B: np.ndarray, C: np.ndarray, D: np.ndarray
+) -> None:
     """Add the symbols of `Reservoirs` from the derivatives of the links' flows and of the storage.
 
     Parameters
@@ -422,25 +420,14 @@ def add_border(areas, number, slopes, B, C, D):
     B, C, D : (k, count), (k, count), (k, k) arrays
         B^T, C and D, changed in place.
     """
-    n, m = areas.shape
-    for i in range(n):
-        for j in range(m):
-            p = areas[i, j]
-            if p >= 0:
-                D[p, p] += slopes[4, i, j]
-            for axis in range(2):
-                if axis == 1 and j + 1 == m:
-                    continue
-                u, v = ((i + 1) % n, j) if axis == 0 else (i, j + 1)
-                q = areas[u, v]
-                if p < 0 and q < 0:
-                    continue
-                by_a, by_b, a, b = slopes[2 * axis, i, j], slopes[2 * axis + 1, i, j], number[i, j], number[u, v]
-                for area, by, own, other, at, sign in ((p, by_a, q, by_b, b, 1.0), (q, by_b, p, by_a, a, -1.0)):
-                    if area >= 0:
-                        D[area, area] += sign * by
-                        if own >= 0:
-                            D[own, area] -= sign * by
-                        elif at >= 0:
-                            B[area, at] -= sign * by
-                            C[area, at] += sign * other
+    inside = (areas == np.arange(len(D))[:, None, None]).astype(float)
+    # what leaves every vertex by the areas' pressures, and what leaves the areas by every vertex's
+    leaves, drawn, unknown, flat = slopes[4] * inside, np.zeros_like(inside), number >= 0, (len(D), number.size)
+    for axis, (by_own, by_next) in enumerate((slopes[:2], slopes[2:4]), start=1):
+        following = np.roll(inside, -1, axis)
+        flow, counts = by_own * inside + by_next * following, inside - following
+        leaves += flow - np.roll(flow, 1, axis)
+        drawn += by_own * counts + np.roll(by_next * counts, 1, axis)
+    B[:, number[unknown]] += leaves[:, unknown]
+    C[:, number[unknown]] += drawn[:, unknown]
+    D += inside.reshape(flat) @ leaves.reshape(flat).T

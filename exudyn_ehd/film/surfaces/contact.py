@@ -38,6 +38,7 @@ against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass
 from functools import partial
@@ -46,7 +47,6 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, require_number
 
 # Of the gap on an elastic element: Newton steps at most, and the last one over the gap at which the contact begins. The
@@ -116,7 +116,11 @@ class Contact:
     ----------
     presses_below : float
         Scaled gap from which on there is no pressure.
+    land : (n, m) array or float
+        Share of a vertex outside of supply areas, in which nothing touches: factor of the pressure.
     """
+
+    land: np.ndarray | float = 1.0
 
     def __init__(
         self,
@@ -136,46 +140,28 @@ class Contact:
     def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
         """Contact pressure, Pa, and its derivative to the scaled gap H (n, m); overwrites both outputs."""
         contact_pressure(H, self.presses_below, *self.law, P_out, slope_out)
-
-    def solve_gap(
-        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
-    ) -> None:
-        """Solve ``G = X + compliance pressure(G) / scale`` on Winkler elements for G (n, m), in place from any start.
-
-        Outputs: the pressure there, Pa, and its slope over ``scale``.
-        """
-        solve_contact_gap(X, compliance / scale, scale, self.presses_below, *self.law, G, P_out, slope_out)
-
-
-class LandContact(Contact):
-    """A contact outside of supply areas, where nothing touches: its pressure times the land's share of a vertex.
-
-    Parameters
-    ----------
-    contact : Contact
-    land : (n, m) array
-        As of `exudyn_ehd.film.supply.cuts.SupplyMap`; it may change.
-    """
-
-    def __init__(self, contact: Contact, land: np.ndarray) -> None:
-        self.contact, self.land = contact, land
-        self.presses_below = contact.presses_below
-        self.friction_coefficient, self.transition_speed = contact.friction_coefficient, contact.transition_speed
-
-    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
-        """Pressure and slope as of `Contact`."""
-        self.contact.pressure(H, P_out, slope_out)
         P_out *= self.land
         slope_out *= self.land
 
     def solve_gap(
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
-        """Gap and slope on the land, as of `Contact`, and the land's share of the pressure; no contact in areas."""
-        self.contact.solve_gap(X, compliance, scale, G, P_out, slope_out)
-        inside = self.land < ROUNDING
-        G[inside], slope_out[inside] = X[inside], 0.0
+        """Solve ``G = X + compliance pressure(G) / scale`` on Winkler elements for G (n, m), in place from any start.
+
+        Outputs: the pressure there, Pa, and its slope over ``scale``, that on the land.
+        """
+        solve_contact_gap(X, compliance / scale, scale, self.presses_below, *self.law, G, P_out, slope_out)
+        inside = np.less(self.land, ROUNDING)
+        np.copyto(G, X, where=inside)
+        np.copyto(slope_out, 0.0, where=inside)
         P_out *= self.land
+
+    def on_land(self, land: np.ndarray) -> Contact:
+        """The contact outside of supply areas; ``land`` (n, m), which may change, as of
+        `exudyn_ehd.film.supply.cuts.SupplyMap`."""
+        contact = copy.copy(self)
+        contact.land = land
+        return contact
 
 
 @njit(cache=True)
@@ -337,92 +323,93 @@ class ArchardWear(Checked):
         return depth
 
 
-@njit(cache=True)
-def slip(motion, R, transition):
+def slip(motion: np.ndarray, R: float, transition: float) -> tuple[np.ndarray, np.ndarray]:
     """Regularised slip direction (theta, z) of a motion (10,), and its derivatives (2, 2) to (omega, w).
 
     ``transition``: v0, m/s.
     """
-    v, w = R * motion[8], motion[9]
+    v, w = R * float(motion[8]), float(motion[9])
     size = math.sqrt(v * v + w * w + transition * transition)
-    a, b, by = v / size, w / size, np.empty((2, 2))
-    by[0, 0], by[0, 1] = (1.0 - a * a) * R / size, -a * b / size
-    by[1, 0], by[1, 1] = -a * b * R / size, (1.0 - b * b) / size
-    return a, b, by
+    a, b = v / size, w / size
+    return np.array([a, b]), np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
 
 
-@njit(cache=True)
-def _add_traction(a, b, R, weights):
-    """Add the weights (6, 5) of the integrals in the wrench of tractions of -a along theta and -b along z per
-    pressure."""
-    force, moment = R * R, R * R * R
-    weights[0, 1] += force * a
-    weights[1, 0] -= force * a
-    weights[2, 4] -= force * b
-    weights[3, 1] -= moment * b
-    weights[3, 2] += moment * a
-    weights[4, 0] += moment * b
-    weights[4, 3] += moment * a
-    weights[5, 4] -= moment * a
+def _traction_weights(traction: np.ndarray, R: float) -> np.ndarray:
+    """Weights (6, 5) of the integrals in the wrench of a traction (2,) per pressure, against theta and z."""
+    a, b = R**2 * traction
+    return np.array(
+        [
+            [0.0, a, 0.0, 0.0, 0.0],
+            [-a, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, -b],
+            [0.0, -R * b, R * a, 0.0, 0.0],
+            [R * b, 0.0, 0.0, R * a, 0.0],
+            [0.0, 0.0, 0.0, 0.0, -R * a],
+        ]
+    )
 
 
-@njit(cache=True)
-def contact_weights(motion, friction, transition, R):
+def _pressure_weights(motion: np.ndarray, R: float) -> np.ndarray:
+    """Weights (6, 5) of the integrals in the wrench about O of pressures, N and Nm."""
+    x, y, bx, by = (R**2 * motion[:4]).tolist()
+    force, moment = R**2, R**3
+    return np.array(
+        [
+            [-force, 0.0, 0.0, 0.0, 0.0],
+            [0.0, -force, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, moment, 0.0],
+            [0.0, 0.0, -moment, 0.0, 0.0],
+            [y, -x, R * by, -R * bx, 0.0],
+        ]
+    )
+
+
+def contact_weights(motion: np.ndarray, friction: float, transition: float, R: float) -> np.ndarray:
     """Weights (6, 5) of the integrals in the wrench about O of pressures and their Coulomb friction, N and Nm."""
-    out, force, moment = np.zeros((6, 5)), R * R, R * R * R
-    out[0, 0] = out[1, 1] = -force
-    out[3, 3], out[4, 2] = moment, -moment
-    out[5, 0], out[5, 1] = force * motion[1], -force * motion[0]
-    out[5, 2], out[5, 3] = moment * motion[3], -moment * motion[2]
-    a, b, _ = slip(motion, R, transition)
-    _add_traction(friction * a, friction * b, R, out)
-    return out
+    return _pressure_weights(motion, R) + _traction_weights(friction * slip(motion, R, transition)[0], R)
 
 
-@njit(cache=True, fastmath=FAST)
-def _integral(density, weight, moment):
-    total = 0.0
-    for c in range(density.size):
-        total += density[c] * weight[c] * moment[c]
-    return total
-
-
-@njit(cache=True)
-def add_contact(P, weight, moments, motion, friction, transition, R, integrals_out, friction_out, wrench):
+def add_contact(
+    P: np.ndarray,
+    weight: np.ndarray,
+    moments: np.ndarray,
+    motion: np.ndarray,
+    friction: float,
+    transition: float,
+    R: float,
+    integrals_out: np.ndarray,
+    friction_out: np.ndarray,
+    wrench: np.ndarray,
+) -> None:
     """Set the integrals (5,) of a contact's pressures P (n, m), and add its wrench and that of its friction alone, both
     (6,)."""
-    for k in range(5):
-        integrals_out[k] = _integral(P.reshape(-1), weight.reshape(-1), moments[k].reshape(-1))
-    whole, drag = contact_weights(motion, friction, transition, R), np.zeros((6, 5))
-    a, b, _ = slip(motion, R, transition)
-    _add_traction(friction * a, friction * b, R, drag)
-    for r in range(6):
-        for k in range(5):
-            wrench[r] += whole[r, k] * integrals_out[k]
-            friction_out[r] += drag[r, k] * integrals_out[k]
+    integrals_out[:] = moments.reshape(5, -1) @ (P * weight).ravel()
+    drag = _traction_weights(friction * slip(motion, R, transition)[0], R) @ integrals_out
+    wrench += _pressure_weights(motion, R) @ integrals_out + drag
+    friction_out += drag
 
 
-@njit(cache=True)
-def add_contact_tangent(slope, weight, moments, motion, pose_scale, friction, transition, R, integrals, tangent):
-    """Add the gradient of a contact's wrench to the motion to ``tangent`` (6, 10).
+def contact_tangent(
+    slope: np.ndarray,
+    weight: np.ndarray,
+    moments: np.ndarray,
+    motion: np.ndarray,
+    pose_scale: np.ndarray,
+    friction: float,
+    transition: float,
+    R: float,
+    integrals: np.ndarray,
+) -> np.ndarray:
+    """Gradient (6, 10) of a contact's wrench to the motion.
 
     ``slope`` (n, m): derivative of the pressure to the scaled gap; ``integrals`` (5,): of `add_contact`.
     """
-    weights, density = contact_weights(motion, friction, transition, R), slope * weight
-    for q in range(4):
-        for k in range(5):
-            change = -pose_scale[q] * _integral(density.reshape(-1), moments[q].reshape(-1), moments[k].reshape(-1))
-            for r in range(6):
-                tangent[r, q] += weights[r, k] * change
-    force, moment = R * R, R * R * R
-    tangent[5, 0] -= force * integrals[1]
-    tangent[5, 1] += force * integrals[0]
-    tangent[5, 2] -= moment * integrals[3]
-    tangent[5, 3] += moment * integrals[2]
-    by = slip(motion, R, transition)[2]
-    for q in range(2):
-        weights[:] = 0.0
-        _add_traction(friction * by[0, q], friction * by[1, q], R, weights)
-        for r in range(6):
-            for k in range(5):
-                tangent[r, 8 + q] += weights[r, k] * integrals[k]
+    out, flat = np.zeros((6, 10)), moments.reshape(5, -1)
+    by_pose = (flat * (slope * weight).ravel()) @ flat[:4].T * -pose_scale
+    out[:, :4] = contact_weights(motion, friction, transition, R) @ by_pose
+    c, s, zc, zs, _ = R**2 * integrals
+    out[5, :4] += -s, c, -R * zs, R * zc
+    for q, by_speed in enumerate(slip(motion, R, transition)[1].T):
+        out[:, 8 + q] = _traction_weights(friction * by_speed, R) @ integrals
+    return out

@@ -76,7 +76,7 @@ import scipy
 from numba import njit
 
 from exudyn_ehd.film.kernels import FAST
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, on_links, to_ends
 from exudyn_ehd.film.surfaces.asperity import ROUGHNESS, average_gap_ratio
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
@@ -277,8 +277,7 @@ class RoughFlow(FluxEffect):
         ratio_v_out[:] = 0.0
 
 
-# Checks for a division by zero would keep the compiler from vectorising the loops below; the tables' gathers stand
-# apart for the same reason.
+# Checks for a division by zero would keep the compiler from vectorising the loops below.
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
     """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)).
@@ -294,91 +293,43 @@ def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
         v[k] *= by
 
 
-@njit(cache=True)
-def _aligned(gap):
-    """Return whether there is one gap per column, as with an aligned journal."""
-    n, m = gap.shape
-    for i in range(n):
-        differing = 0
-        for j in range(1, m):
-            differing += gap[i, j] != gap[i, 0]
-        if differing > 0:
-            return False
-    return True
-
-
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def look_up(gap, inverse_sigma, table, f_out, f_h_out):
     """Value of a table at gaps (n, m), and its derivative by them."""
-    n, m = gap.shape
-    scale, flat = inverse_sigma / TABLE_MIDDLE, table.reshape(-1)
-    if _aligned(gap):
-        for i in range(n):
-            value, slope = _table_at(1.0 / (1.0 + gap[i, 0] * scale), scale, flat)
-            for j in range(m):
-                f_out[i, j] = value
-            for j in range(m):
-                f_h_out[i, j] = slope
-        return
     h, f, f_h = gap.reshape(-1), f_out.reshape(-1), f_h_out.reshape(-1)
-    for k in range(h.size):
-        f[k] = 1.0 / (1.0 + h[k] * scale)
-    for k in range(h.size):
-        f[k], f_h[k] = _table_at(f[k], scale, flat)
+    scale, steps = inverse_sigma / TABLE_MIDDLE, len(table)
+    for c in range(h.size):
+        y = 1.0 / (1.0 + h[c] * scale)
+        u = y * steps
+        k = min(int(u), steps - 1)
+        u -= k
+        a, b, c2, c3 = table[k]
+        f[c] = a + u * (b + u * (c2 + u * c3))
+        f_h[c] = (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy", inline="always")
-def _table_at(y, scale, table):
-    """Value of a flat table at y, and its derivative by the gap."""
-    steps = table.size // 4
-    u = y * steps
-    k = min(int(u), steps - 1)
-    u -= k
-    a, b, c2, c3 = table[4 * k], table[4 * k + 1], table[4 * k + 2], table[4 * k + 3]
-    f = a + u * (b + u * (c2 + u * c3))
-    return f, (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
-
-
-@njit(cache=True, fastmath=FAST)
-def drag_weights(carriers, gap, link, widths):
+def drag_weights(
+    carriers: tuple[np.ndarray, np.ndarray], gap: np.ndarray, link: np.ndarray, widths: np.ndarray
+) -> np.ndarray:
     """Weights (2, n, m) of the pressures in E_x and E_z.
 
     ``carriers``: of the links in theta and in z; ``gap``, ``link``: true gaps at the vertices and on the links i ->
     i+1; ``widths`` (2, n, m): `FilmGrid.link_widths`.
     """
-    n, m = gap.shape
-    out = np.empty((2, n, m))
-    along, across = carriers
-    for i in range(n):
-        last = 0.0
-        for j in range(m):
-            far = gap[i, j + 1] if j + 1 < m else gap[i, j]
-            excess = (across[i, j] - 0.5 * (gap[i, j] + far)) * widths[1, i, j]
-            before = (along[i - 1, j] - link[i - 1, j]) * widths[0, i - 1, j]
-            out[0, i, j] = (along[i, j] - link[i, j]) * widths[0, i, j] - before
-            out[1, i, j] = excess - last
-            last = excess
-    return out
+    return drop_weights((np.array(carriers) - (link, on_links(gap)[1])) * widths)
 
 
-@njit(cache=True, fastmath=FAST)
-def drag_by_gap(P, carrier_slopes, slope, face_slope, widths):
+def drag_by_gap(
+    P: np.ndarray,
+    carrier_slopes: tuple[np.ndarray, np.ndarray],
+    slope: np.ndarray,
+    face_slope: np.ndarray,
+    widths: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
     """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices.
 
     ``carrier_slopes``: of the carriers in theta and z to the film's gap there; ``slope``, ``face_slope``: h' at
     vertices and links; ``widths`` as in `drag_weights`.
     """
-    n, m = P.shape
-    face, cell = np.empty((n, m)), np.empty((n, m))
-    along, across = carrier_slopes
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        carried = last = 0.0
-        for j in range(m):
-            face[i, j] = (along[i, j] * face_slope[i, j] - 1.0) * widths[0, i, j] * (P[i, j] - P[nxt, j])
-            far = P[i, j + 1] if j + 1 < m else P[i, j]
-            half = 0.5 * widths[1, i, j] * (P[i, j] - far)
-            carrier = half * across[i, j]
-            cell[i, j] = (carried + carrier) * slope[i, j] - (last + half)
-            carried, last = carrier, half
-    return face, cell
+    (along, across), (x, z) = carrier_slopes, widths * drops(P)
+    return (along * face_slope - 1.0) * x, to_ends(across * z, 1) * slope - to_ends(z, 1)

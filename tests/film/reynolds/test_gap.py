@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.reynolds.gap import (
     add_gap,
     largest_eccentricity,
@@ -57,8 +58,6 @@ def test_add_gap_finds_the_smallest(where):
     H, HF, H_t, extra, rate = rng.uniform(0.5, 1.0, (5, 6, 5))
     (H if where == "vertex" else HF)[5, 4] = -1.5
     expected = H + extra, HF + 0.5 * (extra + np.roll(extra, -1, axis=0)), H_t + rate
-    smallest = add_gap(
-        extra, rate, np.full(6, 0.1), np.full(6, 10.0), np.linspace(-1, 1, 5), H, HF, H_t, *np.empty((2, 6, 5))
-    )
+    smallest, _ = add_gap(extra, rate, bearing_grid(1.0, 2.0, 6, 4), H, HF, H_t)
     assert smallest == min(expected[0].min(), expected[1].min()) < 0.0
     np.testing.assert_allclose((H, HF, H_t), expected, rtol=1e-15)

@@ -16,7 +16,7 @@ from exudyn_ehd.film.cavitation.states import OIL
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
+from exudyn_ehd.film.lubricant.shear_profile import EXACT, fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import film_slopes
 from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes
@@ -135,7 +135,7 @@ def link_twin(effect, vx, grid, Q):
             own = (Q[other] - Q[i, j] or 1e-9) * (grid.link_x[i] if axis == 0 else grid.link_z[j])
             cross = across if axis == 0 else along
             G = 6.0 * k * h * np.array([own, 0.5 * (cross[i, j] + cross[other])])
-            p = profile(k * vx / h, *(G if axis == 0 else G[::-1]), oil, gauss_points(6), 0.0, 0.0)
+            p = profile(k * vx / h, *(G if axis == 0 else G[::-1]), oil, gauss_points(6), 0.0, 0.0, EXACT)[0]
             return 12.0 * h**3 * (p.F_x if axis == 0 else p.F_z) / G[0], h
 
         return thinned

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.solvers.sor import best_relaxation, sor_solve
+from exudyn_ehd.film.solvers.sor import best_relaxation, coefficients, sor_solve
 from exudyn_ehd.joint.model.build import build_model
 
 MOTION = np.array([8e-6, -12e-6, 1e-4, -2e-4, 2e-4, 1e-3, 5e-3, -8e-3, 150.0, 0.02])
@@ -48,7 +48,8 @@ def test_twin():
     fixed = np.zeros((n, m), dtype=bool)
     fixed[:, 0] = fixed[:, -1] = True
     P = np.zeros((n, m))
-    assert sor_solve(H, H_t, True, 10.0, 2.0, dx, dz, fixed, 1.6, 1e-14, 10_000, P) > 0
+    a = coefficients(H, H_t, True, (10.0, 2.0), (dx, dz))
+    assert sor_solve(a, fixed, 1.6, 1e-14, 10_000, P) > 0
     exact = _dense_solution(H, H_t, 10.0, 2.0, dx, dz)
     # The sweeps stop at relative changes of 1e-14.
     assert np.abs(P - exact).max() < 1e-11 * np.abs(exact).max()

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST, I0, I1
-from exudyn_ehd.film.reynolds.balance import part
+from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.film.reynolds.balance import flat
 
 
 class Gaps(NamedTuple):
@@ -110,20 +110,6 @@ def drive_elements(P, fixed, pc, clips, load_fields):
         p[c] = drive[c]
 
 
-@njit(cache=True, fastmath=FAST)
-def scale_load(load_fields, scale):
-    """Scale pressures (Pa) and second derivatives (1/Pa) of an oil's law to the film's unit of pressure, in place;
-    returns the largest pressure, Pa."""
-    load = load_of(load_fields)
-    p, bend = load.p.reshape(-1), load.bend.reshape(-1)
-    largest = -np.inf
-    for c in range(p.size):
-        largest = max(largest, p[c])
-        p[c] /= scale
-        bend[c] *= scale
-    return largest
-
-
 # Loops with one result each, which the compiler vectorises.
 @njit(cache=True, fastmath={"reassoc", "contract", "nsz", "arcp", "nnan"})
 def _smallest(x):
@@ -159,15 +145,6 @@ def move_elements(rigid, G, delta_old, inverse, gap_fields):
     return _smallest(HF)
 
 
-@njit(cache=True)
-def deflect(P, fixed, pc, clips, load_fields, rigid, beta, G, delta_old, inverse, gap_fields):
-    """Set load and gaps of elements without contact, for an oil of constant viscosity; returns the smallest gaps at a
-    vertex and on a link."""
-    drive_elements(P, fixed, pc, clips, load_fields)
-    smallest = press_elements(rigid, load_fields, beta, G)
-    return smallest, move_elements(rigid, G, delta_old, inverse, gap_fields)
-
-
 @njit(cache=True, fastmath=FAST)
 def set_storage(gaps, load, P, fills, known, rates, beta, film):
     """Set E of the elements, and the storage of the vertices: ``grow`` and ``kept`` of `balance.FilmTerms`.
@@ -177,19 +154,15 @@ def set_storage(gaps, load, P, fills, known, rates, beta, film):
     H, E, rate, undeformed = gaps.H.reshape(-1), gaps.E.reshape(-1), gaps.rate.reshape(-1), known[0].reshape(-1)
     grow, kept, old, slow = film.grow.reshape(-1), film.kept.reshape(-1), known[1].reshape(-1), known[2].reshape(-1)
     x, drive, p = P.reshape(-1), load.drive.reshape(-1), load.p.reshape(-1)
+    pull = rates.mass + rates.pseudo
     for c in range(E.size):
         E[c] = H[c] - undeformed[c]
-    if not fills:
-        for c in range(grow.size):
+        if fills:
+            grow[c] = H[c] * pull + rate[c] * rates.own
+            kept[c] = -old[c] * rates.mass - slow[c] * rates.pseudo
+        else:
             grow[c] = rate[c]
-        for c in range(kept.size):
             kept[c] = rates.pseudo * (beta * (p[c] + (x[c] - drive[c])) - slow[c])
-        return
-    pull = rates.mass + rates.pseudo
-    for c in range(grow.size):
-        grow[c] = H[c] * pull + rate[c] * rates.own
-    for c in range(kept.size):
-        kept[c] = -old[c] * rates.mass - slow[c] * rates.pseudo
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -235,96 +208,30 @@ def _bend(h_a, h_b, E_a, E_b, k):
         k[c] *= 1.0 + lean * lean
 
 
-@njit(cache=True)
-def smallest_of(gap_fields):
-    """Return the smallest gap that the film sees, at vertices and on links."""
-    gaps = gaps_of(gap_fields)
-    return min(_smallest(gaps.H.reshape(-1)), _smallest(gaps.HF.reshape(-1)))
-
-
-@njit(cache=True)
-def ends_open(rigid, p, beta, fixed):
-    """Return whether the gap is open at vertices and links of prescribed pressure, where the deflection is given."""
-    n, m = p.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            if fixed[i, j]:
-                if not rigid[0, i, j] + beta * p[i, j] > 0.0:
-                    return False
-                if fixed[nxt, j] and not rigid[1, i, j] + 0.5 * beta * (p[i, j] + p[nxt, j]) > 0.0:
-                    return False
-    return True
-
-
 @njit(cache=True, fastmath=FAST)
-def _add_end(by_h, by_d, side, steep, lean, full, out):
-    """Add the derivative of a link's flow to the unknown at its end b (``side`` 1) or a (-1), through the gap there."""
-    for c in range(out.size):
-        slope = 0.5 * (by_h[c] * steep[c] + side * by_d[c] * lean[c])
-        if full is not None:
-            slope = slope if full[c] else 0.0
-        out[c] += slope
-
-
-@njit(cache=True, fastmath=FAST)
-def _product(a, b, out):
-    for c in range(out.size):
-        out[c] = a[c] * b[c]
-
-
-@njit(cache=True, fastmath=FAST)
-def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
-    """Add the derivative of the storage to the unknowns, through the gap."""
-    for c in range(out.size):
-        by = rate_P[c]
-        if fill is not None:
-            by = fill[c] * (by * rates.own + H_P[c] * (rates.mass + rates.pseudo))
-        if rho is not None:
-            by *= rho[c]
-        if full is not None:
-            by = by if full[c] else 0.0
-        out[c] += area[c] * by
-
-
-@njit(cache=True, fastmath=FAST)
-def _add_pseudo(area, P, drive, slope, factor, out):
-    """Add the derivative of pseudo time's storage, for a film that does not conserve mass."""
-    for c in range(out.size):
-        out[c] += area[c] * factor * (slope[c] if P[c] == drive[c] else 1.0)
-
-
-@njit(cache=True)
 def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, slopes):
     """Add the derivatives of flows and storage through the gap to ``slopes`` of `balance.film_slopes`; ``by``: that of
     `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`."""
-    n, m = P.shape
-    size = n * m
-    last, e = size - m, size - 1
-    D, H, link, area = (
-        gap_slopes.D_P.reshape(-1),
-        gap_slopes.H_P.reshape(-1),
-        gap_slopes.link.reshape(-1),
-        film.area.reshape(-1),
-    )
-    face = np.empty(size)
-    _product(by[0], link, face)
-    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        h, d = face[start:stop], by[1, start:stop]
-        _add_end(h, d, -1.0, D[start:stop], H[start:stop], part(full, start, stop), slopes[0, start:stop])
-        _add_end(h, d, 1.0, D[there:end], H[there:end], part(full, there, end), slopes[1, start:stop])
-    h, d = by[2, :e], by[3, :e]
-    _add_end(h, d, -1.0, H[:e], H[:e], part(full, I0, e), slopes[2, :e])
-    _add_end(h, d, 1.0, H[1:], H[1:], part(full, I1, size), slopes[3, :e])
-    _add_storage(
-        area,
-        part(fill, I0, size),
-        part(full, I0, size),
-        part(rho, I0, size),
-        H,
-        gap_slopes.rate_P.reshape(-1),
-        rates,
-        slopes[4],
-    )
-    if fill is None and rates.pseudo != 0.0:
-        _add_pseudo(area, P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1), rates.pseudo * beta, slopes[4])
+    m, size = P.shape[1], P.size
+    D, H, rate_P = gap_slopes.D_P.reshape(-1), gap_slopes.H_P.reshape(-1), gap_slopes.rate_P.reshape(-1)
+    x, drive, steep = P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)
+    link, area, filled, dense = gap_slopes.link.reshape(-1), film.area.reshape(-1), flat(fill), flat(rho)
+    if full is not None:
+        # a fill moves no gap
+        moves = full.reshape(-1)
+        D, H, rate_P = D * moves, H * moves, rate_P * moves
+    for c in range(size):
+        on, up = c + m if c + m < size else c + m - size, c + 1 if c + 1 < size else 0
+        by_h, by_d = 0.5 * by[0, c] * link[c], 0.5 * by[1, c]
+        slopes[0, c] += by_h * D[c] - by_d * H[c]
+        slopes[1, c] += by_h * D[on] + by_d * H[on]
+        slopes[2, c] += 0.5 * (by[2, c] - by[3, c]) * H[c]
+        slopes[3, c] += 0.5 * (by[2, c] + by[3, c]) * H[up]
+        stored, pseudo = rate_P[c], 0.0
+        if fill is None:
+            pseudo = rates.pseudo * beta * (steep[c] if x[c] == drive[c] else 1.0)
+        else:
+            stored = filled[c] * (stored * rates.own + H[c] * (rates.mass + rates.pseudo))
+        if rho is not None:
+            stored *= dense[c]
+        slopes[4, c] += area[c] * (stored + pseudo)

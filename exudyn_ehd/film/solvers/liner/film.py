@@ -63,7 +63,7 @@ from exudyn_ehd.film.cavitation.system import has_unfed_row
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.film import FilmArrays
-from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain, open_gaps
+from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, find_slopes, liner_residual
 from exudyn_ehd.film.solvers.newton import FOUND, GOES_ON, begin, factor_film, proceed, solve_film
 from exudyn_ehd.film.solvers.sets import course_from, is_exact, pseudo_time
@@ -106,7 +106,7 @@ class LinerFilm(WinklerElements):
         self.by, self.by_speed = np.zeros((4, w.order.size)), np.zeros((3, w.order.size))
         self.fill = s.fill if s.kind == OIL else np.ones(shape)
         # the film at the pressure of the rupture line inside the cells
-        self.at_line, self.shut = AtLine((film.H, film.HF), None, None), np.zeros(shape, dtype=np.bool_)
+        self.at_line = AtLine((film.H, film.HF), None, None)
         # what the kernels of `exudyn_ehd.film.solvers.newton` take
         self.state, self.places = (w.u, w.above, self.fill), w.places_of(self.P)
         self.residual = self.places[1]
@@ -163,15 +163,16 @@ class LinerFilm(WinklerElements):
         self.rates = rates._replace(liner=0.0)
         self.update_elements(np.where(g.fixed, self.P, s.cavity_pressure))
         self.rates = rates
-        open_gaps(self.gap_fields, self.shut)
+        shut, gaps = f.HF < TOUCHING, self.gap_fields[:2]
+        np.maximum(gaps, TOUCHING, out=gaps)
         self._set_links(f.nothing)
         flux, chain = copy.deepcopy(f.flux), None
         if self.thin is not None and flux is not None:
             s.kx *= self.thin.slide(flux, f.vx)
         density = 1.0 if f.law is None else float(f.rho[~g.fixed].min(initial=np.inf))
-        gaps = self.gap_fields[:2].copy()
+        gaps = gaps.copy()
         f.set_right_hand_side()
-        s.kx[self.shut] = 0.0
+        s.kx[shut] = 0.0
         line = f.line if isinstance(f.line, FilmLine) else f.oil_line
         assert line is not None
         line.lift_by_speed = 0.5 * self.beta * np.sign(f.vx) * g.width_z

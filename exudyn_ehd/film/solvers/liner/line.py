@@ -40,15 +40,6 @@ TOUCHING = 1e-6
 
 
 @njit(cache=True)
-def open_gaps(gap_fields, touching_out):
-    """Mark links on which surfaces touch, and enlarge gaps at vertices and links to `TOUCHING` at least."""
-    H, HF, touching = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1), touching_out.reshape(-1)
-    for c in range(H.size):
-        touching[c] = HF[c] < TOUCHING
-        H[c], HF[c] = max(H[c], TOUCHING), max(HF[c], TOUCHING)
-
-
-@njit(cache=True)
 def lean_line(line, HF, beta, lift, lean_out):
     """Let a liner of compliance ``beta``, whose deflection adds ``lift`` (m,) to k, lower f by t, which is set."""
     f, k, whole, gap, lean, m = line[0], line[1], line[4], HF.reshape(-1), lean_out.reshape(-1), HF.shape[1]

@@ -5,7 +5,6 @@ The equations are in `exudyn_ehd.film.solvers.liner.film`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +12,6 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.oil_line import curve_of
 from exudyn_ehd.film.cavitation.states import OIL, take_sink
-from exudyn_ehd.film.lubricant.density import law_at
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.balance import carried_fill, film_balance, terms_of, upstream, violation
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
@@ -25,31 +23,15 @@ from exudyn_ehd.film.solvers.liner.elements import (
     Load,
     Rates,
     bend_links,
-    deflect,
     drive_elements,
     element_slopes,
-    ends_open,
     gaps_of,
     load_of,
     move_elements,
     press_elements,
-    scale_load,
     set_storage,
-    smallest_of,
 )
-from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter, LandContact
-
-
-@njit(cache=True)
-def density_of_load(load_fields, P, scale, law, rho_out, rho_P_out):
-    """Set the density ratio at the pressure on the elements and its derivative to the unknown, 0 where the pressure is
-    clipped."""
-    load = load_of(load_fields)
-    x, drive = P.reshape(-1), load.drive.reshape(-1)
-    rho, rho_P = rho_out.reshape(-1), rho_P_out.reshape(-1)
-    for c in range(x.size):
-        _, rho[c], _, _, by, _, _, _ = law_at(drive[c] * scale, law)
-        rho_P[c] = by * scale if x[c] == drive[c] else 0.0
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 
 
 @njit(cache=True, nogil=True)
@@ -94,8 +76,9 @@ def plain_residual(
     vertices in the cavity have no unknown).
     """
     (pc, vx, vz, beta), (clips, chooses), (terms, fixed, _, curve) = numbers, kinds, film
-    at_vertices, at_links = deflect(P, fixed, pc, clips, load_fields, rigid, beta, G, delta_old, rates[1], gap_fields)
-    smallest = min(at_vertices, at_links)
+    drive_elements(P, fixed, pc, clips, load_fields)
+    at_vertices = press_elements(rigid, load_fields, beta, G)
+    smallest = min(at_vertices, move_elements(rigid, G, delta_old, rates[1], gap_fields))
     if not smallest > 0.0:
         return np.inf, smallest
     set_links(gap_fields[0], gap_fields[1], None, metric, vx, vz, terms)
@@ -132,11 +115,9 @@ class WinklerElements:
         # the unknown pressure
         self.P = s.linear_pressure
         self.contact, self.limiter, self.oil = liner
-        self.to_pressure: Callable[..., bool] | None = None if self.oil is None else self.oil.inverse
         # density ratio and its derivative to the unknown; None where the oil is incompressible
         self.densities: tuple[np.ndarray | None, np.ndarray | None] = (None, None)
         if film.law is not None:
-            self.to_pressure = film.law.pressure
             film.rho, film.rho_P = self.densities = np.ones(shape), np.zeros(shape)
         self.beta, self.scale, self.smallest = 0.0, 1.0, 1.0
         self.rates = Rates(0.0, 0.0, 0.0, 1.0)
@@ -147,9 +128,7 @@ class WinklerElements:
         self.true_gap, self.pressed = np.ones(shape), np.ones(shape)
         self.contact_pressure, self.contact_slope, self.contact_G, self.bend = np.zeros((4, *shape))
         # the part of a vertex that the contact presses on
-        self.touching = self.contact.land if isinstance(self.contact, LandContact) else 1.0
-        # whether contact_pressure, contact_G, bend and gap_slopes have their values for surfaces apart
-        self.apart = True
+        self.touching = 1.0 if self.contact is None else self.contact.land
         self.gap_fields, self.slope_fields, self.load_fields = (np.zeros((k, *shape)) for k in (5, 9, 4))
         self.gaps, self.gap_slopes = Gaps(*self.gap_fields), GapSlopes(*self.slope_fields)
         self.load = Load(*self.load_fields)
@@ -163,11 +142,6 @@ class WinklerElements:
     def deflection(self) -> np.ndarray:
         """Scaled deflection of the last solution (n, m)."""
         return self.gaps.D.copy()
-
-    @property
-    def limited(self) -> bool:
-        """Return whether the film's gap differs from that of the surfaces."""
-        return self.limiter is not None and not self.apart
 
     @property
     def true_link(self) -> np.ndarray:
@@ -243,35 +217,34 @@ class WinklerElements:
         if self.film.closure.clips:
             P[fixed] = s.pressure[fixed]
         self.cavity_load = s.cavity_pressure if self.film.ruptures else 0.0
-        if self.to_pressure is None:
+        if self.oil is None:
             return True
-        known = np.append(P[fixed], self.cavity_load)[None] * self.scale
-        p, slope, bend = np.empty_like(known), np.empty_like(known), np.empty_like(known)
-        if not self.to_pressure(known, p, slope, bend):
-            return False
-        p /= self.scale
-        self.load.p[fixed] = p[0, :-1]
-        self.cavity_load = float(p[0, -1])
-        return True
+        inside, (p, *_) = self.oil.fields(np.append(P[fixed], self.cavity_load) * self.scale)
+        self.load.p[fixed] = p[:-1] / self.scale
+        self.cavity_load = float(p[-1]) / self.scale
+        return inside
 
     def ends_open(self) -> bool:
         """Return whether gaps of prescribed pressure are open; those with a contact always are."""
-        p = self.P if self.oil is None else self.load.p
-        return self.contact is not None or bool(ends_open(self.rigid, p, self.beta, self.film.grid.fixed))
+        if self.contact is not None:
+            return True
+        D, fixed = self.beta * (self.P if self.oil is None else self.load.p), self.film.grid.fixed
+        on_links = self.rigid[1] + 0.5 * (D + np.roll(D, -1, axis=0))
+        is_open = self.rigid[0] + D > 0.0, on_links > 0.0
+        return not np.any(fixed & ~is_open[0]) and not np.any(fixed & np.roll(fixed, -1, axis=0) & ~is_open[1])
 
     def press(self, P: np.ndarray) -> bool:
         """Set the pressure on every element for the film's unknown P; returns False if the oil would be solid."""
         load, f = self.load, self.film
         drive_elements(P, f.grid.fixed, f.system.cavity_pressure, f.closure.clips, self.load_fields)
-        if self.oil is None or self.to_pressure is None:
+        if self.oil is None:
             return True
-        if not self.to_pressure(load.drive * self.scale, load.p, load.slope, load.bend):
-            return False
-        if scale_load(self.load_fields, self.scale) > self.oil.largest_pressure:
-            return False
-        if f.law is not None:
-            density_of_load(self.load_fields, P, self.scale, f.law.kernel_table, *self.densities)
-        return True
+        inside, (p, load.slope[:], bend, rho, rho_q) = self.oil.fields(load.drive * self.scale)
+        load.p[:], load.bend[:] = p / self.scale, bend * self.scale
+        if f.rho_P is not None:
+            # the density stays where the pressure is clipped
+            f.rho[:], f.rho_P[:] = rho, rho_q * (load.drive == P) * self.scale
+        return inside and float(p.max()) <= self.oil.largest_pressure
 
     def update_elements(self, P: np.ndarray) -> bool:
         """Update the elements and the gaps that the film sees for its unknown P; returns False if the oil's law has no
@@ -283,24 +256,10 @@ class WinklerElements:
             self.rigid, self.load_fields, self.beta, self.true_gap if contact is None else self.pressed
         )
         if contact is not None:
-            self._touch(contact, smallest)
+            contact.solve_gap(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
         on_links = move_elements(self.rigid, self.true_gap, self.deflection_old, self.rates.liner, self.gap_fields)
         self.smallest = min(smallest, on_links)
-        if self.limiter is not None and (not self.apart or self.smallest < self.limiter.limits_below):
+        if self.limiter is not None:
             self.limiter.limit(f.H, f.HF, f.H_t, self.gap_slopes.rate_t, self.bend, self.gap_slopes.link)
-            self.apart = False
-            self.smallest = float(smallest_of(self.gap_fields))
+            self.smallest = float(self.gap_fields[:2].min())
         return True
-
-    def _touch(self, contact: Contact, smallest: float) -> None:
-        """Set the gaps of elements on which a contact presses as well."""
-        if smallest < contact.presses_below:
-            contact.solve_gap(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
-            self.apart = False
-            return
-        self.true_gap[:] = self.pressed
-        if not self.apart:
-            for field in (self.contact_pressure, self.contact_G, self.bend):
-                field[:] = 0.0
-            self.gap_slopes.rate_t[:] = self.gap_slopes.link[:] = 1.0
-            self.apart = True

@@ -24,7 +24,7 @@ from exudyn.utilities import InertiaCylinder
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Held
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength

@@ -11,8 +11,8 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 from exudyn_ehd.coupling.record.history import JointHistory
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SolveDynamic
 from exudyn_ehd.status import InputError, require_integer, require_number
 from tests.benchmarks.accuracy.scenes.mechanisms import Built

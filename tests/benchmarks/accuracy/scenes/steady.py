@@ -110,7 +110,7 @@ class SteadyScene:
         motions = self.motions()
         iterations = sum(evaluate_at(model, motion).iterations for motion in motions) / len(motions)
         # a map solves none
-        films = model.parts.evaluations.count / len(motions) if hasattr(model, "parts") else 0.0
+        films = model.parts.evaluations / len(motions) if hasattr(model, "parts") else 0.0
         values = measure_motions(model, motions)
 
         def run() -> Outcome:
