@@ -2,11 +2,10 @@
 
 Module map
 ----------
-solved_film  one evaluation as a record: what all below but the seams read
+solved_film  one evaluation as a record: what all below read
 plain_film   a film without further effects in one kernel
 step_rates   rates of a step that agree with its positions
 step_error   what the steps of a run miss in the gap
-seams        what an effect must offer to take part
 bore         shapes of an elastic bore and their balance
 tangent      derivatives of the wrench
 heat         temperature over time

@@ -17,7 +17,6 @@ from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.solvers.swift_stieber import find_film
-from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, Scales, SolvedFilm
 
 _NO_CONTACT = np.zeros(6)
@@ -29,12 +28,11 @@ def has_plain_edges(bearing: JournalBearing) -> bool:
     return bearing.end_seals is None and not pressed
 
 
-def is_plain(parts: FilmParts, effects: Effects) -> bool:
-    """Return whether `solve_plain` can solve films of these parts."""
+def is_plain(parts: FilmParts) -> bool:
+    """Return whether `solve_plain` can solve films of these parts, without further effects."""
     s = parts.solver
     return (
-        effects == Effects()
-        and type(s) is FilmSolver
+        type(s) is FilmSolver
         and s.axial
         and s.complementary
         and not s.closure.conserves_mass
@@ -97,7 +95,7 @@ def solve_plain(
         Loads(out[:6], _NO_CONTACT, out[6:10], couette, s_theta),
         parts.bearing.radial_clearance * smallest,
         None,
-        parts.evaluations.count,
+        parts.evaluations,
     )
     return film, steps
 
@@ -134,5 +132,5 @@ def _plain_film(motion, scale, known, sizes, kinds, normals, links, weight, fiel
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     speeds = motion[8], motion[9]
     scales, ends = (force, shear, radius), (H, mesh[0], known)
-    s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, *ends, 0.0, scales, *speeds, out)
+    s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, *ends, scales, speeds, out)
     return ok, steps, count, width, smallest, couette, s_theta

@@ -41,7 +41,8 @@ import functools
 import numpy as np
 from numba import njit
 
-_BORE = 10
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
+
 # Weights of the velocities' errors in the last steps, the last one first, by the number of known errors.
 WEIGHTS = tuple(np.array(w) for w in ((), (1.0,), (0.5, 0.5), (1.5, 0.5, -1.0)))
 # Displacement by misses in a step, share of the clearance: less changes no film, and may be rounding of positions.
@@ -129,7 +130,7 @@ def next_start(before: StepStart | None, motion: np.ndarray, time: float, cleara
     clearance : float
         m.
     """
-    k = (motion.size - _BORE) // 2
+    k = (motion.size - MOTION_SIZE) // 2
     if before is None or before.time > time:
         return StepStart(time, motion, 0.0, np.empty((0, 4 + k)), clearance)
     if before.time == time:

@@ -15,21 +15,21 @@ unbroken film.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import place_line
+from exudyn_ehd.film.heat.options import known_supply
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
-from exudyn_ehd.joint.heat.temperature import OilTemperature
-from exudyn_ehd.joint.solved_film import FacesHeat, History
-from exudyn_ehd.joint.tangent.wrench import BESIDE, CENTRE, LARGEST_SPREAD, quotients
+from exudyn_ehd.joint.heat.temperature import OilTemperature, viscosity_ratio
+from exudyn_ehd.joint.solved_film import BESIDE, CENTRE, LARGEST_SPREAD, MOTION_SIZE, FacesHeat, History, SolvedFilm
 from exudyn_ehd.status import FilmError, Status
 
-SIZE, PLACE = 11, 10
-"""Entries of the motion, and the axial position's among them."""
+PLACE = MOTION_SIZE
+"""Entry of the motion that is the axial position, the last one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +64,8 @@ class ThrustEvaluation:
         if self.serial != self.model.serial:
             raise RuntimeError("ThrustEvaluation.tangent: the model has evaluated another state since.")
         if not np.isfinite(self.wrench.sum()):
-            return np.full((6, SIZE), np.nan)
-        out = np.zeros((6, SIZE))
+            return np.full((6, PLACE + 1), np.nan)
+        out = np.zeros((6, PLACE + 1))
         for face in self.model.faces:
             height, own = self.model.height(face), face.tangent()
             own += self.model.change_at_rest(face) if is_at_rest(face) else 0.0
@@ -121,7 +121,6 @@ class ThrustModel:
         assert faces is not None
         self.bearing, self.serial = bearing, 0
         closure = place_line(bearing.cavitation, True)
-        self.oil = None if bearing.thermal is None else OilTemperature(bearing.thermal, bearing.lubricant)
         inner = bearing.end_pressures if faces.inner_pressures is None else faces.inner_pressures
         self.faces = [
             FaceFilm(
@@ -148,11 +147,14 @@ class ThrustModel:
 
         One temperature is that of all films; of a temperature field a face gets the oil that leaves the bore there.
         """
-        if self.oil is None:
+        thermal, T = self.bearing.thermal, None
+        if thermal is None:
             return np.ones(2)
-        known = None if history is None else history.temperature if history.leaving is None else history.leaving
-        T = self.oil.initial if known is None or np.ndim(known) == 2 else known
-        return np.broadcast_to(self.oil.viscosity_ratio(np.asarray(T)), 2)
+        if history is not None:
+            T = history.temperature if history.leaving is None else history.leaving
+        if T is None or np.ndim(T) == 2:
+            T = known_supply(thermal) if thermal.initial_temperature is None else thermal.initial_temperature
+        return np.broadcast_to(viscosity_ratio(self.bearing.lubricant, np.asarray(T)), 2)
 
     def evaluate(self, motion: np.ndarray, history: History | None = None) -> ThrustEvaluation:
         """The films at a motion (11,) and a memory of the bore's film at the start of the step."""
@@ -195,6 +197,28 @@ def faces_of(bearing: JournalBearing) -> ThrustModel | None:
     return None if bearing.thrust is None else ThrustModel(bearing)
 
 
+def quotients(wrench: Callable[[np.ndarray], np.ndarray], motion: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """One-sided derivatives (2, 6, n) of a wrench to the entries of a motion (n,) with a step, from above and below.
+
+    Steps are `BESIDE` of what changes the wrench as a whole: changes of second order are omitted.
+    """
+    out, middle = np.zeros((2, 6, motion.size)), wrench(motion)
+    # above the square of the step and the round-off: larger changes are of first order in the step
+    least = 10.0 * BESIDE**2 * np.abs(middle).max()
+    for k in np.flatnonzero(steps):
+        for side, step in zip(out, (steps[k], -steps[k]), strict=True):
+            change = wrench(motion + step * np.eye(motion.size)[k]) - middle
+            side[:, k] = np.where(np.abs(change) > least, change, 0.0) / step
+    return out
+
+
+def seen_by_faces(film: SolvedFilm | None, heat: OilTemperature | None) -> History:
+    """Memory from which films on end faces take their temperature beside a steady film."""
+    if film is None or film.temperature is None or heat is None:
+        return History()
+    return replace(film.history or History(), leaving=heat.leaving(film, film.temperature))
+
+
 def is_at_rest(face: FaceFilm) -> bool:
     """Return whether a film that may rupture lies between parallel surfaces at rest and presses nowhere."""
     source = CENTRE * abs(float(face.motion[6]))
@@ -226,7 +250,7 @@ def face_motion(motion: np.ndarray, height: float) -> np.ndarray:
 def face_motion_map(motion: np.ndarray, height: float) -> np.ndarray:
     """Derivative (9, 11) of `face_motion` to the motion."""
     x, y, bx, by, x_t, y_t, bx_t, by_t, omega, _, _ = motion.tolist()
-    out = np.zeros((FACE_SIZE, SIZE))
+    out = np.zeros((FACE_SIZE, PLACE + 1))
     out[0, :4], out[0, PLACE] = (bx, by, x, y), 1.0
     out[1, 2] = out[2, 3] = out[4, 6] = out[5, 7] = out[6, 8] = 1.0
     out[3, :10] = bx_t, by_t, x_t, y_t, bx, by, x, y, 0.0, 1.0

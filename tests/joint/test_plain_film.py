@@ -5,7 +5,6 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.plain_film import is_plain
 from exudyn_ehd.status import Status
 
 GRID = ehd.FiniteLength(n_theta=48, n_z=6)
@@ -53,7 +52,7 @@ def _motions(count, seed):
 @pytest.mark.parametrize("name", PLAIN)
 def test_same_as_the_way_of_any_film(make_bearing, name):
     model, other = (_model(make_bearing, **PLAIN[name]) for _ in range(2))
-    assert is_plain(model.parts, model.effects)
+    assert model._plain
     other._plain = False
     seen = set()
     for motion in _motions(70, 3):
@@ -81,4 +80,4 @@ def test_a_state_without_a_film_leaves_the_warm_start(make_bearing):
 @pytest.mark.parametrize("name", OTHERS)
 def test_others_take_the_long_way(make_bearing, name):
     model = _model(make_bearing, **OTHERS[name])
-    assert not is_plain(model.parts, model.effects)
+    assert not model._plain

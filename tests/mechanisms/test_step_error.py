@@ -12,7 +12,7 @@ import pytest
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch import doubts
+from exudyn_ehd.coupling import doubts
 from exudyn_ehd.joint.step_error import FIRST
 from tests.benchmarks.accuracy.scenes import measured
 from tests.mechanisms.test_rates_follow_positions import CLOSURES, four_bar, pin, settings

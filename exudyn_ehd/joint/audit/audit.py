@@ -1,32 +1,282 @@
-"""Audit of a bearing.
+"""Audit of a bearing: which effects mattered in its films, which were left out, and which take time without need.
 
-Which effects mattered in the films it has had, which were left out, and which take time without need.
+Rows of the flow and of numbers: squeeze, cavities, vortices, turbulence, inertia; grid, time step, ringing.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.audit import assumptions, effects
-from exudyn_ehd.joint.audit.case import Case
-from exudyn_ehd.joint.audit.findings import Finding
-from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states
-from exudyn_ehd.joint.audit.switches import turbulent, two_dimensional
+from exudyn_ehd.joint.audit import effects, switches
+from exudyn_ehd.joint.audit.case import MATTERS, Case
+from exudyn_ehd.joint.audit.findings import LIMITS, Audit, Finding, judged
+from exudyn_ehd.joint.audit.ringing import WINDOW, watched
+from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states, squeeze_rate
+from exudyn_ehd.joint.balance.resolution import Resolution
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.status import InputError
-from exudyn_ehd.tables import html_table
+from exudyn_ehd.joint.step_error import enough_steps
 
-__all__ = ["Audit", "Finding", "audit_of", "audit_record"]
+# Grids this many times finer than needed cost time for nothing.
+TOO_FINE = 6.0
+# Grids that are so much finer than needed, and not coarser than the default, are not compared with finer ones.
+SURELY_FINE = 2.0
+# Intervals along z across a peak that its load needs: 1 % of it.
+NEEDED_ALONG = 3.0
+# Film thicknesses across the last interval along z: the pressure there rises by int dz / h^3, which the vertices at
+# its ends know to 2 % of the film thickness on the end up to here.
+NARROWS = 1.6
+# Option, multiple and least number of a grid that is advised.
+SIZES = {"grid around": ("n_theta", 8, 48), "grid along": ("n_z", 2, 6)}
 
-_ON = {True: "on", False: "off", None: "-"}
+
+def misalignment(case: Case) -> Finding:
+    """Tilt of the journal, which every film but the impedance map includes."""
+    is_map = isinstance(case.bearing.film, ImpedanceMap)
+    return judged(
+        case,
+        "misalignment",
+        "share of the mid-plane gap lost at an end",
+        case.numbers["tilt_loss"].max(),
+        not is_map,
+        switches.two_dimensional if is_map else None,
+        mattering="use film=FiniteLength(...), which follows the tilt.",
+    )
+
+
+def squeeze(case: Case) -> Finding:
+    """Squeeze against wedge."""
+    is_on = case.bearing.squeeze
+    return judged(
+        case,
+        "squeeze",
+        "v / (v + e omega / 2)",
+        case.numbers["squeeze_share"].max(),
+        is_on,
+        None if is_on else switches.squeezing,
+        mattering="use squeeze=True: without it the film has no damping.",
+    )
+
+
+def cavitation(case: Case) -> Finding:
+    """Cavitated share of the surface, or tension in a film that never breaks."""
+    if not np.isinf(case.bearing.cavitation.cavity_pressure):
+        return judged(case, "cavitation", *_cavitated(case), True)
+    return judged(
+        case,
+        "cavitation",
+        f"share of the {case.surface} below -1e5 Pa",
+        case.numbers["tension"].max(),
+        False,
+        switches.swift_stieber,
+        mattering="oil does not carry such tension: cavitation=SwiftStieber().",
+    )
+
+
+def _cavitated(case: Case) -> tuple[str, float]:
+    return f"cavitated share of the {case.surface}", case.numbers["cavitated"].max()
+
+
+def rupture(case: Case) -> Finding | None:
+    """Half Sommerfeld's rupture against Reynolds' condition."""
+    if not case.bearing.cavitation.clips:
+        return None
+    advice = "the film breaks where its pressure still falls: cavitation=SwiftStieber() keeps the flow there."
+    return judged(case, "rupture", *_cavitated(case), False, switches.swift_stieber, mattering=advice)
+
+
+def mass_conservation(case: Case) -> Finding | None:
+    """Oil content and pressure of cavities: against a film whose cavities keep their oil."""
+    closure, effect = case.bearing.cavitation, "mass conservation"
+    if np.isinf(closure.cavity_pressure):
+        return None
+    if closure.conserves_mass:
+        needless = f"cavities hardly matter: cavitation=SwiftStieber(cavity_pressure={closure.cavity_pressure:g})."
+        return judged(case, effect, *_cavitated(case), True, switches.swift_stieber, needless=needless)
+    pressure = switches.cavity_pressure(case.bearing)
+    advice = (
+        f"cavities keep their oil: cavitation=ElrodAdams(cavity_pressure={pressure:g}), or at the pressure of yours."
+    )
+    return judged(case, effect, *_cavitated(case), False, switches.mass_conserving, mattering=advice)
+
+
+def _reynolds(case: Case) -> float:
+    """Largest Reynolds number of the Couette flow."""
+    b, numbers = case.bearing, case.numbers
+    return float((b.lubricant.density * numbers["speed"] * b.radial_clearance / numbers["viscosity"]).max())
+
+
+def vortices(case: Case) -> Finding:
+    """Taylor number."""
+    return judged(
+        case,
+        "Taylor vortices",
+        "Re sqrt(c / R)",
+        _reynolds(case) * math.sqrt(case.bearing.clearance_ratio),
+        None if case.bearing.turbulence is None else True,
+        mattering="beyond the laminar film: friction is too low here; see the row on turbulence.",
+    )
+
+
+def turbulence(case: Case) -> Finding:
+    """Reynolds number of the Couette flow."""
+    is_on = case.bearing.turbulence is not None
+    return judged(
+        case,
+        "turbulence",
+        "Re = rho U c / mu",
+        _reynolds(case),
+        is_on,
+        switches.laminar if is_on else switches.turbulent,
+        mattering="beyond the laminar film, friction and load are too low here: turbulence=NgPan().",
+        needless="the film is laminar: turbulence=None.",
+    )
+
+
+def inertia(case: Case) -> Finding:
+    """Reynolds number of the rate at which the flow changes: by the spin in the gap, or by the squeeze."""
+    b, r, numbers = case.bearing, case.record, case.numbers
+    by_squeeze = numbers["squeeze_rate"]
+    if r is not None:
+        by_squeeze = np.array(squeeze_rate(case.sources(r.motion), b.radial_clearance, r.time))
+    rate = np.maximum(numbers["speed"] / b.journal_radius, by_squeeze)
+    return judged(
+        case,
+        "fluid inertia",
+        "rho w c^2 / mu, w of spin or squeeze",
+        b.lubricant.density * b.radial_clearance**2 * (rate / numbers["viscosity"]).max(),
+        None,
+        mattering="the Reynolds equation leaves the fluid's inertia out: take forces as estimates.",
+    )
+
+
+def grid_columns(case: Case) -> Finding | None:
+    """Columns across the pressure peak; an impedance map has its error sampled when it is built."""
+    worst = min(case.resolutions, key=lambda seen: seen.columns)
+    text, across = "intervals across the peak at half its height", worst.columns
+    return _grid(case, "grid around", text, across, worst, across, LIMITS["grid around"].value)
+
+
+def grid_rows(case: Case) -> Finding | None:
+    """Rows next to the end where the pressure peaks; the slices of a long bearing are no grid."""
+    if isinstance(case.bearing.film, LongBearing):
+        return None
+    worst, text = (
+        max(case.resolutions, key=lambda seen: seen.narrowing),
+        "growth of the film within an interval of its end",
+    )
+    across = min(seen.rows for seen in case.resolutions)
+    narrows = max(seen.growth for seen in case.resolutions) > NARROWS
+    return _grid(case, "grid along", text, worst.narrowing, worst, across, NEEDED_ALONG, narrows)
+
+
+def _grid(
+    case: Case,
+    effect: str,
+    text: str,
+    value: float,
+    worst: Resolution,
+    across: float,
+    needed: float,
+    narrows: bool = False,
+) -> Finding | None:
+    """Intervals ``across`` the peak against those that are ``needed``, and what twice as many change."""
+    film, (name, unit, fewest) = case.bearing.sized_film, SIZES[effect]
+    if isinstance(film, ImpedanceMap):
+        return None
+    size, sizes = getattr(film, name), {"n_theta": film.n_theta, "n_z": film.n_z}
+    default = getattr(replace(case.bearing, film=FiniteLength()).sized_film, name)
+    is_fine = across > SURELY_FINE * needed and size >= default and not narrows
+    change = None if is_fine else case.change(switches.refined(**sizes | {name: 2 * size}))
+    found = replace(judged(case, effect, f"{text}, {name} = {size}", value, None), change=change)
+    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(across, 0.25)))
+    if found.matters or (change is not None and change.found and change.size > MATTERS):
+        cause = "film narrows too fast towards its ends" if narrows else "pressure peak is too narrow"
+        wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
+        grid, remedy = f"{name}={wanted}", switches.refined(**sizes | {name: wanted})
+        if found.matters and worst.wanted is not None:
+            # the grid that `steady` and runs name
+            grid, remedy = repr(worst.wanted), partial(replace, film=worst.wanted)
+        return replace(found, matters=True, advice=f"the {cause} for the grid: {grid}.", remedy=remedy)
+    wanted = max(wanted, fewest)
+    if across > TOO_FINE * needed and wanted < size:
+        coarser = switches.refined(**sizes | {name: wanted})
+        # a flexible bore constricts its film within less than the pressure's peak
+        loss = None if case.bearing.bush is None else case.change(coarser)
+        if loss is None or loss.size <= MATTERS:
+            advice = f"finer than the pressure needs: {name}={wanted} would do."
+            return replace(found, unneeded=True, advice=advice, remedy=coarser)
+    return found
+
+
+def supply_resolution(case: Case) -> Finding | None:
+    """Intervals on the narrowest area of supply, and what twice as many change; circumferential grooves have rows."""
+    b, film = case.bearing, case.bearing.film
+    areas = [area for area in b.supply if not isinstance(area, CircumferentialGroove)]
+    if not areas or not isinstance(film, FiniteLength):
+        return None
+    widths = [a.diameter / b.journal_radius if isinstance(a, Hole) else a.width_angle for a in areas]
+    n_theta, n_z = 2 * b.columns, 2 * film.n_z
+    return judged(
+        case,
+        "supply resolution",
+        "intervals around on the narrowest area of supply",
+        min(widths) * b.columns / (2.0 * math.pi),
+        None,
+        switches.refined(n_theta, n_z),
+        mattering=f"the areas of supply are coarse on this grid: n_theta={n_theta}, n_z={n_z}.",
+    )
+
+
+def time_step(case: Case) -> Finding | None:
+    """Estimated error of the steps against the gap; None for a record that does not know it."""
+    record = case.record
+    if record is None or not np.any(np.isfinite(record.step_error)):
+        return None
+    needed = enough_steps(record.time, case.turns(record.motion), record.step_error)
+    return judged(
+        case,
+        "time step",
+        "estimated error of the gap / minimum film thickness",
+        np.nanmax(record.step_error),
+        None,
+        mattering=f"the steps are too coarse for the film: take {needed}.",
+    )
+
+
+def ringing(case: Case) -> Finding | None:
+    """Forces that alternate from step to step."""
+    record, b = case.record, case.bearing
+    if record is None:
+        return None
+    watch = watched(record.time, record.force[:, : case.axes], 2.0 * b.journal_radius * b.length)
+    when = "" if watch.most == 0 else f", at {watch.first:.4g} s"
+    if watch.first < watch.last:
+        when = f", {watch.first:.4g} to {watch.last:.4g} s"
+    return judged(
+        case,
+        "ringing",
+        f"times within {WINDOW} steps that the force is thrown into alternation{when}",
+        watch.most,
+        None,
+        mattering="forces and pressures jump from step to step: run by ehd.SolveDynamic, with more steps until none is "
+        "halved, or with a smaller spectral radius.",
+    )
+
+
 # Function that finds what an audit says about an effect, None where there is nothing to say.
 AuditRow = Callable[[Case], Finding | None]
 ROWS: Mapping[str, AuditRow] = {
-    "misalignment": assumptions.misalignment,
+    "misalignment": misalignment,
     "elasticity": effects.elasticity,
     "journal elasticity": effects.journal_elasticity,
     "profile": effects.shape,
@@ -38,140 +288,21 @@ ROWS: Mapping[str, AuditRow] = {
     "roughness": effects.roughness,
     "contact": effects.contact,
     "wear": effects.wear,
-    "squeeze": assumptions.squeeze,
-    "cavitation": assumptions.cavitation,
-    "rupture": assumptions.rupture,
-    "mass conservation": assumptions.mass_conservation,
+    "squeeze": squeeze,
+    "cavitation": cavitation,
+    "rupture": rupture,
+    "mass conservation": mass_conservation,
     "thrust faces": effects.faces_share,
     "heat of thrust faces": effects.faces_heat,
-    "Taylor vortices": assumptions.vortices,
-    "turbulence": assumptions.turbulence,
-    "fluid inertia": assumptions.inertia,
-    "grid around": assumptions.grid_columns,
-    "grid along": assumptions.grid_rows,
-    "supply resolution": assumptions.supply_resolution,
-    "time step": assumptions.time_step,
-    "ringing": assumptions.ringing,
+    "Taylor vortices": vortices,
+    "turbulence": turbulence,
+    "fluid inertia": inertia,
+    "grid around": grid_columns,
+    "grid along": grid_rows,
+    "supply resolution": supply_resolution,
+    "time step": time_step,
+    "ringing": ringing,
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class Audit:
-    """Table of effects: which mattered, which omitted ones would have, which are not needed; print it.
-
-    From `SteadyResult.audit` or `LubricatedJoint.audit`. Columns of the printed table: the effect; on or off (- for an
-    assumption or a number); the largest change of minimum film thickness, peak pressure and power loss at the same load
-    if the effect is switched; an indicator's value and the limit beyond which the effect may matter; share of computing
-    time; verdict; meaning of the indicator. An effect matters if it changes one of the three by more than 3 %. Advice
-    stands below the table.
-
-    Attributes
-    ----------
-    findings : tuple of Finding
-        The rows.
-
-    Examples
-    --------
-    After the example of `JournalBearing`:
-
-    >>> audit = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8).audit()
-    >>> [finding.effect for finding in audit.neglected]
-    ['elasticity', 'journal elasticity', 'piezoviscosity', 'heating', 'shear thinning', 'mass conservation']
-    >>> better = audit.improved(bearing)
-    """
-
-    findings: tuple[Finding, ...]
-
-    @property
-    def matters(self) -> tuple[Finding, ...]:
-        """Effects that matter, whether the bearing has them or not."""
-        return tuple(f for f in self.findings if f.matters)
-
-    @property
-    def neglected(self) -> tuple[Finding, ...]:
-        """Effects that matter and are off, and assumptions or numbers that do not hold."""
-        return tuple(f for f in self.findings if f.matters and not f.on)
-
-    @property
-    def unneeded(self) -> tuple[Finding, ...]:
-        """Effects that take time and do not matter."""
-        return tuple(f for f in self.findings if f.unneeded)
-
-    def __getitem__(self, effect: str) -> Finding:
-        """The finding about an effect, by its name."""
-        for finding in self.findings:
-            if finding.effect == effect:
-                return finding
-        raise KeyError(f"Audit: no finding about {effect!r}; there are {', '.join(f.effect for f in self.findings)}.")
-
-    def __repr__(self) -> str:
-        said = [
-            f"{what} {', '.join(f.effect for f in found)}"
-            for what, found in (("neglected", self.neglected), ("unneeded", self.unneeded))
-            if found
-        ]
-        return f"<Audit of {len(self.findings)} effects and assumptions: {'; '.join(said) or 'nothing to change'}>"
-
-    def _rows(self) -> list[tuple[str, ...]]:
-        head = ("effect", "", "change", "value", "limit", "time", "verdict", "indicator")
-        return [head, *(_row(finding) for finding in self.findings)]
-
-    def _repr_html_(self) -> str:
-        return html_table(self._rows())
-
-    def __str__(self) -> str:
-        rows = self._rows()
-        widths = [max(len(row[k]) for row in rows) for k in range(7)]
-        lines = ["  ".join(text.ljust(w) for text, w in zip(row, (*widths, 0))).rstrip() for row in rows]
-        lines.insert(1, "-" * max(map(len, lines)))
-        advice = [f"{f.effect}: {f.advice}" for f in self.findings if f.advice]
-        changes = [f"{f.effect}: {f.change}" for f in self.findings if f.change is not None and f.matters]
-        return "\n".join([*lines, *([""] if advice else []), *advice, *([""] if changes else []), *changes])
-
-    def improved(self, bearing: JournalBearing) -> JournalBearing:
-        """The bearing with missing effects switched on, with typical numbers, and unneeded ones switched off.
-
-        It follows every advice that the bearing's options allow; an arc takes neither heat nor surfaces that deflect.
-        The new numbers are typical ones: replace them by yours. Effects act on each other: compute the film or the run
-        anew with the result and audit it, until nothing is left to change.
-
-        Parameters
-        ----------
-        bearing : JournalBearing
-            The one that was audited.
-
-        Returns
-        -------
-        JournalBearing
-
-        Raises
-        ------
-        InputError
-            If a missing effect is not supported by the bearing's film model, closure or thrust faces.
-        """
-        remedies = [finding.remedy for finding in self.findings if finding.remedy is not None]
-        if remedies and isinstance(bearing.film, ImpedanceMap):
-            bearing = two_dimensional(bearing)
-        # turbulence leaves out laws of laminar films: where both are missing, the next audit says so
-        for remedy in sorted(remedies, key=lambda remedy: remedy is not turbulent):
-            try:
-                bearing = remedy(bearing)
-            except InputError:
-                if bearing.turbulence is None and not bearing.bore_arcs:
-                    raise
-        return bearing
-
-
-def _row(f: Finding) -> tuple[str, ...]:
-    verdict = (
-        "neglected" if f.matters and f.on is False else "matters" if f.matters else "unneeded" if f.unneeded else ""
-    )
-    if f.matters and f.on is None:
-        verdict = "beyond limit"
-    share = "" if f.time_share is None else f"{f.time_share:.0%}"
-    change = "" if f.change is None else f"{f.change.size:.1%}" if f.change.found else "no film"
-    limit = f"{'<' if f.below else '>'} {f.threshold:.3g}"
-    return f.effect, _ON[f.on], change, f"{f.value:.3g}", limit, share, verdict, f.indicator
 
 
 def audit_of(case: Case, rows: Mapping[str, AuditRow] = ROWS) -> Audit:

@@ -32,7 +32,7 @@ from exudyn_ehd.joint.audit.samples import (
     squeeze_share,
 )
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
-from exudyn_ehd.joint.balance.newton import evaluate_at
+from exudyn_ehd.joint.balance.newton import FREE_STEP, ROOM, evaluate_at
 from exudyn_ehd.joint.balance.resolution import Resolution, resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
@@ -42,9 +42,8 @@ from exudyn_ehd.status import SMALL, FilmError, InputError, Status, require_type
 
 # From this change on an effect matters; below the second one nobody needs it.
 MATTERS, NOTHING = 0.03, 0.02
-# Search for the same load: largest number of films; longest step as a share of the minimum film thickness or, where
-# surfaces may touch, of the clearance.
-MOST_FILMS, LONGEST = 60, 0.6
+# Most films of a search for the same load.
+MOST_FILMS = 60
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,8 +183,7 @@ class Case:
 
     def own_numbers(self, evaluation: Evaluation) -> tuple[dict[str, float], Resolution]:
         """Numbers of a film as by `film_numbers`, and the resolution of its pressure peak by the grid."""
-        assert evaluation.film is not None
-        return film_numbers(self.model, evaluation), resolution(evaluation.film)
+        return film_numbers(self.model, evaluation), resolution(evaluation.solved)
 
     def compared(self, evaluation: Evaluation) -> tuple[float, float, float]:
         """Minimum film thickness, m, refined peak pressure, Pa, and loss, W, of a film."""
@@ -291,7 +289,7 @@ class Case:
             if error <= self.tolerance * size:
                 return share, reached
             step, *_ = np.linalg.lstsq(reached.steady_tangent()[:k, :k], left, rcond=1e-9)
-            longest = LONGEST * (b.radial_clearance if is_soft else reached.minimum_gap)
+            longest = FREE_STEP * b.radial_clearance if is_soft else ROOM * reached.minimum_gap
             step *= min(1.0, longest / max(float(np.linalg.norm(step)), 1e-300))
         return share, None
 

@@ -14,37 +14,10 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, known_supply
+from exudyn_ehd.joint.audit import switches
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
 from exudyn_ehd.joint.audit.samples import adiabatic_rise, time_mean
-from exudyn_ehd.joint.audit.switches import (
-    MULTIGRADE,
-    PIEZOVISCOSITY,
-    STEEL,
-    TEMPERATURE_COEFFICIENT,
-    coarse_pin,
-    coarse_ring,
-    heated,
-    isothermal,
-    isoviscous,
-    newtonian,
-    piezoviscous,
-    rigid,
-    rigid_journal,
-    rough,
-    roughness_height,
-    smooth,
-    steel_pin,
-    steel_ring,
-    thinning,
-    touching,
-    typical_conductance,
-    unprofiled,
-    untouching,
-    unworn,
-    walled,
-    warmer,
-)
 from exudyn_ehd.joint.balance.limits import COOLER
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 
@@ -68,7 +41,7 @@ def elasticity(case: Case) -> Finding:
     b, liner, numbers = case.bearing, case.liner, case.numbers
     if b.bush is not None:
         value, needless = _over_gap(case, numbers["deflection"]), "the bush is stiff enough to be rigid: bush=None."
-        return judged(case, "elasticity", _deflecting(b), value, True, rigid, needless=needless)
+        return judged(case, "elasticity", _deflecting(b), value, True, switches.rigid, needless=needless)
     if liner is not None:
         return judged(
             case,
@@ -85,8 +58,8 @@ def elasticity(case: Case) -> Finding:
         f"deflection of {case.steel} / minimum film thickness",
         _over_gap(case, numbers["compliance"] * numbers["peak_pressure"]),
         False,
-        steel_ring,
-        probe=coarse_ring,
+        switches.steel_ring,
+        probe=switches.coarse_ring,
         mattering="even steel gives way: give the bearing bush=ModalBush(...) of its housing.",
     )
 
@@ -95,19 +68,20 @@ def journal_elasticity(case: Case) -> Finding | None:
     """Deflection of the journal: as it is, or of a steel pin that nothing holds; None where it could not have one."""
     b, effect = case.bearing, "journal elasticity"
     if b.journal is not None:
-        value, needless = _over_gap(case, case.numbers["deflection"]), "the journal is stiff enough to be rigid: "
-        return judged(case, effect, _deflecting(b), value, True, rigid_journal, needless=f"{needless}journal=None.")
+        value = _over_gap(case, case.numbers["deflection"])
+        needless = "the journal is stiff enough to be rigid: journal=None."
+        return judged(case, effect, _deflecting(b), value, True, switches.rigid_journal, needless=needless)
     if b.bush is not None and type(b.bush).__name__ != "ModalBush":
         return None
-    compliance = PIN_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"]
+    compliance = PIN_COMPLIANCE * b.journal_radius / switches.STEEL["youngs_modulus"]
     return judged(
         case,
         effect,
         "deflection of a solid steel pin / minimum film thickness",
         _over_gap(case, compliance * case.numbers["peak_pressure"]),
         False,
-        steel_pin,
-        probe=coarse_pin,
+        switches.steel_pin,
+        probe=switches.coarse_pin,
         mattering="even solid steel gives way: give the bearing journal=ElasticJournal(...), held as it is.",
     )
 
@@ -122,14 +96,14 @@ def shape(case: Case) -> Finding | None:
         "profile height / minimum film thickness",
         (case.numbers["shape"] / case.numbers["minimum_gap"]).max(),
         True,
-        unprofiled,
+        switches.unprofiled,
         needless="the film is much thicker than the profile: profile=None.",
     )
 
 
 def thinnest(case: Case) -> tuple[str, float]:
     """Minimum film thickness over the roughness, in words and as a number."""
-    height = roughness_height(case.bearing)
+    height = switches.roughness_height(case.bearing)
     return f"minimum film thickness / sigma, sigma = {height:g} m", case.numbers["minimum_gap"].min() / height
 
 
@@ -141,7 +115,7 @@ def roughness(case: Case) -> Finding:
         "roughness",
         *thinnest(case),
         is_on,
-        smooth if is_on else rough,
+        switches.smooth if is_on else switches.rough,
         mattering="give the bearing roughness=PatirCheng(composite_roughness=...).",
         needless="the film is thick next to the roughness: roughness=None.",
     )
@@ -156,12 +130,12 @@ def contact(case: Case) -> Finding:
             "contact",
             *thinnest(case),
             False,
-            touching,
+            switches.touching,
             limit=LIMITS["asperities"],
             mattering="surfaces touch: asperity=GreenwoodTripp(...), or contact=RegularisedWall(...).",
         )
     needless = "contact carries next to nothing: " + ("contact=None." if b.asperity is None else "asperity=None.")
-    return judged(case, "contact", *_contact_share(case), True, untouching, needless=needless)
+    return judged(case, "contact", *_contact_share(case), True, switches.untouching, needless=needless)
 
 
 def _contact_share(case: Case) -> tuple[str, float]:
@@ -183,20 +157,20 @@ def wear(case: Case) -> Finding | None:
     if case.bearing.wear is None:
         return None
     needless = "surfaces hardly touch, nothing wears: wear=None."
-    return judged(case, "wear", *_contact_share(case), True, unworn, needless=needless)
+    return judged(case, "wear", *_contact_share(case), True, switches.unworn, needless=needless)
 
 
 def piezoviscosity(case: Case) -> Finding:
     """Viscosity under pressure."""
     law = case.bearing.lubricant.pressure_law
-    alpha = PIEZOVISCOSITY.coefficient if law is None else law.coefficient
+    alpha = switches.PIEZOVISCOSITY.coefficient if law is None else law.coefficient
     return judged(
         case,
         "piezoviscosity",
         f"alpha p_max, alpha = {alpha:g} 1/Pa",
         alpha * case.numbers["peak_pressure"].max(),
         law is not None,
-        piezoviscous if law is None else isoviscous,
+        switches.piezoviscous if law is None else switches.isoviscous,
         mattering="give the lubricant pressure_law=RoelandsPressure(coefficient=...).",
         needless="pressures are low: pressure_law=None.",
     )
@@ -215,7 +189,7 @@ def _temperature_rise(case: Case) -> float:
 
 def heating(case: Case) -> Finding:
     """Change of viscosity by the film's own heat."""
-    b, coefficient = case.bearing, TEMPERATURE_COEFFICIENT
+    b, coefficient = case.bearing, switches.TEMPERATURE_COEFFICIENT
     law, is_warm = b.lubricant.temperature_law, b.thermal is not None
     is_on = is_warm and law is not None
     if law is not None:
@@ -229,8 +203,8 @@ def heating(case: Case) -> Finding:
         f"{coefficient:.3g} 1/K x rise of {rise:.3g} K",
         coefficient * rise,
         is_on,
-        isothermal if is_on else heated,
-        probe=None if is_on or case.record is None else warmer(rise, coefficient),
+        switches.isothermal if is_on else switches.heated,
+        probe=None if is_on or case.record is None else switches.warmer(rise, coefficient),
         mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, "
         "or the viscosity at its running temperature.",
         needless="the film stays at its supply temperature: thermal=None.",
@@ -256,9 +230,9 @@ def walls(case: Case) -> Finding | None:
         case,
         "walls",
         "share of the loss that steel around the film would give off",
-        numbers["rise"].max() * typical_conductance(b) / max(numbers["power_loss"].max(), 1e-300),
+        numbers["rise"].max() * switches.typical_conductance(b) / max(numbers["power_loss"].max(), 1e-300),
         False,
-        walled,
+        switches.walled,
         mattering="give FilmEnergy(conductivity=0.13) a bush=Conduction(...) and a journal=Conduction(...).",
     )
 
@@ -276,14 +250,14 @@ def temperature(case: Case) -> Finding | None:
 def shear_thinning(case: Case) -> Finding:
     """Largest shear rate against the onset of thinning."""
     law = case.bearing.lubricant.shear_law
-    onset = MULTIGRADE.onset if law is None else law.onset
+    onset = switches.MULTIGRADE.onset if law is None else law.onset
     return judged(
         case,
         "shear thinning",
         f"U / minimum film thickness over its onset, {onset:g} 1/s",
         (case.numbers["speed"] / case.numbers["minimum_gap"]).max() / onset,
         law is not None,
-        thinning if law is None else newtonian,
+        switches.thinning if law is None else switches.newtonian,
         mattering="for a multigrade oil: shear_law=CarreauShear(...); a plain mineral oil does not thin yet.",
         needless="shear rates are low: shear_law=None.",
     )
@@ -311,8 +285,8 @@ def faces_heat(case: Case) -> Finding | None:
     return judged(
         case,
         "heat of thrust faces",
-        f"{TEMPERATURE_COEFFICIENT:.3g} 1/K x rise of {rise:.3g} K in a turn",
-        TEMPERATURE_COEFFICIENT * rise,
+        f"{switches.TEMPERATURE_COEFFICIENT:.3g} 1/K x rise of {rise:.3g} K in a turn",
+        switches.TEMPERATURE_COEFFICIENT * rise,
         None,
         mattering="the faces' own heat is omitted: give thermal=LumpedThermal(...), whose balance contains it.",
     )

@@ -1,4 +1,4 @@
-"""Findings of an audit about effects, and the limit from which on each effect matters."""
+"""Audit of a bearing: its findings about effects, and the limit from which on each effect matters."""
 
 from __future__ import annotations
 
@@ -7,12 +7,16 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit.case import MATTERS, NOTHING, Case, Change
 from exudyn_ehd.joint.audit.ringing import LIMIT
-from exudyn_ehd.joint.audit.switches import Switch, turbulent
+from exudyn_ehd.joint.audit.switches import Switch, turbulent, two_dimensional
 from exudyn_ehd.joint.balance.limits import HOT
 from exudyn_ehd.joint.balance.resolution import FEWEST, STEEPEST
 from exudyn_ehd.status import InputError
+from exudyn_ehd.tables import html_table
+
+_ON = {True: "on", False: "off", None: "-"}
 
 
 class Limit(NamedTuple):
@@ -145,6 +149,125 @@ class Finding:
     change: Change | None = None
     remedy: Switch | None = field(default=None, repr=False, compare=False)
     time_share: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Audit:
+    """Table of effects: which mattered, which omitted ones would have, which are not needed; print it.
+
+    From `SteadyResult.audit` or `LubricatedJoint.audit`. Columns of the printed table: the effect; on or off (- for an
+    assumption or a number); the largest change of minimum film thickness, peak pressure and power loss at the same load
+    if the effect is switched; an indicator's value and the limit beyond which the effect may matter; share of computing
+    time; verdict; meaning of the indicator. An effect matters if it changes one of the three by more than 3 %. Advice
+    stands below the table.
+
+    Attributes
+    ----------
+    findings : tuple of Finding
+        The rows.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> audit = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8).audit()
+    >>> [finding.effect for finding in audit.neglected]
+    ['elasticity', 'journal elasticity', 'piezoviscosity', 'heating', 'shear thinning', 'mass conservation']
+    >>> better = audit.improved(bearing)
+    """
+
+    findings: tuple[Finding, ...]
+
+    @property
+    def matters(self) -> tuple[Finding, ...]:
+        """Effects that matter, whether the bearing has them or not."""
+        return tuple(f for f in self.findings if f.matters)
+
+    @property
+    def neglected(self) -> tuple[Finding, ...]:
+        """Effects that matter and are off, and assumptions or numbers that do not hold."""
+        return tuple(f for f in self.findings if f.matters and not f.on)
+
+    @property
+    def unneeded(self) -> tuple[Finding, ...]:
+        """Effects that take time and do not matter."""
+        return tuple(f for f in self.findings if f.unneeded)
+
+    def __getitem__(self, effect: str) -> Finding:
+        """The finding about an effect, by its name."""
+        for finding in self.findings:
+            if finding.effect == effect:
+                return finding
+        raise KeyError(f"Audit: no finding about {effect!r}; there are {', '.join(f.effect for f in self.findings)}.")
+
+    def __repr__(self) -> str:
+        said = [
+            f"{what} {', '.join(f.effect for f in found)}"
+            for what, found in (("neglected", self.neglected), ("unneeded", self.unneeded))
+            if found
+        ]
+        return f"<Audit of {len(self.findings)} effects and assumptions: {'; '.join(said) or 'nothing to change'}>"
+
+    def _rows(self) -> list[tuple[str, ...]]:
+        head = ("effect", "", "change", "value", "limit", "time", "verdict", "indicator")
+        return [head, *(_row(finding) for finding in self.findings)]
+
+    def _repr_html_(self) -> str:
+        return html_table(self._rows())
+
+    def __str__(self) -> str:
+        rows = self._rows()
+        widths = [max(len(row[k]) for row in rows) for k in range(7)]
+        lines = ["  ".join(text.ljust(w) for text, w in zip(row, (*widths, 0))).rstrip() for row in rows]
+        lines.insert(1, "-" * max(map(len, lines)))
+        advice = [f"{f.effect}: {f.advice}" for f in self.findings if f.advice]
+        changes = [f"{f.effect}: {f.change}" for f in self.findings if f.change is not None and f.matters]
+        return "\n".join([*lines, *([""] if advice else []), *advice, *([""] if changes else []), *changes])
+
+    def improved(self, bearing: JournalBearing) -> JournalBearing:
+        """The bearing with missing effects switched on, with typical numbers, and unneeded ones switched off.
+
+        It follows every advice that the bearing's options allow; an arc takes neither heat nor surfaces that deflect.
+        The new numbers are typical ones: replace them by yours. Effects act on each other: compute the film or the run
+        anew with the result and audit it, until nothing is left to change.
+
+        Parameters
+        ----------
+        bearing : JournalBearing
+            The one that was audited.
+
+        Returns
+        -------
+        JournalBearing
+
+        Raises
+        ------
+        InputError
+            If a missing effect is not supported by the bearing's film model, closure or thrust faces.
+        """
+        remedies = [finding.remedy for finding in self.findings if finding.remedy is not None]
+        if remedies and isinstance(bearing.film, ImpedanceMap):
+            bearing = two_dimensional(bearing)
+        # turbulence leaves out laws of laminar films: where both are missing, the next audit says so
+        for remedy in sorted(remedies, key=lambda remedy: remedy is not turbulent):
+            try:
+                bearing = remedy(bearing)
+            except InputError:
+                if bearing.turbulence is None and not bearing.bore_arcs:
+                    raise
+        return bearing
+
+
+def _row(f: Finding) -> tuple[str, ...]:
+    verdict = (
+        "neglected" if f.matters and f.on is False else "matters" if f.matters else "unneeded" if f.unneeded else ""
+    )
+    if f.matters and f.on is None:
+        verdict = "beyond limit"
+    share = "" if f.time_share is None else f"{f.time_share:.0%}"
+    change = "" if f.change is None else f"{f.change.size:.1%}" if f.change.found else "no film"
+    limit = f"{'<' if f.below else '>'} {f.threshold:.3g}"
+    return f.effect, _ON[f.on], change, f"{f.value:.3g}", limit, share, verdict, f.indicator
 
 
 def judged(

@@ -262,8 +262,7 @@ def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float
         surface and largest departure of the surfaces from cylinders, m), ``compliance`` (deflection of steel around the
         film over the peak pressure, m/Pa).
     """
-    film = evaluation.film
-    assert film is not None
+    film = evaluation.solved
     q, s, g, b, w = evaluation.quantities(), film.solver, film.grid, model.bearing, film.journal
     weight = g.weight / g.weight.sum()
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed

@@ -16,18 +16,14 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
+from exudyn_ehd.status import SMALL, FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
 
 # Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
 HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
-# Depth in a rigid bore that no contact explains, over the clearance.
-DEEPEST = 1.0
 PRESSED_THROUGH = "the journal was pressed through its contact by more than the clearance"
 # K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
 # beyond any oil, so that a film of one is a wrong answer.
 HOT, HOTTEST = 423.15, 700.0
-# K, round-off of temperatures.
-ROUNDING = 1e-6
 COOLER = (
     "let more oil flow through (end pressures, supply, clearance), give the thermal effect heat transfer to the "
     "surfaces (housing_conductance, bush_coefficient, journal_coefficient), or take a thinner oil, less load or speed."
@@ -80,7 +76,7 @@ def warn_of_starved(bearing: JournalBearing, reservoirs: Reservoirs | None, wher
 
 def refuse_pressed_through(bearing: JournalBearing, gap: float, where: str) -> None:
     """Refuse in the name of ``where`` a journal so deep in a rigid bore, ``gap`` in m, that no contact explains it."""
-    if getattr(bearing, "yielding", None) is None and math.isfinite(gap) and gap < -DEEPEST * bearing.radial_clearance:
+    if getattr(bearing, "yielding", None) is None and math.isfinite(gap) and gap < -bearing.radial_clearance:
         raise FilmError(
             f"{where}: {PRESSED_THROUGH}, minimum film thickness {gap:.3g} m; check load, eccentricity and units, or "
             "give the contact more stiffness (RegularisedWall.pressure)."
@@ -135,7 +131,7 @@ def outside_table(film: object) -> str:
         return ""
     T = T if film.walls is None else film.walls.across_film(T)
     low, high = float(np.min(T)), float(np.max(T))
-    if limits[0] - ROUNDING <= low and high <= limits[1] + ROUNDING:
+    if limits[0] - SMALL <= low and high <= limits[1] + SMALL:
         return ""
     return (
         f"the film's temperatures reach from {low:.4g} to {high:.4g} K, but the oil's {type(law).__name__} from "

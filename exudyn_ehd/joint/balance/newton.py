@@ -25,20 +25,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.linalg import norm
 
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, outside_table, require_oil_bears, seized
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.seams import seen_by_faces
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
+from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, seen_by_faces
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel
-
 
 # Change of the temperature that counts as settled, as a share of the film's rise over its coldest source; where
 # round-off of hot fields keeps changes from falling further, `ROUNDING` does.
@@ -137,7 +132,7 @@ class Balance:
         self.thermal = model.effects.thermal if held is None else None
         cold = np.zeros(0) if self.thermal is None else self.thermal.initial_temperature(model.grid.shape)
         self.cold = np.asarray(cold, dtype=float)
-        self.count, self.first = 0, model.parts.evaluations.count
+        self.count, self.first = 0, model.parts.evaluations
         self.strongest = (0.0, 0.0)
 
     def temperature_of(self, near: History | None) -> np.ndarray:
@@ -221,7 +216,7 @@ class Balance:
         past: list[tuple[np.ndarray, np.ndarray]] = []
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
-            spent = self.model.parts.evaluations.count - self.first > LARGEST_EFFORT
+            spent = self.model.parts.evaluations - self.first > LARGEST_EFFORT
             if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
             if idle > PATIENCE:
@@ -246,7 +241,7 @@ class Balance:
             idle = 0 if self.error(here) <= FALLS * smallest else idle + 1
             if self.error(here) < smallest:
                 best, smallest = here, self.error(here)
-        if here.film.serial != self.model.parts.evaluations.count:
+        if here.film.serial != self.model.parts.evaluations:
             here = self.at(here.motion, here.temperature)
         return here
 

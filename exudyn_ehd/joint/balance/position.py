@@ -30,7 +30,6 @@ INSIDE = 0.3
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
 # Smallest gap over the clearance below which a journal lies on the edge of an arc.
 CLOSED = 0.01
-QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 class LoadSearch(Balance):
@@ -52,7 +51,7 @@ class LoadSearch(Balance):
         FilmError
             If none was found.
         """
-        self.first, carried = self.model.parts.evaluations.count, 0.0
+        self.first, carried = self.model.parts.evaluations, 0.0
         self.nearest: Place | None = None
         start = self.temperature_of(None if near is None else near.film.history)
         found = self.attempt(motion, start)
@@ -204,10 +203,10 @@ class LineSearch(LoadSearch):
         turned[:2] = e, 0.0
         place = super().at(turned, temperature)
         force = place.unbalance - self.share * self.load
-        across = QUARTER_TURN @ (force / e if e > 0.0 else place.slope[:, 0])
+        x, y = force / e if e > 0.0 else place.slope[:, 0]
         back = turning(motion)
         place.motion[:2], place.unbalance = motion[:2], self.share * self.load + back @ force
-        place.slope = back @ np.column_stack((place.slope[:, 0], across)) @ back.T
+        place.slope = back @ np.column_stack((place.slope[:, 0], (-y, x))) @ back.T
         return place
 
 
@@ -234,7 +233,8 @@ def require_turning(bearing: JournalBearing, load: np.ndarray, tilt: np.ndarray)
 def turning(motion: np.ndarray) -> np.ndarray:
     """Rotation (2, 2) from the direction x to that of a motion's eccentricity."""
     angle = math.atan2(motion[1], motion[0])
-    return math.cos(angle) * np.eye(2) + math.sin(angle) * QUARTER_TURN
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s], [s, c]])
 
 
 def continued(

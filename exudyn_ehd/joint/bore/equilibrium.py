@@ -14,8 +14,6 @@ the tau over time h that the last one's success allows, and Newton's method from
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -42,8 +40,8 @@ class Elasticity:
 
     Parameters
     ----------
-    make : function
-        Returns the matrix (k, k), N/m; called when it is first needed.
+    stiffness : (k, k) array
+        K, N/m.
     load : (k,) array or float
         Generalised force on the bore besides the film's, N.
 
@@ -60,20 +58,15 @@ class Elasticity:
     failure = ""
     straight = False
 
-    def __init__(self, make: Callable[[], np.ndarray], load: np.ndarray | float = 0.0) -> None:
-        self._make, self.load, self.reached = make, load, (0.0, np.zeros(0))
-
-    @cached_property
-    def stiffness(self) -> np.ndarray:
-        """K (k, k), N/m."""
-        return self._make()
+    def __init__(self, stiffness: np.ndarray, load: np.ndarray | float = 0.0) -> None:
+        self.stiffness, self.load, self.reached = stiffness, load, (0.0, np.zeros(0))
 
     def force(self, q: np.ndarray) -> np.ndarray:
         """Generalised force (k,) that holds the bore at q, N."""
         return self.stiffness @ q
 
-    def solve(self, q: np.ndarray, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r), K the stiffness at q."""
+    def solve(self, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
+        """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r)."""
         return np.linalg.solve(self.stiffness - softening, rhs)
 
     def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
@@ -95,10 +88,9 @@ class Elasticity:
 class BoreEvaluation(Protocol):
     """A film on a bore with given coordinates."""
 
-    @property
-    def status(self) -> Status: ...
-    @property
-    def bore(self) -> BoreState: ...
+    status: Status
+    bore: BoreState
+
     def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
         """d (wrench, Q) to the motion, and ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k)."""
 
@@ -106,8 +98,8 @@ class BoreEvaluation(Protocol):
 class NodalEvaluation(BoreEvaluation, Protocol):
     """A film on the nodes of a bore."""
 
-    @property
-    def motion(self) -> np.ndarray: ...
+    motion: np.ndarray
+
     def tangent(self) -> np.ndarray:
         """d (wrench, Q) / d motion (6 + k, 10 + 2 k)."""
 
@@ -124,10 +116,9 @@ Result = TypeVar("Result", bound=BoreEvaluation, covariant=True)
 class FilmOnBore(Protocol[Result]):
     """A bearing model whose bore has coordinates, and what resists them."""
 
-    @property
-    def bore(self) -> Bore: ...
-    @property
-    def elasticity(self) -> Elasticity: ...
+    bore: Bore
+    elasticity: Elasticity
+
     def evaluate(self, motion: np.ndarray, history: History | None, step: float, spin: float) -> Result:
         """The film at a motion (10 + 2 k,)."""
 
@@ -217,7 +208,7 @@ class Newton(Generic[Result]):
             if error <= tolerance * scale or (error <= 1e-8 * scale and error > 0.5 * last):
                 return evaluation
             softening = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
-            step = elasticity.solve(q, softening / held, residual / held)
+            step = elasticity.solve(softening / held, residual / held)
             last = error
             for _ in range(1 if straight else 12):
                 full[MOTION_SIZE : MOTION_SIZE + k] = q + step
@@ -237,17 +228,17 @@ class Newton(Generic[Result]):
         return None
 
 
-def condensed_tangent(tangent: np.ndarray, elasticity: Elasticity, coordinates: np.ndarray) -> np.ndarray:
+def condensed_tangent(tangent: np.ndarray, elasticity: Elasticity) -> np.ndarray:
     """d wrench / d motion (6, 10) with a massless bore in equilibrium, to first order in the rates.
 
-    From ``tangent`` (6 + k, 10 + 2 k) at the bore's ``coordinates`` (k,): with A = (K - dQ/dq)^-1 the bore follows
+    From ``tangent`` (6 + k, 10 + 2 k): with A = (K - dQ/dq)^-1 the bore follows
     the journal as ``dq = A Q_m dm``; its rate follows the pose's rate likewise and acts through squeeze on wrench and
     bore.
     """
-    T, k, M = tangent, coordinates.size, MOTION_SIZE
+    T, k, M = tangent, len(elasticity.stiffness), MOTION_SIZE
     softening = T[6:, M : M + k]
-    follow = elasticity.solve(coordinates, softening, T[6:, :M])
+    follow = elasticity.solve(softening, T[6:, :M])
     rate = np.zeros_like(follow)
     rate[:, 4:8] = follow[:, :4]
-    second = elasticity.solve(coordinates, softening, T[6:, M + k :] @ rate)
+    second = elasticity.solve(softening, T[6:, M + k :] @ rate)
     return T[:6, :M] + T[:6, M : M + k] @ (follow + second) + T[:6, M + k :] @ rate

@@ -18,7 +18,14 @@ from numpy.linalg import LinAlgError
 from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import SuperLU
 
-from exudyn_ehd.joint.bore.equilibrium import SETTLING_TOLERANCE, Elasticity, FilmOnBore, Newton, NodalEvaluation
+from exudyn_ehd.joint.bore.equilibrium import (
+    SETTLING_TOLERANCE,
+    SMALLEST_PART,
+    Elasticity,
+    FilmOnBore,
+    Newton,
+    NodalEvaluation,
+)
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.solid.linear import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
@@ -30,7 +37,6 @@ ROUNDING = 1e-8
 SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
 # Corrections by one K, or states at which the solid is made linear in a search, and parts of a step that lead to one.
 CORRECTIONS, HALVINGS = 40, 8
-SMALLEST_PART = 0.05
 # Unit loads that the solid answers at a time.
 COLUMNS = 256
 # Stiffness of held nodes of the bore, times the largest stiffness of the others.
@@ -59,7 +65,7 @@ class SolidElasticity(Elasticity):
     """
 
     def __init__(self, solid: TotalLagrange) -> None:
-        super().__init__(self._linearise)
+        super().__init__(np.zeros((0, 0)))
         mesh = solid.mesh
         self.solid = solid
         free = np.ones(mesh.nodes.shape, dtype=bool)

@@ -25,7 +25,7 @@ class Powers(NamedTuple):
     stored : what a liner and touching surfaces take up
     loss : what stays, without what the film does to a flexible bore
 
-    See `exudyn_ehd.joint.model.quantities.quantities`.
+    See `exudyn_ehd.joint.model.results.quantities`.
     """
 
     friction_torque: float
@@ -57,11 +57,11 @@ def powers(film: SolvedFilm) -> Powers:
 
 
 def stored_power(film: SolvedFilm) -> float:
-    """Power that a liner and touching surfaces take up, W; see `exudyn_ehd.joint.model.quantities.quantities`."""
+    """Power that a liner and touching surfaces take up, W; see `exudyn_ehd.joint.model.results.quantities`."""
     p, limited, scaled = film.parts, film.limited, 0.0
     if p.liner is not None:
         scaled = p.liner.stored_power()
-        if p.liner.limited:
+        if p.liner.limiter is not None:
             contact = p.liner.contact_pressure / film.scales.pressure
             scaled += _by_touching(film, p.liner.gap_slopes.rate_t, p.liner.true_rate, contact)
     elif limited is not None:
@@ -128,11 +128,11 @@ class OilFlows:
     def __init__(self, film: SolvedFilm, carry_over: float) -> None:
         s, y, supply = film.solver, film.solver.system, film.parts.supply
         conserves, fixed = s.closure.conserves_mass, film.grid.fixed
-        fill, fx, fz, carried, oil = s.fill if conserves else s.ones, y.fx, y.fz, s.carried, film.parts.compressible
-        if oil is not None:
+        fill, fx, fz, carried = s.fill if conserves else s.ones, y.fx, y.fz, s.carried
+        if s.law is not None:
             # these flows hold the upstream film fraction and the links' density already
-            fx, fz, _ = oil.couette_flows()
-            fill, carried = oil.rho * fill, s.ones
+            fx, fz, _ = s.couette_flows()
+            fill, carried = s.rho * fill, s.ones
         stepped = conserves and y.inverse_step > 0.0 and not y.instant
         self.rate = content_rate(s.H, s.H_t, fill, y.mass_old, y.inverse_step if stepped else 0.0, s.squeeze)
         # in the middle of the step: the gap's half of a step on from its start as the rates have it
@@ -241,10 +241,10 @@ def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float
     Oil that leaves the bore at an end flows into the gap between bush and collar. A face takes that in first, and fresh
     oil in place of what it lacks there and at its outer radius.
     """
-    flows, oil = OilFlows(film, carry_over), film.parts.compressible
-    P, cavity = film.oil.P, np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
-    pressure = P - cavity if oil is None else oil.flow_work(P) - oil.flow_work(cavity)
-    entering = flows.outside - film.solver.area * flows.rate
+    flows, s = OilFlows(film, carry_over), film.solver
+    cavity = np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
+    pressure = dropped(film) - (cavity if s.law is None else s.flow_work(cavity))
+    entering = flows.outside - s.area * flows.rate
     for area in [*flows.areas, *flows.lines]:
         entering[area] += flows.found[area] - flows.lost[area]
     work = float(np.sum(pressure * entering))
@@ -282,7 +282,7 @@ def heat_of(film: SolvedFilm) -> np.ndarray:
     if film.pressing is not None and rubbed > 0.0:
         friction = np.zeros(film.grid.shape)
         for (coefficient, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):
-            g_theta, g_z, _ = film.slip(transition)
+            (g_theta, g_z), _ = film.slip(transition)
             friction += coefficient * (g_theta * (R * w.omega) + g_z * w.axial_speed) * P * s.area
         # contacts that press on an edge: as much as the integrals of the loads say, which count it finely
         heat += friction * (rubbed / friction.sum())
@@ -291,8 +291,7 @@ def heat_of(film: SolvedFilm) -> np.ndarray:
 
 def dropped(film: SolvedFilm) -> np.ndarray:
     """Return the energy per scaled flow at the vertices (n, m): pressure, or flow work of a compressible film."""
-    oil = film.parts.compressible
-    return film.oil.P if oil is None else oil.flow_work(film.oil.P)
+    return film.oil.P if film.solver.law is None else film.solver.flow_work(film.oil.P)
 
 
 def sheared(film: SolvedFilm) -> np.ndarray:

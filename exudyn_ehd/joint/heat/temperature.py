@@ -6,8 +6,10 @@ solved film follows from its flows: banded system, solution and balance.
 
 from __future__ import annotations
 
+import abc
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +23,7 @@ from exudyn_ehd.film.heat.energy import ViscosityField, through_surfaces, transp
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Sump, Walls, known_supply
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
-from exudyn_ehd.joint.solved_film import SolvedFilm
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 
 
 class BandSolver:
@@ -62,15 +64,47 @@ def temperature_of(film: SolvedFilm) -> np.ndarray:
     return np.asarray(film.temperature)
 
 
-class OilTemperature:
-    """Common part of both kinds of film temperature."""
+def viscosity_ratio(oil: Lubricant, temperature: Field) -> np.ndarray:
+    """Viscosity of an oil at a temperature, K, over that at its own temperature."""
+    if (law := oil.temperature_law) is None:
+        return np.ones_like(np.asarray(temperature, dtype=float))
+    return law.viscosity(temperature, oil.density) / float(law.viscosity(float(oil.temperature), oil.density))
+
+
+class OilTemperature(abc.ABC):
+    """Temperature of the film: part of the history of accepted steps, and of the viscosity of the next one.
+
+    The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it
+    will become.
+    """
 
     initial_leaving: np.ndarray | None = None
 
+    @abc.abstractmethod
+    def initial_temperature(self, shape: tuple[int, int]) -> Field:
+        """K, at the start of a motion, on a grid of this shape."""
+
+    @abc.abstractmethod
+    def set_viscosity(self, temperature: Field) -> float:
+        """Bring the effect's viscosity field to a temperature, K.
+
+        Returns the viscosity over the reference that the whole film shares.
+        """
+
+    @abc.abstractmethod
+    def advance(self, film: SolvedFilm) -> Field:
+        """Temperature at the end of a solved film's step, K."""
+
+    @abc.abstractmethod
+    def balance(self, film: SolvedFilm, temperature: Any) -> dict[str, float]:
+        """Terms of the heat balance, W, of a step or a steady state that ends at a temperature."""
+
+    @abc.abstractmethod
+    def steady_temperature(self, film: SolvedFilm) -> Field:
+        """Temperature in balance with the heat of a solved film, K; not finite if there is none."""
+
     def __init__(self, spec: LumpedThermal | FilmEnergy, lubricant: Lubricant) -> None:
-        self.law, self.density = lubricant.temperature_law, lubricant.density
-        if self.law is not None:
-            self.reference = float(self.law.viscosity(float(lubricant.temperature), self.density))
+        self.lubricant = lubricant
         self.supply, supply = known_supply(spec), spec.supply_temperature
         self.sump = supply if isinstance(supply, Sump) else None
         self.initial_sump = None if self.sump is None else self.sump.initial_temperature or self.supply
@@ -94,18 +128,27 @@ class OilTemperature:
         return known + sump.conductance / total * (self.supply - known), total
 
     def split(self, temperature: Field) -> tuple[Field, Walls | None]:
-        """The film's own temperature and that of walls, of which there are none."""
+        """The film's own part of a temperature, K, as a history has it, and that of walls and surfaces."""
         return temperature, None
 
     def leaving(self, film: SolvedFilm, temperature: Field) -> np.ndarray | None:
         """Temperature (2,) of the oil that leaves a film at both ends, K; None where all of it has one."""
         return None
 
-    def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
-        """mu(T) / mu at the lubricant's own temperature."""
-        if self.law is None:
-            return np.ones_like(np.asarray(temperature, dtype=float))
-        return self.law.viscosity(temperature, self.density) / self.reference
+    def first_memory(self, shape: tuple[int, int]) -> History:
+        """Temperatures at the start of a motion: of the film, the sump, and the oil that leaves towards end faces."""
+        T = self.initial_temperature(shape)
+        return History(temperature=T, sump=self.initial_sump, leaving=self.initial_leaving)
+
+    def memory(self, film: SolvedFilm) -> History:
+        """Temperatures at the end of a solved film's step: those of `first_memory`."""
+        T = self.advance(film)
+        sump = None if self.sump is None else self.balance(film, T)["supply_temperature"]
+        return History(temperature=T, sump=sump, leaving=None if film.beside is None else self.leaving(film, T))
+
+    def viscosity_ratio(self, temperature: Field) -> np.ndarray:
+        """Viscosity of the oil at a temperature, K, over that at its own temperature."""
+        return viscosity_ratio(self.lubricant, temperature)
 
     def follows(self, T: Field, heat: Field, store: Field) -> Field:
         """Return the decrease of the heat per kelvin that a step raises T; heat, W, and store, W/K, are scaled alike.

@@ -301,11 +301,9 @@ class Growth:
     """Growth of the walls as a gap term: uniform, with the temperatures at the start of a step."""
 
     def __init__(self, thermal: FilmTemperature) -> None:
-        self.thermal, self.last = thermal, np.full(thermal.shape, np.nan)
+        self.thermal = thermal
 
     def field(self, history: History | None) -> np.ndarray:
         """Scaled addition to the gap (n, m)."""
         opening = self.thermal.opening(self.thermal.state_of(history)) / self.thermal.clearance
-        if self.last[0, 0] != opening:
-            self.last = np.full(self.thermal.shape, opening)
-        return self.last
+        return np.full(self.thermal.shape, opening)

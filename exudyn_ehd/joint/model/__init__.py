@@ -2,14 +2,11 @@
 
 Module map
 ----------
-build           model from a description; its kernels compiled before the first step
-build_flexible  the same for flexible bushes
-rigid           rigid journal in a rigid bore
-centre          one-sided derivatives at the exact centre
-flexible        elastic bore
-impedance       fitted map
-effects         the only place that asks whether an effect is present; grid, solver and buffers
-loads           pressure and viscosity by the oil's laws; integrals and wrench
-quantities      scalars of a state
-fields          fields of a state
+build      model from a description, turning journals; kernels compiled before the first step
+rigid      rigid journal in a rigid bore; one-sided derivatives at the exact centre
+flexible   elastic bore
+impedance  fitted map
+effects    what an effect must offer, and the only place that asks which are present; grid, solver and buffers
+loads      integrals of pressure and shear, and the wrench
+results    scalars and fields of a state
 """

@@ -1,16 +1,204 @@
-"""Model from a bearing's description, and compilation of its kernels before a study or a run."""
+"""Model from a bearing's description, and compilation of its kernels before a study or a run.
+
+Flexible surfaces follow from a bush, an elastic journal or both; the modes of an `FEJournal` turn under the film, see
+`exudyn_ehd.solid.journal.turning`.
+"""
 
 from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.joint.model.effects import collect_effects
+from exudyn_ehd.joint.bore.equilibrium import Elasticity
+from exudyn_ehd.joint.bore.shapes import Bore, ModalBore, NodalBore
+from exudyn_ehd.joint.bore.solid import SolidElasticity
+from exudyn_ehd.joint.model.effects import Effects, collect_effects
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.status import InputError
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History, JournalMotion, SolvedFilm
+from exudyn_ehd.joint.tangent.bore import elastic_tangent
+from exudyn_ehd.solid.bush import ANCFBush, ModalBush, bore_modes
+from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+from exudyn_ehd.solid.journal.modes import ElasticJournal, journal_modes
+from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
+from exudyn_ehd.status import InputError, Status
+
+
+@dataclasses.dataclass(eq=False)
+class TurningEvaluation(ElasticEvaluation):
+    """One film evaluation on a journal whose modes turn under it.
+
+    ``wrench`` has the moment of the pressure on the deflected journal about its axis; ``bore`` is in the body's modes,
+    ``film.bore`` in the waves that stand, see `exudyn_ehd.solid.journal.turning`.
+
+    Attributes
+    ----------
+    turn : (K, k) array, float, bool
+        T, the speed that carries the shape round, rad/s, and whether it is the journal's.
+    moment : float
+        Nm.
+    """
+
+    model: TurningModel = dataclasses.field(repr=False)
+    turn: tuple[np.ndarray, float, bool] = dataclasses.field(repr=False, default=(np.zeros((0, 0)), 0.0, True))
+    moment: float = 0.0
+
+    def quantities(self) -> dict[str, float]:
+        """Return `ElasticEvaluation.quantities`; torques contain the pressure's moment on the deflected journal."""
+        found = super().quantities()
+        if self.film is not None:
+            found["friction_torque"] += self.moment
+            found["friction_torque_bush"] = -float(self.wrench[5])
+        return found
+
+    @cached_property
+    def derivatives(self) -> np.ndarray:
+        """d (wrench, Q) / d (motion, angle of the journal) (6 + k, 10 + 2 k + 1); nan without a film."""
+        film, k = self._current(), self.bore.coordinates.size
+        if film is None or film.bore is None:
+            return np.full((6 + k, MOTION_SIZE + 2 * k + 1), np.nan)
+        turning, (T, omega, turns), M = self.model.turning, self.turn, MOTION_SIZE
+        r, r_t, Q = film.bore.coordinates, film.bore.rates, film.bore.load
+        turned, size = turning.turned(r), r.size
+        change = np.zeros((M + 2 * size, M + 2 * k + 1))
+        change[:M, :M], place, rate = np.eye(M), change[M : M + size], change[M + size :]
+        place[:, M : M + k], place[:, -1] = T, turned
+        rate[:, M : M + k], rate[:, M + k : -1], rate[:, -1] = omega * turning.turned(T), T, turning.turned(r_t)
+        rate[:, 8] = turned * turns
+        by_film = elastic_tangent(film, self.model.bore, (1.0, 0.0), (0.0, 1.0)) @ change
+        back = turning.turned(Q)
+        out = np.concatenate((by_film[:6], T.T @ by_film[6:]))
+        out[6:, -1] -= T.T @ back
+        axis, by_tilt = _axis(self.motion)
+        out[3:6] += np.multiply.outer(axis, turned @ by_film[6:] - back @ place)
+        out[3:6, 2:4] += self.moment * by_tilt
+        return out
+
+    def _tangent(self, *combinations: tuple[float, float]) -> np.ndarray:
+        d, k, M = self.derivatives, self.bore.coordinates.size, MOTION_SIZE
+        blocks = [a * d[:, M : M + k] + b * d[:, M + k : M + 2 * k] for a, b in combinations]
+        return np.concatenate((d[:, :M], *blocks), axis=1)
+
+
+class TurningModel(ElasticBearingModel):
+    """Film on a journal whose modes turn under it; ``motion`` (10 + 2 k,) has the modes, ``spin`` the journal's angle.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    turning : TurningJournal
+    start_angle, effects
+        As in `BearingModel`.
+
+    Attributes
+    ----------
+    turns : bool
+        False for shapes that stand in the joint's frame, as `evaluate_steady` looks for.
+    """
+
+    def __init__(
+        self, bearing: JournalBearing, turning: TurningJournal, start_angle: float = 0.0, effects: Effects | None = None
+    ) -> None:
+        self.turning, self.turns = turning, True
+        super().__init__(
+            bearing,
+            lambda grid: ModalBore(None, grid, turning.waves),
+            elasticity=Elasticity(turning.surface.stiffness_matrix),
+            start_angle=start_angle,
+            effects=effects,
+        )
+        self.needs_spin = True
+        self._coordinates = np.zeros(self.size)
+
+    @property
+    def size(self) -> int:
+        """k, the number of the body's modes."""
+        return self.turning.count
+
+    def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
+        """Take over a motion (10 + 2 k,), in waves; with (10,) the journal is undeformed and its modes at rest."""
+        given, k = np.zeros(MOTION_SIZE + 2 * self.size), self.size
+        given[: np.size(motion)] = motion
+        q, q_t = given[MOTION_SIZE : MOTION_SIZE + k], given[MOTION_SIZE + k :]
+        T, omega = self.turning.map(spin), float(given[8]) * self.turns
+        r = T @ q
+        journal = super()._journal(
+            np.concatenate((given[:MOTION_SIZE], r, T @ q_t + omega * self.turning.turned(r))), spin
+        )
+        self._coordinates, self._turn, self._given = q, (T, omega, self.turns), given
+        return journal
+
+    def _result(
+        self, status: Status, journal: JournalMotion, iterations: int, gap: float, film: SolvedFilm | None = None
+    ) -> TurningEvaluation:
+        found = super()._result(status, journal, iterations, gap, film)
+        waves, (T, _, _), given, k = found.bore, self._turn, self._given, self.size
+        moment, whole = float(waves.load @ self.turning.turned(waves.coordinates)), found.wrench.copy()
+        whole[3:] += moment * _axis(given)[0]
+        q, q_t = given[MOTION_SIZE : MOTION_SIZE + k], given[MOTION_SIZE + k :]
+        turned = {"motion": given, "wrench": whole, "bore": BoreState(q, q_t, waves.displacement, T.T @ waves.load)}
+        return TurningEvaluation(**vars(found) | turned, turn=self._turn, moment=moment)
+
+    def evaluate_steady(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> ElasticEvaluation:
+        """Evaluate `ElasticBearingModel.evaluate_steady` with a deflection at rest under the turning journal."""
+        turns, self.turns = self.turns, False
+        try:
+            return super().evaluate_steady(motion, history, step, spin)
+        finally:
+            self.turns = turns
+
+
+def _axis(motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Axis (3,) of the journal and its derivative (3, 2) to the slopes."""
+    slope = np.array([motion[2], motion[3], 1.0])
+    size = float(np.linalg.norm(slope))
+    return slope / size, (np.eye(3) - np.multiply.outer(slope, slope) / size**2)[:, :2] / size
+
+
+def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects) -> ElasticBearingModel:
+    """Model of a bearing with a ``bush`` or a ``journal``."""
+    bush = bearing.bush
+    if isinstance(bush, FEBore):
+        raise InputError(
+            "JournalBearing.bush=FEBore(...) takes its modes from the body that is the joint's housing: give "
+            "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by "
+            "itself, take a ModalBush(...)."
+        )
+    if isinstance(bearing.journal, FEJournal):
+        raise InputError(
+            "JournalBearing.journal=FEJournal(...) takes its modes from the body that is the joint's journal: give "
+            "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[1]; for other bodies, and for a bearing by "
+            "itself, take an ElasticJournal(...)."
+        )
+    if isinstance(bearing.journal, TurningJournal):
+        return TurningModel(bearing, bearing.journal, start_angle, effects)
+    bore, elasticity = _bore_and_elasticity(bearing)
+    return ElasticBearingModel(bearing, bore, elasticity=elasticity, start_angle=start_angle, effects=effects)
+
+
+def _bore_and_elasticity(bearing: JournalBearing) -> tuple[Callable[[FilmGrid], Bore], Elasticity]:
+    """A function that makes the bore on a film's grid, and what resists its coordinates."""
+    bush, pin = bearing.bush, bearing.journal
+    if isinstance(bush, ModalBush | None):
+        assert isinstance(pin, ElasticJournal | None)
+        modes = None if bush is None else bore_modes(bush, bearing.length)
+        journal = None if pin is None else journal_modes(pin, bearing.journal_radius, bearing.length)
+        stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
+        return lambda grid: ModalBore(modes, grid, journal), Elasticity(np.diag(stiffness))
+    if isinstance(bush, ReducedBore):
+        return lambda grid: ModalBore(bush, grid), Elasticity(bush.stiffness_matrix)
+    assert isinstance(bush, ANCFBush)
+    mesh = bush.build_mesh()
+    return lambda grid: NodalBore(mesh.bore, grid), SolidElasticity(bush.solid(mesh))
 
 
 def compile_kernels(model: BearingModel) -> None:
@@ -33,9 +221,6 @@ def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingMod
     if (bearing.bush is None and bearing.journal is None) or effects.liner is not None:
         model = BearingModel(bearing, start_angle=start_angle, effects=effects)
     else:
-        # imported here: a rigid bearing needs no solid
-        from exudyn_ehd.joint.model.build_flexible import elastic_model
-
         model = elastic_model(bearing, start_angle, effects)
     compile_kernels(model)
     return model

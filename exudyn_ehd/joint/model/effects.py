@@ -6,38 +6,84 @@ Beside them grid, solver and buffers of a bearing model: the parts that stay fro
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import reduce
+from typing import Protocol
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.arcs import lobe_term, mixing_grooves
-from exudyn_ehd.film.grid import Directions, FilmGrid
+from exudyn_ehd.film.arcs import LobeTerm, lobe_term, mixing_grooves
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import LumpedThermal, known_supply
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.models import film_grid, film_solver
-from exudyn_ehd.film.reynolds.links import LinkLaw
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkLaw, ShearFactor, ShearProduct
 from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, AverageGap
-from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, LandContact, WallContact
+from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, GapLimiter, WallContact
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import RoughFlow
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
-from exudyn_ehd.joint.heat.temperature import LumpedTemperature
-from exudyn_ehd.joint.seams import (
-    Effects,
-    FluxEffect,
-    GapLimiter,
-    GapTerm,
-    ShearFactor,
-    ShearProduct,
-    ThermalEffect,
-)
-from exudyn_ehd.joint.solved_film import ContactFields, Evaluations, FilmParts, History, LimiterFields, SolvedFilm
+from exudyn_ehd.joint.heat.temperature import LumpedTemperature, OilTemperature
+from exudyn_ehd.joint.solved_film import ContactFields, FilmParts, History, LimiterFields, SolvedFilm
+
+
+class GapTerm(Protocol):
+    """Adds to the gap of the rigid surfaces; must not depend on the motion."""
+
+    def field(self, history: History | None) -> np.ndarray:
+        """Scaled addition to the gap at the vertices (n, m) for the history at the start of the step."""
+
+
+class Wear(GapTerm, Protocol):
+    """A depth that the contact pressure adds to the gap, step by accepted step."""
+
+    def grown(self, film: SolvedFilm) -> np.ndarray:
+        """Scaled depth (n, m) at the end of a solved film's step."""
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Effects of a bearing model in addition to the plain film; empty by default.
+
+    Attributes
+    ----------
+    gap_terms : tuple of GapTerm
+    limiter : GapLimiter or None
+    contacts : tuple of Contact
+    flux : tuple of FluxEffect
+    pressure_law : PressureTransform or None
+    shear_factor : ShearFactor or None
+    thermal : OilTemperature or None
+    density : CompressibleLaw or None
+        Density law of a compressible film; then also the ``pressure_law``.
+    wear : Wear or None
+        Grows with the pressure of the contacts; one of ``gap_terms``.
+    liner : ElasticLiner or None
+    lobes : LobeTerm or None
+        Shape of arcs; one of ``gap_terms``.
+    uneven_drag : bool
+        True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.patir_cheng`.
+    """
+
+    gap_terms: tuple[GapTerm, ...] = ()
+    limiter: GapLimiter | None = None
+    contacts: tuple[Contact, ...] = ()
+    flux: tuple[FluxEffect, ...] = ()
+    pressure_law: PressureTransform | None = None
+    shear_factor: ShearFactor | None = None
+    thermal: OilTemperature | None = None
+    density: CompressibleLaw | None = None
+    wear: Wear | None = None
+    liner: ElasticLiner | None = None
+    lobes: LobeTerm | None = None
+    uneven_drag: bool = False
 
 
 def _supply_map(bearing: JournalBearing, grid: FilmGrid) -> SupplyMap | None:
@@ -81,7 +127,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     mixing = [*(mixing_grooves(grid) if bearing.bore_arcs else ()), *(() if supply is None else supply.masks)]
     touching: list[Contact] = list(effects.contacts)
     if supply is not None:
-        touching = [LandContact(contact, supply.land) for contact in effects.contacts]
+        touching = [contact.on_land(supply.land) for contact in effects.contacts]
     solver = film_solver(
         bearing.film,
         grid,
@@ -108,18 +154,15 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         grid=grid,
         solver=solver,
         liner=liner,
-        compressible=None if effects.density is None else solver,
         supply=supply,
         mixing=mixing,
         contacts=contacts,
         limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
-        directions=Directions(*grid.directions),
         half_length=0.5 * bearing.length / R,
         pose_scale=pose_scale,
         motion_scale=np.concatenate((pose_scale, pose_scale, (0.5, 0.5 / R))),
         flow_scale=c * R**2,
         uneven_drag=effects.uneven_drag,
-        evaluations=Evaluations(),
     )
 
 
@@ -204,7 +247,7 @@ def _touching_surfaces(
 
 def _rheology(
     bearing: JournalBearing, grid: FilmGrid
-) -> tuple[ThermalEffect | None, list[GapTerm], list[FluxEffect], list[ShearFactor]]:
+) -> tuple[OilTemperature | None, list[GapTerm], list[FluxEffect], list[ShearFactor]]:
     """Thermal effect, growth of its walls, flux effects and shear factors of shear thinning or turbulence, and of a
     temperature field."""
     oil, spec, R, c = bearing.lubricant, bearing.thermal, bearing.journal_radius, bearing.radial_clearance

@@ -28,9 +28,8 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent
 from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
-from exudyn_ehd.joint.model.centre import is_central, tangents_beside
+from exudyn_ehd.joint.model.effects import Effects
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (
     MOTION_SIZE,
     BoreState,
@@ -98,20 +97,20 @@ class ElasticEvaluation(Evaluation):
 
     def steady_tangent(self, exact: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10) with the bore following slowly; as `Evaluation.steady_tangent`."""
-        if is_central(self):
-            return tangents_beside(self, exact).mean(axis=0)
+        if self.is_central:
+            return self.tangents_beside(exact).mean(axis=0)
         elasticity = self.model.elasticity
         T = elasticity.tangent(self, exact)
         if exact and self.model.solver.pockets is not None:
-            T = T + storage_tangent(self._found(), self.model.bore)
-        return condensed_tangent(T, elasticity, self.bore.coordinates)
+            T = T + storage_tangent(self.solved, self.model.bore)
+        return condensed_tangent(T, elasticity)
 
     def nodal_forces(self) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.
 
         There must be a film.
         """
-        shear = traction(self._found(), self.model.bore_forces)
+        shear = traction(self.solved, self.model.bore_forces)
         nodal = self.model.bore_forces.nodal(np.concatenate((np.zeros((1, shear.shape[1])), shear)))
         nodal[:, :2] += self.bore.load.reshape(-1, 2)
         return nodal
@@ -123,7 +122,7 @@ class ElasticEvaluation(Evaluation):
     def nodal_tangent(self) -> NodalTangent:
         """Return the tangent of wrench and nodal forces; there must be a film."""
         assert isinstance(self.model.bore, NodalBore)
-        return NodalTangent(self._found(), self.model.bore, self.model.bore_forces)
+        return NodalTangent(self.solved, self.model.bore, self.model.bore_forces)
 
     def tangent_at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """`NodalTangent.whole` with the forces completed as in `forces_at`."""
@@ -134,11 +133,6 @@ class ElasticEvaluation(Evaluation):
         """Return `Evaluation.quantities` and the largest ``bore_displacement``, m."""
         largest = float(np.max(np.abs(self.bore.displacement))) * self.model.bearing.radial_clearance
         return super().quantities() | {"bore_displacement": largest}
-
-    def _found(self) -> SolvedFilm:
-        film = self._current()
-        assert film is not None
-        return film
 
 
 def end_load(bore: Bore, grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
@@ -218,7 +212,11 @@ class ElasticBearingModel(BearingModel):
         return journal
 
     def _bore_state(
-        self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None, wrench: np.ndarray
+        self,
+        journal: JournalMotion,
+        oil: OilFields | None = None,
+        pressing: ContactFields | None = None,
+        moment: float = 0.0,
     ) -> BoreState:
         k, moved = self.bore.size, journal.motion[MOTION_SIZE:]
         load = np.full(k, np.nan)
@@ -227,7 +225,7 @@ class ElasticBearingModel(BearingModel):
             if self._end_load is not None:
                 load += self._end_load
             if self.bore.twist is not None:
-                load -= self.bore.twist * wrench[5]
+                load -= self.bore.twist * moment
         assert self._displacement is not None
         return BoreState(moved[:k], moved[k:], self._displacement, load)
 
@@ -242,16 +240,10 @@ class ElasticBearingModel(BearingModel):
         return field
 
     def _result(
-        self,
-        status: Status,
-        journal: JournalMotion,
-        wrench: np.ndarray,
-        iterations: int,
-        minimum_gap: float,
-        film: SolvedFilm | None,
+        self, status: Status, journal: JournalMotion, iterations: int, gap: float, film: SolvedFilm | None = None
     ) -> ElasticEvaluation:
-        bore = self._bore_state(journal, None, None, wrench) if film is None or film.bore is None else film.bore
-        return ElasticEvaluation(status, journal.motion, wrench, iterations, minimum_gap, film, self, bore)
+        bore = self._bore_state(journal) if film is None or film.bore is None else film.bore
+        return ElasticEvaluation(**vars(super()._result(status, journal, iterations, gap, film)), bore=bore)
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0

@@ -17,7 +17,6 @@ from exudyn_ehd.status import FilmError, Status
 # Tilt that counts as none: share of the minimum film thickness that it may take at the ends. Its effect on the force
 # is of second order.
 NEGLIGIBLE_TILT = 0.01
-_TILTED = 4
 _OUTCOMES = (Status.CONVERGED, Status.NOT_FINITE, Status.OUTSIDE_MAP, Status.NO_FILM)
 
 
@@ -116,7 +115,7 @@ class ImpedanceModel:
         motion = np.array(motion, dtype=float)
         wrench, tangent = np.empty(6), np.empty((6, 10))
         code = impedance_wrench(self.nodes, self.parameters, motion, wrench, tangent)
-        if code == _TILTED:
+        if code == len(_OUTCOMES):
             self._refuse_tilt(motion)
         return ImpedanceEvaluation(self.bearing, _OUTCOMES[code], motion, wrench, tangent)
 

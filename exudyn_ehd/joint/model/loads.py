@@ -7,11 +7,13 @@ import math
 import numpy as np
 
 from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
+from exudyn_ehd.film.reynolds.links import on_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.supply.cuts import RecessShear, recess_shear
+from exudyn_ehd.film.surfaces import patir_cheng
 from exudyn_ehd.film.surfaces.contact import add_contact
-from exudyn_ehd.joint.seams import ThermalEffect
+from exudyn_ehd.joint.heat.temperature import OilTemperature
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
     ExtraGap,
@@ -21,9 +23,6 @@ from exudyn_ehd.joint.solved_film import (
     Loads,
     Scales,
 )
-from exudyn_ehd.joint.tangent.true_gap import drag_weights, pulls_unevenly
-
-_NO_CONTACT = np.zeros(6)
 
 
 def film_loads(
@@ -67,24 +66,40 @@ def film_loads(
         journal.pose,
         integrals,
         couette,
-        extra_theta,
+        extra_theta - edge_forces(parts, scales),
         extra_z,
         s.H,
         g.width_x,
         scales.ends,
-        edge_forces(parts, scales),
         (scales.force, scales.shear, g.reference_length),
-        journal.omega,
-        journal.axial_speed,
+        (journal.omega, journal.axial_speed),
         wrench,
     )
-    contact = _NO_CONTACT
+    contact = np.zeros(6)
     if pressing is not None:
-        contact = np.zeros(6)
         for P_c, sums, (friction, transition) in zip(pressing.P, pressing.integrals, pressing.friction, strict=True):
             at = friction, transition, g.reference_length
             add_contact(P_c, g.weight, g.moments, journal.motion, *at, sums, contact, wrench)
     return Loads(wrench, contact, integrals, couette, s_theta, recess, drag)
+
+
+def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
+    """Return whether a pressure gradient pulls either surface by other than half its force on the true gap."""
+    return parts.uneven_drag or limited is not None or (parts.liner is not None and parts.liner.limiter is not None)
+
+
+def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
+    """Weights (2, n, m) of the pressures in E_x and E_z of the film that ``parts.solver`` holds."""
+    s, liner = parts.solver, parts.liner
+    gap, link = s.H, s.HF
+    if limited is not None:
+        gap, link = limited.gap, limited.link
+    elif liner is not None and liner.limiter is not None:
+        gap, link = liner.true_gap, liner.true_link
+    carriers = (s.HF, on_links(s.H)[1])
+    if parts.uneven_drag and s.flux is not None:
+        carriers = s.flux.cx, s.flux.cz
+    return patir_cheng.drag_weights(carriers, gap, link, parts.grid.link_widths)
 
 
 def edge_forces(parts: FilmParts, scales: Scales) -> float:
@@ -98,7 +113,7 @@ def recess_of(
     parts: FilmParts,
     scales: Scales,
     journal: JournalMotion,
-    thermal: ThermalEffect | None,
+    thermal: OilTemperature | None,
     temperature: float | np.ndarray | None,
 ) -> RecessShear | None:
     """Shear of the oil in supply areas at a film temperature, K; None where it does not count."""

@@ -5,13 +5,28 @@ receives exactly the opposite about the same point.
 
 Effects with a memory keep it in a `History`, which belongs to an accepted step: ``evaluate(motion, history, step)``
 reads the history at the start of the step and the time since, and ``evaluation.history()`` is the history at its end.
+
+At the exact centre the gap is the same all around, nothing presses, and the whole film is at its cavity pressure. A
+small motion of the aligned journal has one source in Reynolds' equation, the velocity V relative to the mean motion of
+the oil::
+
+    div(h^3 / (12 mu) grad p) = -V . n,        V = dx/dt - (omega / 2) e_z x x,
+
+and the film ruptures where V opens the gap, however small V is. The pressure is homogeneous of degree one in V. In a
+bearing that is the same in all directions the force therefore is ``F = -c V`` with one coefficient (with a liner one
+matrix that commutes with rotations), and K and C are those of films a little off the centre, in any direction. The film
+at the centre itself has an unbroken solution, with twice the coefficient.
+
+In a bearing that is not the same in all directions, as with a groove at the cavity pressure, F is not linear in V, and
+no stiffness or damping exists. Tilts and displacements together are not linear either: derivatives to the tilt there
+are the mean over the directions of V.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,13 +34,12 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.reynolds.gap import add_gap, rigid_gaps
 from exudyn_ehd.film.solvers.answers import OilFields
-from exudyn_ehd.joint.model.centre import is_central, tangents_beside
-from exudyn_ehd.joint.model.effects import film_parts
+from exudyn_ehd.joint.model.effects import Effects, film_parts
 from exudyn_ehd.joint.model.loads import film_loads, recess_of
-from exudyn_ehd.joint.model.quantities import eccentricities, quantities
+from exudyn_ehd.joint.model.results import FilmFields, eccentricities, film_fields, quantities
 from exudyn_ehd.joint.plain_film import is_plain, solve_plain
-from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (
+    BESIDE,
     MOTION_SIZE,
     BoreState,
     ContactFields,
@@ -72,13 +86,13 @@ class Evaluation:
         """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
 
         ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes
-        nothing. At the exact centre the mean of films beside it (`exudyn_ehd.joint.model.centre`).
+        nothing. At the exact centre the mean of films beside it.
         """
         if (film := self._current()) is None:
             return np.full((6, MOTION_SIZE), np.nan)
-        return (
-            tangents_beside(self, slow_motion).mean(axis=0) if is_central(self) else wrench_tangent(film, slow_motion)
-        )
+        if self.is_central:
+            return self.tangents_beside(slow_motion).mean(axis=0)
+        return wrench_tangent(film, slow_motion)
 
     def steady_tangent(self, exact: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.
@@ -87,20 +101,41 @@ class Evaluation:
         """
         return self.tangent(slow_motion=exact)
 
-    def quantities(self) -> dict[str, float]:
-        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`.
+    @property
+    def is_central(self) -> bool:
+        """Return whether a film that may rupture lies at the exact centre and presses nowhere."""
+        return self.film is not None and not self.model.needs_spin and self.film.is_central
 
-        With wear also ``wear_depth`` (m, the largest) and ``worn_volume`` (m3) of the bore at the end of the step.
+    def beside(self, direction: int = 0) -> Evaluation:
+        """Evaluate the film a little off the centre in one of four directions, without spin moving that way."""
+        film, motion = self.film, np.append(np.zeros(8), self.motion[8:MOTION_SIZE])
+        assert film is not None
+        # along a column of the grid Gümbel's linear pressure would be zero there, and its set undecided
+        angle = 1.0 + 0.5 * math.pi * direction
+        motion[:2] = BESIDE * film.parts.bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
+        motion[4:6] = motion[:2] if motion[8] == 0.0 else 0.0
+        return self.model.evaluate_steady(motion, film.history, film.step)
+
+    def tangents_beside(self, exact: bool) -> np.ndarray:
+        """Steady tangents (4, 6, 10) a little off the centre in four directions, ``exact`` or not.
+
+        Buffers and records of the evaluation stay as they are.
         """
-        film, p, wear = self._current(), self.model.parts, self.model.effects.wear
-        if film is None:
+        film, tangents = self.solved, [self.beside(direction).steady_tangent(exact) for direction in range(4)]
+        self.model.evaluate_steady(self.motion[:MOTION_SIZE], film.history, film.step)
+        film.parts.evaluations = film.serial
+        return np.array(tangents)
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.results.quantities`."""
+        if (film := self._current()) is None:
+            p = self.model.parts
             return {"minimum_gap": self.minimum_gap} | eccentricities(p, self.motion[:4] * p.pose_scale)
-        found = quantities(film)
-        if wear is not None:
-            depth = p.bearing.radial_clearance * wear.grown(film)
-            volume = p.grid.reference_length**2 * float(np.sum(depth * p.grid.area))
-            found |= {"wear_depth": float(depth.max()), "worn_volume": volume}
-        return found
+        return quantities(film, self.model.effects.wear)
+
+    def fields(self, time: float, bush_displacement: np.ndarray | None = None) -> FilmFields:
+        """Return the fields of this state, which has a film."""
+        return film_fields(self.solved, self.model.effects.wear, time, bush_displacement)
 
     def history(self) -> History | None:
         """Return the bearing's memory after this state, if it is accepted; None without effects that remember.
@@ -119,6 +154,13 @@ class Evaluation:
         if self.film is not None and self.model.effects.thermal is not None:
             self.film = self.film._replace(beside=heat_of_faces())
         return self.film
+
+    @property
+    def solved(self) -> SolvedFilm:
+        """The film of a state that has one, which must be the model's last."""
+        film = self._current()
+        assert film is not None
+        return film
 
     def _current(self) -> SolvedFilm | None:
         if self.film is not None:
@@ -145,7 +187,6 @@ class BearingModel:
         self.grid, self.solver = p.grid, p.solver
         self.needs_spin = p.supply is not None and p.supply.rotating
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
-        self.remembers_density = self.remembers_mass and p.compressible is not None and self.effects.thermal is not None
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
         self.remembers = self.remembers_mass or self.remembers_deflection or p.solver.pockets is not None
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
@@ -154,8 +195,7 @@ class BearingModel:
         # what a flexible bore adds to the gap, and the slopes of all that is added
         self._displacement: np.ndarray | None = None
         self._rate = p.solver.nothing
-        self._slopes = np.empty(p.grid.shape), np.empty(p.grid.shape)
-        self._plain = not self.flexible and is_plain(p, self.effects)
+        self._plain = not self.flexible and self.effects == Effects() and is_plain(p)
         self._set_viscosity(1.0)
 
     def _set_viscosity(self, ratio: float) -> None:
@@ -181,48 +221,36 @@ class BearingModel:
         """History of a flooded bearing (every gap full of oil) at this motion; None without effects that remember."""
         if not self.remembers:
             return None
-        thermal = self.effects.thermal
-        self.parts.evaluations.count += 1
+        self.parts.evaluations += 1
         self._set_gap(self._journal(motion, 0.0), None)
-        s, remembers, liner, wear = self.solver, self.remembers_mass, self.parts.liner, self.effects.wear
+        s, remembers, liner, effects = self.solver, self.remembers_mass, self.parts.liner, self.effects
         found = (self.remembers_deflection or s.pockets is not None) and self.evaluate(motion).film is not None
         void, mass, outflow = s.flooded() if remembers else (None, None, None)
-        return History(
+        return replace(
+            History() if effects.thermal is None else effects.thermal.first_memory(self.grid.shape),
             void=void,
             mass=mass,
             outflow=outflow,
-            wear=None if wear is None else wear.field(None).copy(),
+            wear=None if effects.wear is None else effects.wear.field(None).copy(),
             deflection=liner.deflection if found and self.remembers_deflection and liner is not None else None,
-            temperature=None if thermal is None else thermal.initial_temperature(self.grid.shape),
-            density=s.ones if self.remembers_density else None,
             pockets=s.pockets if found else None,
-            sump=None if thermal is None else thermal.initial_sump,
-            leaving=None if thermal is None else thermal.initial_leaving,
         )
 
     def next_history(self, film: SolvedFilm) -> History | None:
         """History at the end of a solved film's step."""
         if not self.remembers:
             return None
-        p, s, effects, heat = self.parts, self.solver, self.effects, self.effects.thermal
+        p, s, effects = self.parts, self.solver, self.effects
         old = History() if film.history is None else film.history
         void, mass = s.stored(old.mass, film.step) if self.remembers_mass else (None, None)
-        temperature = None if heat is None else heat.advance(film)
-        sump = None if heat is None or heat.initial_sump is None else heat.balance(film, temperature)
-        leaving = (
-            None if heat is None or temperature is None or film.beside is None else heat.leaving(film, temperature)
-        )
-        new = History(
+        new = replace(
+            History() if effects.thermal is None else effects.thermal.memory(film),
             void=void,
             mass=mass,
             outflow=s.outflow() if self.remembers_mass else None,
             wear=None if effects.wear is None else effects.wear.grown(film),
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
-            temperature=temperature,
-            density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
             pockets=s.pockets,
-            sump=None if sump is None else sump["supply_temperature"],
-            leaving=leaving,
         )
         if void is not None and film.history is not None:
             for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
@@ -253,7 +281,7 @@ class BearingModel:
             goes on behind its end: no solution, but a way back for Newton's method.
         """
         p, c = self.parts, self.bearing.radial_clearance
-        p.evaluations.count += 1
+        p.evaluations += 1
         if self._plain:
             motion = np.array(motion, dtype=float)
             film, iterations = solve_plain(p, self.scales, motion, self._prescribed, step)
@@ -265,16 +293,16 @@ class BearingModel:
             self.solver.refresh_fixed()
         # a sum is finite only if all its terms are
         if not math.isfinite(sum(journal.motion.tolist())):
-            return self._result(Status.NOT_FINITE, journal, np.full(6, np.nan), 0, math.nan, None)
+            return self._result(Status.NOT_FINITE, journal, 0, math.nan)
         smallest, extra, pressing, limited = self._set_gap(journal, history)
         if smallest <= 0.0 and not self.effects.contacts and p.liner is None:
-            return self._result(Status.NO_FILM, journal, np.full(6, np.nan), 0, c * smallest, None)
+            return self._result(Status.NO_FILM, journal, 0, c * smallest)
         status, iterations = self._solve(journal, history, step)
         laws = self.effects.pressure_law, self.effects.shear_factor
         oil = self.solver.oil_fields(*laws) if status is Status.CONVERGED else None
         status = Status.NO_PRESSURE if status is Status.CONVERGED and (oil is None or oil.beyond) else status
         if oil is None:
-            return self._result(status, journal, np.full(6, np.nan), iterations, c * smallest, None)
+            return self._result(status, journal, iterations, c * smallest)
         if p.liner is not None:
             smallest = p.liner.smallest_gap()
             if p.contacts is not None:
@@ -282,25 +310,20 @@ class BearingModel:
         recess = recess_of(p, self.scales, journal, self.effects.thermal, temperature)
         loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited, recess)
         state = p, self.grid, self.solver, self.scales, journal, history, step, temperature
-        bore, fields = self._bore_state(journal, oil, pressing, loads.wrench), (extra, pressing, limited)
-        film = SolvedFilm(*state, *fields, oil, loads, c * smallest, bore, p.evaluations.count, walls)
-        return self._result(status, journal, loads.wrench, iterations, c * smallest, film)
+        bore, fields = self._bore_state(journal, oil, pressing, float(loads.wrench[5])), (extra, pressing, limited)
+        film = SolvedFilm(*state, *fields, oil, loads, c * smallest, bore, p.evaluations, walls)
+        return self._result(status, journal, iterations, c * smallest, film)
 
     def _result(
-        self,
-        status: Status,
-        journal: JournalMotion,
-        wrench: np.ndarray,
-        iterations: int,
-        minimum_gap: float,
-        film: SolvedFilm | None,
+        self, status: Status, journal: JournalMotion, iterations: int, gap: float, film: SolvedFilm | None = None
     ) -> Evaluation:
-        return Evaluation(status, journal.motion, wrench, iterations, minimum_gap, film, self)
+        wrench = np.full(6, np.nan) if film is None else film.loads.wrench
+        return Evaluation(status, journal.motion, wrench, iterations, gap, film, self)
 
     def _bore_state(
-        self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None, wrench: np.ndarray
+        self, journal: JournalMotion, oil: OilFields, pressing: ContactFields | None, moment: float
     ) -> BoreState | None:
-        """A flexible bore under this film; None for a rigid one."""
+        """A flexible bore under this film, which turns the journal with a moment, Nm; None for a rigid one."""
         return None
 
     def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
@@ -343,18 +366,17 @@ class BearingModel:
 
     def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
         """Add the gap terms and a bore's displacement; returns the smallest gap and what was added."""
-        s, g = self.solver, self.grid
+        s = self.solver
         surfaces = [term.field(history) for term in self.effects.gap_terms]
         fields = surfaces if self._displacement is None else [*surfaces, self._displacement]
         height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
         rate = self._rate if s.squeeze else s.nothing
         if self.effects.lobes is not None:
             s.HF += self.effects.lobes.between
-        smallest = add_gap(height, rate, g.width_x, g.link_x, g.z, s.H, s.HF, s.H_t, *self._slopes)
+        smallest, slopes = add_gap(height, rate, self.grid, s.H, s.HF, s.H_t)
         if self.effects.lobes is not None:
-            for slope, more in zip(self._slopes, self.effects.lobes.slopes, strict=True):
-                slope += more
-        return float(smallest), ExtraGap(height, *self._slopes, surfaces)
+            slopes += self.effects.lobes.slopes
+        return smallest, ExtraGap(height, slopes[0], slopes[1], surfaces)
 
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
         """Solve for the gaps in the solver's buffers, with the known pressures."""

@@ -39,12 +39,11 @@ from exudyn_ehd.film.combinations import require_viscosities
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drops, to_ends
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_count, require_number, require_type, require_vector
 
-# Of the rows, 0 is uniform.
-STRETCH = 0.75
 # Rows of the six second moments xx, yy, zz, xy, xz, yz in the symmetric matrix of them.
 COMPONENTS = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 
@@ -85,7 +84,7 @@ def sphere_patch(radius: float, angles: tuple[float, float], n_phi: int, n_chi: 
     # from the middle of the patch, which of a closed one is the pole, to its edges
     middle, half = (0.0, last) if closed else (0.5 * (first + last), 0.5 * (last - first))
     share = (np.arange(n_chi + 1) + 0.5) / (n_chi + 0.5) if closed else np.linspace(-1.0, 1.0, n_chi + 1)
-    quarter = 0.5 * math.pi * STRETCH
+    quarter = 0.5 * math.pi * FiniteLength.stretch
     chi = middle + half * np.sin(quarter * share) / math.sin(quarter)
     chi[0], chi[-1] = chi[0] if closed else first, last
     faces = np.concatenate(([first], 0.5 * (chi[1:] + chi[:-1]), [last]))

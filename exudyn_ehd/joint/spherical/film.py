@@ -64,11 +64,11 @@ from exudyn_ehd.joint.spherical.bearing import SphereFlow, SphericalBearing, dra
 from exudyn_ehd.status import Status
 
 PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
-SIZE = 11
+SIZE = SPIN.stop
 """Motion: place (m), 0, velocity (m/s), 0, angular velocity (rad/s); `exudyn_ehd.joint.step_rates` knows four places
 and four rates."""
 # Place (3,), velocity and angular velocity (6,) of a motion as products with it.
-PLACES, SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[[4, 5, 6, 8, 9, 10]]
+PLACES, SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[np.r_[VELOCITY, SPIN]]
 
 
 # Scaled pressure and its derivative to the solver's unknown, viscosity ratio and its derivative.
@@ -118,6 +118,7 @@ class BallFilm(NamedTuple):
     parts: SphericalFilm
     grid: FilmGrid
     walls: None = None
+    beside: None = None
 
 
 class SphericalFilm:

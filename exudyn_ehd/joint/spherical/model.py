@@ -15,12 +15,12 @@ import scipy
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.reynolds.links import on_links
 from exudyn_ehd.film.solvers.film import shear_by_unknown
-from exudyn_ehd.joint.balance.limits import ROUNDING, WAY_OUT, require_oil_bears
-from exudyn_ehd.joint.solved_film import History, SolvedFilm
+from exudyn_ehd.joint.balance.limits import WAY_OUT, require_oil_bears
+from exudyn_ehd.joint.solved_film import BESIDE, CENTRE, History, SolvedFilm
 from exudyn_ehd.joint.spherical.bearing import SphereFlow, skew
 from exudyn_ehd.joint.spherical.film import PLACE, PLACES, SIZE, SPEEDS, SPIN, VELOCITY, BallFilm, SphericalFilm
-from exudyn_ehd.joint.tangent.wrench import BESIDE, CENTRE, quotients
-from exudyn_ehd.status import FilmError, Status
+from exudyn_ehd.joint.thrust import quotients
+from exudyn_ehd.status import SMALL, FilmError, Status
 
 
 @dataclass(eq=False)
@@ -126,19 +126,17 @@ class SphericalModel(SphericalFilm):
         self.serial += 1
         self._set_gap(motion)
         void, mass, outflow = self.solver.flooded() if self.remembers_mass else (None, None, None)
-        T, sump = (None, None) if self.thermal is None else (self.thermal.initial, self.thermal.initial_sump)
-        return History(void=void, mass=mass, outflow=outflow, temperature=T, sump=sump)
+        temperatures = History() if self.thermal is None else self.thermal.first_memory(self.grid.shape)
+        return replace(temperatures, void=void, mass=mass, outflow=outflow)
 
     def next_history(self, film: BallFilm) -> History:
         """History at the end of a film's step."""
-        s, thermal, solved = self.solver, self.thermal, cast(SolvedFilm, film)
-        void, mass = s.stored(film.history.mass, film.step) if self.remembers_mass else (None, None)
-        outflow = s.outflow() if self.remembers_mass else None
-        if thermal is None:
-            return History(void=void, mass=mass, outflow=outflow)
-        T, has_sump = thermal.advance(solved), thermal.initial_sump is not None
-        sump = thermal.balance(solved, T)["supply_temperature"] if has_sump else None
-        return History(void=void, mass=mass, outflow=outflow, temperature=T, sump=sump)
+        s, thermal = self.solver, self.thermal
+        temperatures = History() if thermal is None else thermal.memory(cast(SolvedFilm, film))
+        if not self.remembers_mass:
+            return temperatures
+        void, mass = s.stored(film.history.mass, film.step)
+        return replace(temperatures, void=void, mass=mass, outflow=s.outflow())
 
     def is_at_rest(self, motion: np.ndarray) -> bool:
         """Return whether the last film, at this motion, has no source and may rupture at any."""
@@ -255,8 +253,8 @@ def steady_history(model: SphericalModel, motion: np.ndarray, where: str = "audi
         return memory(low)
     if not (change := rise(low)) < math.inf:
         raise FilmError(f"{where}: the film is heated, and its heat has no way out; {WAY_OUT}")
-    high = low + max(change, ROUNDING)
+    high = low + max(change, SMALL)
     while rise(high) > 0.0:
         require_oil_bears(high, model.grid, where)
         low, high = high, 3.0 * high - 2.0 * low
-    return memory(float(scipy.optimize.brentq(rise, low, high, xtol=ROUNDING)))
+    return memory(float(scipy.optimize.brentq(rise, low, high, xtol=SMALL)))

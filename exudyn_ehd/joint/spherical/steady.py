@@ -23,9 +23,9 @@ from exudyn_ehd.film.heat.options import known_supply
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.joint.audit import effects
-from exudyn_ehd.joint.audit.audit import ROWS, Audit, AuditRow, audit_of
+from exudyn_ehd.joint.audit.audit import ROWS, AuditRow, audit_of
 from exudyn_ehd.joint.audit.case import Case
-from exudyn_ehd.joint.audit.findings import LIMITS, Finding, Limit, judged
+from exudyn_ehd.joint.audit.findings import LIMITS, Audit, Finding, Limit, judged
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, squeeze_share
 from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.balance.limits import (
@@ -37,11 +37,11 @@ from exudyn_ehd.joint.balance.limits import (
     warn_of_overload,
 )
 from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
+from exudyn_ehd.joint.solved_film import LARGEST_SPREAD
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
 from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel, steady_history
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.joint.tangent.wrench import LARGEST_SPREAD
 from exudyn_ehd.pictures.records import Target, shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
 

@@ -25,8 +25,8 @@ eigenvalue ``M nu^2``.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple, cast
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -34,14 +34,15 @@ from scipy.linalg import block_diag
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
+from exudyn_ehd.film.gradients import Gradients
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.joint.bore.shapes import Bore
-from exudyn_ehd.joint.model.centre import evaluate_beside, is_central
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
-from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
+from exudyn_ehd.joint.solved_film import LARGEST_SPREAD, MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
-from exudyn_ehd.joint.tangent.true_gap import true_fills
-from exudyn_ehd.joint.tangent.wrench import balance_gradients, wrench_rows
+from exudyn_ehd.joint.tangent.wrench import balance_gradients, true_fills, wrench_rows
+from exudyn_ehd.status import FilmError
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
 SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
@@ -49,6 +50,9 @@ SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
 # pressures of supply areas settle. The space of the answers tells the critical
 # mass of soft bushes to 2e-9, and Z from 0 to 4 times the spin to 5e-7.
 SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
+# Frequencies, over the speed, of motions that decay by 0, 25 and 50 degrees, from which the films' answers are made.
+# Z is told to 1e-9 where motions swing up to 15 times a turn, and where they decay far faster.
+RAYS = np.outer((0.1, 0.4, 1.0, 2.5, 6.0, 15.0, 60.0, 300.0), np.exp(1j * np.radians((0.0, 25.0, 50.0)))).ravel()
 # Places and slopes x, y, bx, by of a journal, and the rows of a wrench that do work on them: F_x, F_y, M_y, -M_x.
 PLACES, LOADS, SIGNS = 4, [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 
@@ -66,29 +70,55 @@ def slow_motions(tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 class FilmResponse:
-    """Dynamic stiffness of a film that conserves mass, on a liner, or fed by a compressible volume.
+    """Dynamic stiffness of a film that conserves mass, on a liner or a flexible bore, or fed by a compressible volume.
+
+    Coordinates q (k,) of a flexible bore or journal are motions like the journal's four.
 
     Parameters
     ----------
-    film : SolvedFilm
-        Of the steady state; what is needed of it is copied.
-    tangent : (6, 10) array
-        Of the wrench there, for slow motions.
+    evaluation : Evaluation
+        Steady film, in balance with its bore; what is needed of it is copied.
 
     Attributes
     ----------
     rates : (k,) array
         Rates at which the pressures of supply areas with a compressible volume settle at rest, 1/s.
+    speed : float
+        Spin, rad/s, > 0.
+    stiffness : (k, k) array
+        Of a flexible bore or journal in its coordinates.
+    remembers : bool
+        Whether the film itself follows with a delay.
     """
 
-    rates = np.zeros(0)
+    def __init__(self, evaluation: Evaluation) -> None:
+        film, bore, m = evaluation.solved, None, MOTION_SIZE
+        self.speed = abs(film.journal.omega)
+        self.rates, self.stiffness, self.remembers = np.zeros(0), np.zeros((0, 0)), True
+        if isinstance(evaluation, ElasticEvaluation):
+            elasticity, bore = evaluation.model.elasticity, evaluation.model.bore
+            T, self.stiffness = elasticity.tangent(evaluation, exact=True), elasticity.stiffness.copy()
+            self.remembers = film.solver.closure.conserves_mass or film.solver.pockets is not None
+        else:
+            T = evaluation.steady_tangent()
+        if self.remembers:
+            self._take(film, bore)
+        k = len(self.stiffness)
+        rows = -np.append(SIGNS, np.ones(k))[:, None] * T[[*LOADS, *range(6, 6 + k)]]
+        pose, rate = self._gradients(0.0)
+        # what stiffness and damping of slow motions hold besides the film's pressure
+        self.rest = (
+            np.hstack((rows[:, :PLACES], rows[:, m : m + k])) - pose,
+            np.hstack((rows[:, PLACES : 2 * PLACES], rows[:, m + k :])) - rate,
+        )
+        if film.parts.liner is not None:
+            self._let_follow(film, film.parts.liner)
+        if self.remembers and k > 2 * PLACES * len(SAMPLES):
+            self._reduce([self._followed(self._whole(nu)) for nu in self._frequencies(SAMPLES)])
 
-    def linear(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """K and C of the journal's motions together with massless coordinates that follow; None without such."""
-        return None
-
-    def __init__(self, film: SolvedFilm, tangent: np.ndarray) -> None:
-        s, w, liner = film.solver, film.solver.work, film.parts.liner
+    def _take(self, film: SolvedFilm, bore: Bore | None) -> None:
+        """Copy the balances of a film, what it stores, and the derivatives of both to the motions."""
+        s, w = film.solver, film.solver.work
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
         rows = -SIGNS[:, None] * wrench_rows(film)[LOADS] / film.scales.force
@@ -111,25 +141,68 @@ class FilmResponse:
         self.rows = rows.T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count + areas))
-        fills, self.contents = true_fills(film), None
+        fills, contents = true_fills(film), None
         if fills is not None:  # of a film that conserves mass
-            self.contents = fills.weighed(whole, number)
-            by_fill = self.contents.columns(film.grid.gap_shapes, w.count + areas) * scale
+            contents = fills.weighed(whole, number)
+            by_fill = contents.columns(film.grid.gap_shapes, w.count + areas) * scale
         # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
         self.by_pose, self.by_rate = by_motion[:PLACES].copy(), by_motion[PLACES : 2 * PLACES]
         self.by_content, self.by_sway = by_fill[:PLACES], by_fill[PLACES : 2 * PLACES]
-        self._rest_of(*slow_motions(tangent))
-        if liner is not None:  # the tangent knows no rate of its deflection, and neither does the rupture line
-            line, follows = s.line_gradients(), liner.gap_slopes.D_r.reshape(-1)[order]
-            resting: np.ndarray | float = 0.0
-            if line is not None:
-                resting = (line.columns(film.grid.gap_shapes, w.count + areas) * scale)[PLACES : 2 * PLACES]
-            self.by_rate = self.by_rate + (self.by_rate - resting) * np.append(follows, np.zeros(areas))
+        if bore is not None:
+            self._add_bore(film, bore, contents)
 
-    def _rest_of(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
-        """Keep what stiffness and damping of slow motions hold besides the film's pressure."""
-        pose, rate = self._gradients(0.0)
-        self.rest = stiffness - pose, damping - rate
+    def _let_follow(self, film: SolvedFilm, liner: LinerFilm) -> None:
+        """Let a liner on which surfaces touch follow the rates, in the balances: neither the tangent knows of that, nor
+        the rupture line."""
+        s, w, by_gap = film.solver, film.solver.work, self.by_rate
+        if (line := s.line_gradients()) is not None:
+            scale = -film.scales.force * film.parts.motion_scale[PLACES : 2 * PLACES, None]
+            by_gap = by_gap - line.columns(film.grid.gap_shapes, s.unknowns)[PLACES : 2 * PLACES] * scale
+        follows = np.append(liner.gap_slopes.D_r.reshape(-1)[w.order[: w.count]], np.zeros(s.unknowns - w.count))
+        self.by_rate = self.by_rate + by_gap * follows
+
+    def _add_bore(self, film: SolvedFilm, bore: Bore, contents: Gradients | None) -> None:
+        """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
+        balances, force = Balances(film), film.scales.force
+        self.rows = np.concatenate((self.rows, dense(-load_columns(film, bore)) / force), axis=1)
+        place, rate = (-force * balances.times(bore.shapes, *ends).T for ends in ((1.0, 0.0), (0.0, 1.0)))
+        sway = content = np.zeros_like(rate)
+        if contents is not None:
+            at, by = (film.grid.shape, balances.count), -force / balances.clearance
+            parts = (contents.matrix(*at, *factors) for factors in ((by, 0.0), (0.0, by)))
+            content, sway = (dense(part @ bore.shapes).T for part in parts)
+        self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
+        self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
+
+    def linear(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """K, C and M (p, p) of ``K z + C z_t + M z_tt = load`` for z of the journal's motions and what follows them.
+
+        These are the bore's coordinates and the film's unknowns. The latter, and their balances, are taken in the
+        spaces of the answers to motions and to loads at some frequencies, where Z and its slope are exact.
+        """
+        K, C = self.rest[0] + np.pad(self.stiffness, (PLACES, 0)), self.rest[1]
+        if not self.remembers:
+            return K, C, np.zeros_like(K)
+        answers, weights = [], []
+        for nu in self._frequencies((0.0, *RAYS)):
+            factor = splu(csc_matrix(self.matrix + 1j * nu * self.store), permc_spec="NATURAL")
+            Z = self._whole(nu)
+            motions, loads = (np.vstack((np.eye(PLACES), self._followed(way))) for way in (Z, Z.T))
+            by_motion = self.by_pose + 1j * nu * (self.by_content + self.by_rate) - nu**2 * self.by_sway
+            answers.append(factor.solve(by_motion.T @ motions))
+            weights.append(factor.solve(self.rows @ loads, trans="T"))
+        V, W = (_real_space(columns) for columns in (answers, weights))
+        none, film = np.zeros((len(K), V.shape[1])), np.zeros((V.shape[1], V.shape[1]))
+        return (
+            np.block([[K, -self.rows.real.T @ V], [W.T @ self.by_pose.T, W.T @ (self.matrix @ V)]]),
+            np.block([[C, none], [W.T @ (self.by_content + self.by_rate).T, W.T @ (self.store @ V)]]),
+            np.block([[np.zeros_like(K), none], [W.T @ self.by_sway.T, film]]),
+        )
+
+    def _frequencies(self, shares: Sequence[complex]) -> np.ndarray:
+        """Frequencies by their shares of the speed, rad/s, and such beside the rates of supply areas."""
+        beside = np.outer(SAMPLES[1:], (self.rates.min(), self.rates.max())).ravel() if self.rates.size else ()
+        return np.array((*(self.speed * np.array(shares)), *beside))
 
     def add(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
         """Add K and C (2, 2) that do not depend on the frequency."""
@@ -138,69 +211,23 @@ class FilmResponse:
 
     def at(self, frequency: complex) -> np.ndarray:
         """Z (4, 4) of `slow_motions` at a frequency, rad/s; a complex one stands for motions that grow or decay."""
+        Z = self._whole(frequency)
+        return Z[:PLACES, :PLACES] + Z[:PLACES, PLACES:] @ self._followed(Z)
+
+    def _whole(self, frequency: complex) -> np.ndarray:
+        """Z (4 + k, 4 + k) of the journal's motions and q."""
         pose, rate = self._gradients(frequency)
         return self.rest[0] + pose + 1j * frequency * (self.rest[1] + rate)
 
     def _gradients(self, frequency: complex) -> tuple[np.ndarray | float, np.ndarray | float]:
-        """Contributions of the film's pressure to stiffness and damping at a frequency, rad/s, (4, 4) each, complex."""
+        """Contributions of the film's memory to stiffness and damping at a frequency, rad/s, (4 + k, 4 + k) each."""
+        if not self.remembers:
+            return 0.0, 0.0
         # the unknowns are numbered for a narrow band
         factor = splu(csc_matrix(self.matrix + 1j * frequency * self.store), permc_spec="NATURAL")
         lam = factor.solve(self.rows, trans="T")
         pose, rate = self.by_pose + 1j * frequency * self.by_content, self.by_rate + 1j * frequency * self.by_sway
         return (pose @ lam).T, (rate @ lam).T
-
-
-class FilmOnBoreResponse(FilmResponse):
-    """Dynamic stiffness of a film on a flexible bore or journal, whose coordinates q are motions like the journal's.
-
-    Parameters
-    ----------
-    evaluation : ElasticEvaluation
-        In balance with the bore.
-    """
-
-    def __init__(self, evaluation: ElasticEvaluation) -> None:
-        film, bore, elasticity = evaluation.film, evaluation.model.bore, evaluation.model.elasticity
-        assert film is not None
-        T, k, m = elasticity.tangent(evaluation, exact=True), bore.size, MOTION_SIZE
-        self.stiffness = elasticity.stiffness.copy()
-        self.remembers = film.solver.closure.conserves_mass or film.solver.pockets is not None
-        if self.remembers:
-            super().__init__(film, T)
-            self._add_bore(film, bore)
-        rows = -np.append(SIGNS, np.ones(k))[:, None] * T[[*LOADS, *range(6, 6 + k)]]
-        rates = slice(PLACES, 2 * PLACES), slice(m + k, m + 2 * k)
-        self._rest_of(*(np.hstack((rows[:, a], rows[:, b])) for a, b in ((slice(PLACES), slice(m, m + k)), rates)))
-        if self.remembers and k > 2 * PLACES * len(SAMPLES):
-            speed, whole = abs(film.journal.omega), super().at
-            beside = np.outer(SAMPLES[1:], (self.rates.min(), self.rates.max())).ravel() if self.rates.size else ()
-            self._reduce([self._followed(whole(nu)) for nu in (*(speed * np.array(SAMPLES)), *beside)])
-
-    def linear(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """K and C (4 + k, 4 + k) of the journal's motions and q, with the bore's own stiffness; None with a memory."""
-        whole = np.pad(self.stiffness, (PLACES, 0))
-        return None if self.remembers else (self.rest[0] + whole, self.rest[1])
-
-    def _add_bore(self, film: SolvedFilm, bore: Bore) -> None:
-        """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
-        balances, force = Balances(film), film.scales.force
-        self.rows = np.concatenate((self.rows, dense(-load_columns(film, bore)) / force), axis=1)
-        place, rate = (-force * balances.times(bore.shapes, *ends).T for ends in ((1.0, 0.0), (0.0, 1.0)))
-        sway = content = np.zeros_like(rate)
-        if self.contents is not None:
-            at, by = (film.grid.shape, balances.count), -force / balances.clearance
-            parts = (self.contents.matrix(*at, *factors) for factors in ((by, 0.0), (0.0, by)))
-            content, sway = (dense(part @ bore.shapes).T for part in parts)
-        self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
-        self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
-
-    def _gradients(self, frequency: complex) -> tuple[np.ndarray | float, np.ndarray | float]:
-        return super()._gradients(frequency) if self.remembers else (0.0, 0.0)
-
-    def at(self, frequency: complex) -> np.ndarray:
-        """Z (4, 4) at a frequency, rad/s; see `FilmResponse.at`."""
-        Z = super().at(frequency)
-        return Z[:PLACES, :PLACES] + Z[:PLACES, PLACES:] @ self._followed(Z)
 
     def _followed(self, Z: np.ndarray) -> np.ndarray:
         """q (k, 4) of unit motions of the journal."""
@@ -214,6 +241,12 @@ class FilmOnBoreResponse(FilmResponse):
         self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
         self.stiffness = V[PLACES:, PLACES:].T @ self.stiffness @ V[PLACES:, PLACES:]
+
+
+def _real_space(found: list[np.ndarray]) -> np.ndarray:
+    """Orthonormal columns (n, p) of the space of complex ones (n, m) and their conjugates; static ones are real."""
+    columns = np.concatenate([part for some in found for part in (some.real, some.imag) if part.any()], axis=1)
+    return np.linalg.qr(columns)[0]
 
 
 class FilmMemory(NamedTuple):
@@ -250,15 +283,25 @@ def response_of(evaluation: Evaluation) -> tuple[tuple[np.ndarray, np.ndarray], 
     model = evaluation.model
     has_memory = model.remembers_mass or model.flexible or model.parts.liner is not None
     has_memory = has_memory or model.solver.pockets is not None
-    if has_memory and not model.remembers_mass and is_central(evaluation):
-        evaluation = cast("Evaluation", evaluate_beside(evaluation))
+    if has_memory and not model.remembers_mass and evaluation.is_central:
+        evaluation = evaluation.beside()
     slow = slow_motions(evaluation.steady_tangent(exact=True))
-    if isinstance(evaluation, ElasticEvaluation):
-        return slow, FilmOnBoreResponse(evaluation)
-    if not has_memory:
-        return slow, None
-    assert evaluation.film is not None
-    return slow, FilmResponse(evaluation.film, evaluation.steady_tangent())
+    return slow, FilmResponse(evaluation) if has_memory else None
+
+
+def require_derivatives(evaluation: Evaluation, where: str) -> None:
+    """Raise `FilmError` in the name of ``where`` if K and C beside the centre depend on the direction."""
+    tangents = evaluation.tangents_beside(exact=True)
+    for block in (tangents[:, :2, :2], tangents[:, :2, 4:6]):
+        mean = block.mean(axis=0)
+        spread = float(np.abs(block - mean).max()) / max(float(np.abs(mean).max()), 1e-300)
+        if spread > max(LARGEST_SPREAD, 2.0 / evaluation.solved.grid.x.size):
+            raise FilmError(
+                f"{where}: at the exact centre this film has no stiffness and damping: it ruptures on the side that "
+                f"opens, and its force differs by {spread:.0%} between the directions of a displacement, because a "
+                "supply area, a profile or a soft surface breaks the symmetry; give a small load across the axis, "
+                "which sets the direction, or a supply pressure above the cavity pressure."
+            )
 
 
 def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:

@@ -25,12 +25,12 @@ from exudyn_ehd.joint.balance.position import (
     turning,
 )
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.centre import is_central, require_derivatives
-from exudyn_ehd.joint.model.fields import remembered
+from exudyn_ehd.joint.model.results import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import (
     FilmResponse,
+    require_derivatives,
     response_of,
     slow_motions,
     threshold,
@@ -266,7 +266,7 @@ def equilibrium(
         External force on the journal in x and y of the joint frame, N, which the film balances: weight down is
         (0, -W). Under no load, (0, 0), the journal of a bearing that is the same in all directions lies at the exact
         centre. A film that ruptures has one-sided derivatives there; stiffness and damping are those a little off the
-        centre, `exudyn_ehd.joint.model.centre`. Of thrust pads one number: the force, above 0, that presses the collar
+        centre, `exudyn_ehd.joint.model.rigid`. Of thrust pads one number: the force, above 0, that presses the collar
         onto all pads.
     tilt : (float, float), default (0.0, 0.0)
         Slopes (bx, by) of the journal axis, rad, held fixed.
@@ -378,7 +378,7 @@ def _small_motions(found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse |
     None where K and C do not depend on the frequency.
     """
     evaluation = found.evaluation
-    if is_central(evaluation):
+    if evaluation.is_central:
         require_derivatives(evaluation, "equilibrium")
     K, C = (part[:2, :2] for part in slow_motions(evaluation.steady_tangent(exact=True)))
     if isinstance(evaluation.model.bearing.inlet, MaximumGap):

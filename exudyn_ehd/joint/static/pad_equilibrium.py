@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.joint.balance.newton import FALLS, PATIENCE, ROUNDS
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads
 from exudyn_ehd.joint.static.steady import SteadyResult, result_at
@@ -31,15 +32,13 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
-# Share of the force that may be left; rounds of a search for the tilt of a pad; steps in a row that may leave more than
-# a share of the unbalance before.
-TOLERANCE, TILT_ROUNDS, PATIENCE, FALLS = 1e-9, 60, 12, 0.9
+# Share of the force that may be left.
+TOLERANCE = 1e-9
 # Places after which a search gives up, and force on a pad, over the load, from which on it carries.
 MOST_PLACES, CARRIES = 400, 0.01
-# Round-off of the films' forces, as a share of them.
+# Round-off of the films' forces, as a share of them, and change of a pad's edge over the clearance that ends the search
+# for its tilt.
 ROUNDING = 1e-11
-# Change of a pad's edge over the clearance that ends the search for its tilt.
-SMALLEST_STEP = 1e-11
 # Places between the tilts at which an edge touches, where the moment is looked at first.
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
 # Shifts of such places for a second look around the largest moment.
@@ -109,8 +108,8 @@ def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, flo
     """Loads where the moment falls through zero between two tilts, by Newton's method and bisection; None without."""
     (lower, upper), sense = ends, math.copysign(1.0, pad.speed)
     tilt = 0.5 * (lower + upper)
-    finest = SMALLEST_STEP * pad.model.bearing.radial_clearance / pad.arm
-    for _ in range(TILT_ROUNDS):
+    finest = ROUNDING * pad.model.bearing.radial_clearance / pad.arm
+    for _ in range(ROUNDS):
         here = pad.at(journal, shift, tilt)
         rises = here is not None and sense * here.forces[2] > 0.0
         lower, upper = (tilt, upper) if rises else (lower, tilt)

@@ -56,8 +56,6 @@ from exudyn_ehd.status import (
     require_vector,
 )
 
-TURN = 2.0 * math.pi
-
 
 @dataclass(frozen=True, kw_only=True)
 class TiltingPads(Checked):
@@ -155,7 +153,7 @@ class TiltingPads(Checked):
         "length": POSITIVE,
         "radial_clearance": partial(POSITIVE, hint="it is the gap at the pivots under a concentric journal."),
         "pads": partial(require_count, at_least=3, hint="a journal needs pads on all sides."),
-        "extent": partial(require_number, at_least=SMALLEST_ARC, below=TURN, hint="it is the angle of one pad."),
+        "extent": partial(require_number, at_least=SMALLEST_ARC, below=math.tau, hint="it is the angle of one pad."),
         "preload": partial(require_number, at_least=0.0, below=1.0, hint="it is 1 - c_b / c_p."),
         "pivot_offset": partial(require_number, above=0.0, below=1.0, hint="0.5 is the middle of the pad."),
         "pad_thickness": partial(NOT_NEGATIVE, hint="it is the distance from the pad's surface to its pivot."),
@@ -168,10 +166,10 @@ class TiltingPads(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.pads >= TURN / self.extent:
+        if self.pads >= math.tau / self.extent:
             raise InputError(
                 f"TiltingPads.extent: {self.pads} pads of {self.extent:g} rad overlap; take at most "
-                f"{math.ceil(TURN / self.extent) - 1} pads of this extent, or a smaller one."
+                f"{math.ceil(math.tau / self.extent) - 1} pads of this extent, or a smaller one."
             )
         edges = require_vector("TiltingPads.edge_pressures", self.edge_pressures, 2, "Pa")
         object.__setattr__(self, "edge_pressures", tuple(edges.tolist()))
@@ -185,7 +183,7 @@ class TiltingPads(Checked):
         """Angles (n,) of the pivots, rad."""
         between = math.pi / self.pads if self.load_between_pads else 0.0
         first = between - 0.5 * math.pi if self.first_pivot is None else self.first_pivot
-        return first + TURN / self.pads * np.arange(self.pads)
+        return first + math.tau / self.pads * np.arange(self.pads)
 
     @property
     def machined_clearance(self) -> float:
@@ -211,7 +209,7 @@ class TiltingPads(Checked):
             thermal=self.thermal,
             end_pressures=self.end_pressures,
             arc=Arc(
-                start=math.fmod(self.pivots[number] - self.pivot_offset * self.extent, TURN),
+                start=math.fmod(self.pivots[number] - self.pivot_offset * self.extent, math.tau),
                 extent=self.extent,
                 leading_pressure=self.edge_pressures[0],
                 trailing_pressure=self.edge_pressures[1],

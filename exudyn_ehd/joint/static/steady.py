@@ -12,8 +12,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.audit.audit import Audit, audit_of
+from exudyn_ehd.joint.audit.audit import audit_of
 from exudyn_ehd.joint.audit.case import Case
+from exudyn_ehd.joint.audit.findings import Audit
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.limits import (
     lacks_oil,
@@ -24,9 +25,8 @@ from exudyn_ehd.joint.balance.limits import (
 )
 from exudyn_ehd.joint.balance.newton import evaluate_at, history_at
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
+from exudyn_ehd.joint.model import results
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.fields import film_record, remembered
-from exudyn_ehd.joint.model.quantities import passing_flows, pocket_pressures, refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, faces_of
@@ -189,7 +189,7 @@ class SteadyResult(FilmRecord, FilmPictures):
         Pressure of every area of ``bearing.supply``, Pa; flow through its restrictor, m3/s, nan without one.
     inlet_flow : float
         Oil that enters the loaded zone around the bearing, Q_1, m3/s; nan at zero speed:
-        `exudyn_ehd.joint.model.quantities.passing_flows`. Tables have the side flow ratio Q_s / Q = leakage /
+        `exudyn_ehd.joint.model.results.passing_flows`. Tables have the side flow ratio Q_s / Q = leakage /
         inlet_flow and the flow variable Q / (R c N L) = inlet_flow / (R c N L), N = omega / (2 pi).
     oil_flow : float
         Total oil flow: fresh oil that passes through the film, m3/s. It replaces what leaves through ends and supply
@@ -298,7 +298,7 @@ class SteadyResult(FilmRecord, FilmPictures):
         Audit
         """
         model = model_at(replace(self.bearing, thrust=None), self.motion)
-        near = None if self.temperature is None else remembered(self)
+        near = None if self.temperature is None else results.remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
         # with faces the heat is not that of this film alone
@@ -453,7 +453,7 @@ def result_at(
     _warn_of_strain(model, film, where)
     warn_of_heat(film.temperature, film.grid, where)
     q, wrench = evaluation.quantities(), evaluation.wrench
-    peak, angle, _ = refined_peak(film)
+    peak, angle, _ = results.refined_peak(film)
     force = math.hypot(wrench[0], wrench[1])
     refuse_pressed_through(model.bearing, q["minimum_gap"], where)
     warn_of_overload(model.bearing, peak, force, where)
@@ -461,17 +461,17 @@ def result_at(
     warn_of_starved(model.bearing, film.solver.reservoirs, where)
     # quotients of Python's own numbers overflow without a warning
     reference, friction = float(model.bearing.reference_force(motion[8])) or math.nan, abs(float(q["friction_torque"]))
-    pressures, flows = pocket_pressures(film)
+    pressures, flows = results.pocket_pressures(film)
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
-    inlet, through = passing_flows(film)
+    inlet, through = results.passing_flows(film)
     heat: dict[str, float] = {}
     if model.effects.thermal is not None and film.history is not None:
         heat = model.effects.thermal.balance(film, film.history.temperature)
     return SteadyResult(
-        **vars(film_record(film)),
+        **vars(results.film_record(film)),
         minimum_gap=q["minimum_gap"],
         peak_pressure=peak,
         peak_angle=angle,
@@ -485,7 +485,7 @@ def result_at(
         restrictor_flows=flows,
         inlet_flow=inlet,
         oil_flow=through,
-        supply_flows=supply_flows(film),
+        supply_flows=results.supply_flows(film),
         contact_torque=q["contact_torque"],
         contact_power_loss=q["contact_power_loss"],
         peak_contact_pressure=q["peak_contact_pressure"],

@@ -16,13 +16,11 @@ from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_rest
-from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible, require_type
+from exudyn_ehd.status import ROUNDING, FilmError, InputError, require_number, require_plausible, require_type
 
 # Share of a speed from which on the next one has none in between, and change of temperature, K, that asks for one: a
 # tenth of the viscosity.
 NEXT, LEAP = 0.9, 3.0
-# Speed by which boundary friction would pass through rest, as a share of the slowest sliding.
-NO_TRANSITION = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +136,8 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     require_plausible("stribeck: speeds", speeds, values)
     require_rest(bearing, "stribeck")
     if bearing.asperity is not None:
-        slow = NO_TRANSITION * float(values.min()) * bearing.journal_radius
+        # boundary friction passes through rest far below the slowest sliding
+        slow = ROUNDING * float(values.min()) * bearing.journal_radius
         bearing = replace(bearing, asperity=replace(bearing.asperity, transition_speed=slow))
     model = build_study_model(bearing, 0.0)
     order = np.argsort(-values)

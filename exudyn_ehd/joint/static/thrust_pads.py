@@ -28,6 +28,7 @@ import numpy as np
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
+from exudyn_ehd.joint.balance.newton import HALVINGS, LOAD_TOLERANCE, ROUNDS
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
@@ -35,8 +36,6 @@ WHERE = "equilibrium"
 ALONG = "of TiltingThrustPads it presses the collar onto the pads along the axis."
 # Gap at the trailing edge of a first guess over that at the pivot; tried in this order.
 STARTS = (0.6, 0.85, 0.3)
-# Residual at which an equilibrium is found, above round-off of the integrals. Most steps, and halvings of one.
-TOLERANCE, MOST_STEPS, HALVINGS = 1e-10, 50, 12
 # Largest over smallest gap below which a film carries by no wedge, but by a vanishing gap.
 LEAST_WEDGE = 1.001
 
@@ -184,10 +183,10 @@ class ThrustPadSearch:
         tilt = math.copysign((1.0 - trailing) / (pads.pivot_radius * math.sin(min(behind, 1.0))), self.speed)
         v = pads.pivot_film * np.array([1.0, tilt, 0.0])
         found, r = self.at(v)
-        for _ in range(MOST_STEPS):
+        for _ in range(ROUNDS):
             if not np.isfinite(r[0]):
                 return None
-            if np.abs(r).max() < TOLERANCE:
+            if np.abs(r).max() < LOAD_TOLERANCE:
                 gap = self.film.gap
                 return (v, found, r) if gap.max() > LEAST_WEDGE * gap.min() else None
             rows = -self.matrices()[0] / (self.load * math.exp(r[0]))

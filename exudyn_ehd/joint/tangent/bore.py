@@ -18,17 +18,20 @@ from scipy.sparse import csc_matrix, csr_matrix, diags_array
 
 from exudyn_ehd.film.banded.substitution import product
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
-from exudyn_ehd.film.gradients import add_rows
-from exudyn_ehd.film.loads import shear_fields
+from exudyn_ehd.film.reynolds.gap import transposed_slopes
 from exudyn_ehd.film.surfaces.contact import contact_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.true_gap import drag_by_gap, shear_of_fills, true_fills, true_gradients
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
-    couette_slopes,
+    boundary_fields,
+    couette_field,
+    drag_by_gap,
     integrals_in_wrench,
     motion_tangent,
+    shear_of_fills,
+    true_fills,
+    true_gradients,
     wrench_weights,
 )
 
@@ -108,14 +111,7 @@ class Balances:
 
     def times(self, shapes: np.ndarray | csr_matrix, by_place: float, by_rate: float) -> np.ndarray:
         """Return `matrix` times the shapes (n m, k) of a bore."""
-        if not isinstance(shapes, np.ndarray):
-            return dense(self.matrix(by_place, by_rate) @ shapes)
-        out, factors = (
-            np.zeros((self.count, shapes.shape[1])),
-            (by_place / self.clearance, by_rate / self.clearance),
-        )
-        add_rows(self.gradients.rows, *self.gradients.stencil(self.film.grid.shape, *factors), shapes, out)
-        return out
+        return dense(self.matrix(by_place, by_rate) @ shapes)
 
     def changes(self, shapes: np.ndarray | csr_matrix, *combinations: tuple[float, float]) -> np.ndarray:
         """Changes (count, 10 + k * combinations) of the unknowns with the motion, and with coordinates of the shapes.
@@ -181,8 +177,9 @@ def bore_tangent(film: SolvedFilm, bore: Bore) -> np.ndarray:
     """Derivatives (2, 6, k) of the wrench to q and q_t at fixed unknowns: gap, slopes, fills and contacts."""
     g = film.grid
     # force and moment across the axis do not depend on the gap
-    factors, rows = integrals_in_wrench(film)[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
-    shear_fields(film.oil.P, g.weight, g.width_x[0], g.z, couette_field(film), _end_field(film), factors, rows)
+    factors = integrals_in_wrench(film)[2::3, 4:] / film.parts.bearing.radial_clearance
+    slopes = transposed_slopes(film.oil.P * g.weight, g)
+    rows = np.tensordot(factors, np.stack((couette_field(film)[0], *slopes, boundary_fields(film)[0])), 1)
     if film.loads.drag is not None:
         face, cell = drag_by_gap(film)
         # the gap on a link is the mean of its two columns
@@ -199,23 +196,6 @@ def bore_tangent(film: SolvedFilm, bore: Bore) -> np.ndarray:
     if film.pressing is not None:
         out[0] += _contact_wrench(film, bore, film.pressing)
     return out
-
-
-def couette_field(film: SolvedFilm) -> np.ndarray:
-    """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
-    field, _ = couette_slopes(film)
-    return field if film.limited is None else field * film.limited.slope
-
-
-def _end_field(film: SolvedFilm) -> np.ndarray:
-    """Gradient (n, m) of the ends' pressure force to the true gap."""
-    ends, step = film.scales.ends, film.grid.width_x[0]
-    if not ends.any():
-        return film.solver.nothing
-    field = np.zeros(film.grid.shape)
-    field[:, -1] = ends[1] * step
-    field[:, 0] = -ends[0] * step
-    return field if film.limited is None else field * film.limited.slope
 
 
 def _contact_wrench(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarray:
@@ -237,5 +217,5 @@ def contact_slope(film: SolvedFilm, f: ContactFields) -> np.ndarray:
 def _contact_columns(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarray:
     """Minus the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
     slope, z, p = contact_slope(film, f), film.grid.z, film.parts
-    cos, sin = slope * p.directions.cos_x[:, None], slope * p.directions.sin_x[:, None]
+    cos, sin = (slope * normal[:, None] for normal in film.grid.directions[:2])
     return bore.load(np.stack([cos, sin, cos * z, sin * z])).T * p.pose_scale

@@ -34,12 +34,10 @@ from exudyn_ehd.joint.tangent.bore import (
     at_unknowns,
     bore_tangent,
     contact_slope,
-    couette_field,
     dense,
     pressures_by_unknowns,
 )
-from exudyn_ehd.joint.tangent.true_gap import ratio_of, true_fills
-from exudyn_ehd.joint.tangent.wrench import motion_tangent, wrench_rows
+from exudyn_ehd.joint.tangent.wrench import couette_field, motion_tangent, ratio_of, true_fills, wrench_rows
 
 
 def complete(x: np.ndarray, wrench: np.ndarray, local: np.ndarray) -> np.ndarray:
@@ -101,7 +99,7 @@ def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
     nxt, prv = np.roll(at, -1, axis=0).ravel(), np.roll(at, 1, axis=0).ravel()
     rows = np.tile(at.ravel(), 2)
     along = csr_matrix((np.concatenate((half, -half)), (rows, np.concatenate((nxt, prv)))), shape=(n * m, n * m))
-    line = np.asarray(np.gradient(np.eye(m), grid.z, axis=0))
+    line = grid.differences_z
     j, k = np.nonzero(line)
     across = csr_matrix((np.tile(line[j, k], n), (at[:, j].ravel(), at[:, k].ravel())), shape=(n * m, n * m))
     return along, across
@@ -119,7 +117,7 @@ def traction(film: SolvedFilm, forces: BoreForces) -> np.ndarray:
     out *= film.scales.shear * R
     if film.pressing is not None:
         for (friction, transition), P_c in zip(film.pressing.friction, film.pressing.P, strict=True):
-            a, b, _ = film.slip(transition)
+            (a, b), _ = film.slip(transition)
             weight = friction * R**2 * W * P_c.ravel()
             out[0] += a * weight
             out[1] += b * weight
@@ -164,7 +162,7 @@ class TractionChange:
         self.slope = -12.0 * scale * W * P
         limited = np.ones(P.size) if film.limited is None else film.limited.slope.ravel()
         for c, along in enumerate((forces.slope_x, forces.slope_z)):
-            self.gap[1 + c] = scale * (speeds[c] * couette_field(film).ravel() - 6.0 * W * limited * (along @ P))
+            self.gap[1 + c] = scale * (speeds[c] * couette_field(film)[0].ravel() - 6.0 * W * limited * (along @ P))
         density = scale * _density(film)
         self.speed[1, :, 0] = density
         self.speed[2, :, 1] = density / R
@@ -182,8 +180,8 @@ class TractionChange:
         area = film.grid.reference_length**2 * film.grid.weight.ravel()
         self.gap[0] += contact_slope(film, fields).ravel()
         for (coefficient, transition), P, slope in zip(fields.friction, fields.P, fields.slope, strict=True):
-            a, b, by_speed = film.slip(transition)
-            for c, direction in enumerate((a, b)):
+            directions, by_speed = film.slip(transition)
+            for c, direction in enumerate(directions):
                 friction = coefficient * area
                 self.gap[1 + c] += direction * friction * slope.ravel()
                 self.speed[1 + c] += np.outer(friction * P.ravel(), by_speed[c])

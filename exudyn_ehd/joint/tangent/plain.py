@@ -57,8 +57,8 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         g.gap_shapes,
         g.mesh,
         (s.vx, s.vz, s.flow_x, s.closure.cavity_shear, s.squeeze, y.cavity_pressure),
-        (w.pose, film.loads.integrals, p.pose_scale),
-        (g.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, film.loads.couette),
+        (w.pose, film.loads.integrals, film.loads.couette, p.pose_scale),
+        ((scales.force, scales.shear, g.reference_length), (w.omega, w.axial_speed)),
         out,
     )
     work.exact = True
@@ -66,7 +66,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
-def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shapes, mesh, speeds, pose, scales, out):
+def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shapes, mesh, speeds, loads, scales, out):
     """Write the tangent.
 
     ``film``: ``FilmSystem.fields``; ``line``, ``between``: `RuptureLine.block` and `ColumnLine`, or None;
@@ -101,11 +101,11 @@ def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shape
     if between is not None:
         rows, places, by = column_gradients(between, active, factor, count, pc, H, None)
         add_columns(rows, places, by, shapes, columns)
-    gradient, field, dc = np.empty((4, 10)), np.empty(H.shape), np.zeros(10)
-    functional_gradients(lam, columns, gradient)
+    changes, field = np.zeros((8, 10)), np.empty(H.shape)
+    functional_gradients(lam, columns, changes[:4])
     couette_gradient(H, weight, active, fixed, cavity_shear, field)
     by_gap, by_pose = field.reshape(-1), shapes[0].reshape(-1, 4)
     for c in range(by_gap.size):
         for q in range(4):
-            dc[q] += by_gap[c] * by_pose[c, q]
-    wrench_gradient(gradient, dc, np.zeros((2, 10)), np.zeros((2, 4)), *pose[:2], pose[2], *scales, out)
+            changes[4, q] += by_gap[c] * by_pose[c, q]
+    wrench_gradient(changes, *loads, *scales, out)

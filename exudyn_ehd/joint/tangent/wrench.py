@@ -5,55 +5,26 @@ r(p, H, H_t, v) = 0 a sum of them changes by ``-lam . dr`` with ``A^T lam = w``,
 fixed pressure. Four integrals carry force and moments, a fifth the shear where fill or pressure enter it; gap terms and
 uneven drag together have two more, a contact on a liner five.
 
-Films that rupture as soon as they move have one-sided derivatives.
+The true gap is that of the surfaces: where a limiter acts, the film has another one. Where these differ, and where
+their roughness does, surfaces share the drag of a pressure gradient unevenly, see
+`exudyn_ehd.film.surfaces.patir_cheng`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
-from exudyn_ehd.film.gradients import functional_gradients
+from exudyn_ehd.film.gradients import Gradients, functional_gradients, join
 from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
-from exudyn_ehd.film.solvers.film import shear_by_unknown
+from exudyn_ehd.film.reynolds.links import to_ends
+from exudyn_ehd.film.solvers.film import at_beside_ends, shear_by_unknown
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
-from exudyn_ehd.film.surfaces.contact import add_contact_tangent, contact_weights
+from exudyn_ehd.film.surfaces import patir_cheng
+from exudyn_ehd.film.surfaces.contact import contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
-from exudyn_ehd.joint.tangent.true_gap import (
-    add_drag_by_pose,
-    drag_by_deflection,
-    ratio_of,
-    shear_of_fills,
-    true_fills,
-    true_gradients,
-)
-
-# Shares of the clearance. Eccentricity up to which a journal is at the centre: larger than the round-off of a position
-# of 1 m in a clearance of 1 um. Eccentricity of the films beside it, by which K and C differ from their limits.
-CENTRE, BESIDE = 1e-9, 1e-6
-# Share of the wrench, above the square of `BESIDE` and the round-off: larger changes are of first order in the step.
-SECOND_ORDER = 10.0 * BESIDE**2
-# Largest difference of K or C between a direction and the mean of all, over the mean, up to which that is given; on few
-# columns n 2 / n. Bearings that are the same in all directions have at most 0.12 on 17 columns, 0.057 on 31, 0.023 from
-# 48 on; an axial groove of 0.3 rad at the cavity pressure over two thirds of the length has 0.16.
-LARGEST_SPREAD = 0.05
-
-
-def quotients(wrench: Callable[[np.ndarray], np.ndarray], motion: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """One-sided derivatives (2, 6, n) of a wrench to the entries of a motion (n,) with a step, from above and below.
-
-    Steps are `BESIDE` of what changes the wrench as a whole: changes of second order are omitted.
-    """
-    out, middle = np.zeros((2, 6, motion.size)), wrench(motion)
-    least = SECOND_ORDER * np.abs(middle).max()
-    for k in np.flatnonzero(steps):
-        for side, step in zip(out, (steps[k], -steps[k]), strict=True):
-            change = wrench(motion + step * np.eye(motion.size)[k]) - middle
-            side[:, k] = np.where(np.abs(change) > least, change, 0.0) / step
-    return out
 
 
 def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:
@@ -87,23 +58,27 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
     """d wrench / d motion (6, 10) for a ``gradient`` of the integrals of `adjoint_rows`, SI units; None: at fixed
     unknowns."""
     p, w, scales = film.parts, film.journal, film.scales
-    shear, extra, fills = np.zeros(MOTION_SIZE), np.zeros((2, MOTION_SIZE)), true_fills(film)
-    if gradient is None:
-        gradient = np.zeros((4, MOTION_SIZE))
-    else:
+    changes, fills = np.zeros((8, MOTION_SIZE)), true_fills(film)
+    shear, extra = changes[4], changes[5:7]
+    if gradient is not None:
+        changes[:4] = gradient[:4]
         if shear_needs_adjoint(film):
-            shear = gradient[4]
+            shear[:] = gradient[4]
         if has_extra_rows(film):
-            extra = gradient[-2:]
+            extra[:] = gradient[-2:]
     if fills is not None:
         shear += fills.weighed(shear_of_fills(film)).columns(p.grid.gap_shapes, 1)[:, 0]
-    _contract_couette(film, shear)
+    by_gap, by_speed = couette_field(film)
+    shear[:4] += p.grid.by_pose(by_gap[None])[0]
+    shear[8] += by_speed
     if film.loads.drag is not None:
         add_drag_by_pose(film, extra)
-    out = np.empty((6, MOTION_SIZE))
-    known = w.pose, film.loads.integrals, p.pose_scale, p.grid.reference_length, scales.force, scales.shear
-    sliding = w.omega, w.axial_speed, film.loads.couette
-    wrench_gradient(gradient[:4], shear, extra, _boundary_gradients(film), *known, *sliding, out)
+    ends, edges = _boundary_gradients(film)
+    changes[7, :4] = ends
+    extra[0, :4] -= edges
+    out, loads = np.empty((6, MOTION_SIZE)), (w.pose, film.loads.integrals, film.loads.couette, p.pose_scale)
+    size = scales.force, scales.shear, p.grid.reference_length
+    wrench_gradient(changes, *loads, size, (w.omega, w.axial_speed), out)
     if film.pressing is not None:
         _add_contacts(film, film.pressing, out)
     return out
@@ -159,8 +134,8 @@ def has_extra_rows(film: SolvedFilm) -> bool:
 def integrals_in_wrench(film: SolvedFilm) -> np.ndarray:
     """Weights (6, 8) of S_c, S_s, S_zc, S_zs, C, slopes in theta and z, and the ends' force in the wrench."""
     w, scales, out = film.journal, film.scales, np.empty((6, 8))
-    size = film.grid.reference_length
-    integral_weights(w.pose, size, scales.force, scales.shear, w.omega, w.axial_speed, out)
+    size = scales.force, scales.shear, film.grid.reference_length
+    integral_weights(w.pose, size, (w.omega, w.axial_speed), out)
     return out
 
 
@@ -260,13 +235,10 @@ def couette_slopes(film: SolvedFilm) -> tuple[np.ndarray, float]:
     return by_gap, by_speed if oil.ratio_v is None else by_speed + float(np.vdot(density, oil.ratio_v))
 
 
-def _contract_couette(film: SolvedFilm, dc: np.ndarray) -> None:
-    """Add the gradient of C at fixed pressure and fill to ``dc`` (10,)."""
+def couette_field(film: SolvedFilm) -> tuple[np.ndarray, float]:
+    """dC/dH (n, m) with the true gap H, and dC/dvx, at fixed pressure and fill."""
     slope, (gradient, by_speed) = _film_gap_slope(film), couette_slopes(film)
-    dc[8] += by_speed
-    if slope is not None:
-        gradient *= slope
-    dc[:4] += film.grid.by_pose(gradient[None])[0]
+    return gradient if slope is None else gradient * slope, by_speed
 
 
 def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
@@ -281,31 +253,102 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
     p, g, motion = film.parts, film.grid, film.journal.motion
     for k, (friction, transition) in enumerate(f.friction):
         if f.integrals[k, 4] != 0.0:
-            add_contact_tangent(
-                f.slope[k],
-                g.weight,
-                g.moments,
-                motion,
-                p.pose_scale,
-                friction,
-                transition,
-                g.reference_length,
-                f.integrals[k],
-                out,
-            )
+            law = friction, transition, g.reference_length
+            out += contact_tangent(f.slope[k], g.weight, g.moments, motion, p.pose_scale, *law, f.integrals[k])
 
 
-def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
-    """Gradients (2, 4) of the pressure force of the ends, and of the edges of arcs, to the scaled pose.
-
-    That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
-    """
+def boundary_fields(film: SolvedFilm) -> np.ndarray:
+    """Gradients (2, n, m) of the pressure force of the ends, and of the edges of arcs, to the true gap."""
     slope, edges, g = _film_gap_slope(film), film.scales.edges, film.grid
-    whole = slope is None and not g.edges.size
-    if edges is None and (whole or not film.scales.ends.any()):
-        return np.zeros((2, 4))
     fields = np.zeros((2, *g.shape))
     fields[0][:, [0, -1]] = np.outer(g.width_x, film.scales.ends * (-1.0, 1.0))
     if edges is not None:
         fields[1, g.edges.ravel()] = np.outer(edges, g.weight_z)
-    return g.by_pose(fields if slope is None else fields * slope)
+    return fields if slope is None else fields * slope
+
+
+def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
+    """Gradients (2, 4) of `boundary_fields` to the scaled pose.
+
+    That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
+    """
+    whole = _film_gap_slope(film) is None and not film.grid.edges.size
+    if film.scales.edges is None and (whole or not film.scales.ends.any()):
+        return np.zeros((2, 4))
+    return film.grid.by_pose(boundary_fields(film))
+
+
+def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """Gradients at fixed pressure to the true gap.
+
+    Of E_x on the links i -> i+1 (1, n, m), of E_z at the vertices (1, n, m). On a liner, to the gap of the undeformed
+    surfaces, whose contact follows: of E_x and E_z at the vertices (2, n, m).
+    """
+    face, cell = _slopes(film)
+    if film.parts.liner is None:
+        return face[None], cell[None]
+    deflection = film.parts.liner.gap_slopes.D_r
+    return face[None], np.stack((to_ends(face, 0) * deflection, cell * (1.0 + deflection)))
+
+
+def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
+    """Add the gradients of E_x and E_z at fixed pressure to the scaled pose to ``gradient`` (2, 10)."""
+    face, cell = drag_by_gap(film)
+    gradient[:1, :4] += film.grid.by_pose(face, 1)
+    gradient[-len(cell) :, :4] += film.grid.by_pose(cell)
+
+
+def drag_by_deflection(film: SolvedFilm, liner: LinerFilm) -> np.ndarray:
+    """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
+    face, cell = _slopes(film)
+    return np.stack((to_ends(face, 0), cell)) * liner.deflection_by_pressure
+
+
+def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """Gradients to the true gap, of E_x on the links i -> i+1 and of E_z at the vertices (n, m)."""
+    ones, flux, limited, liner = film.solver.ones, film.solver.flux, film.limited, film.parts.liner
+    slope, face_slope = (ones, ones) if limited is None else (limited.slope, limited.face_slope)
+    if liner is not None:
+        slope, face_slope = liner.gap_slopes.rate_t, liner.gap_slopes.link
+    carriers = (ones, ones) if flux is None else (flux.cx_h, flux.cz_h)
+    return patir_cheng.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
+
+
+def true_gradients(film: SolvedFilm) -> Gradients:
+    """`FilmAnswers.gradients` to the true gap, with the balances of supply areas with an unknown pressure behind.
+
+    These are sums over the balances at their vertices.
+    """
+    s, found = film.solver, _to_true_gap(film, film.solver.gradients())
+    if (r := s.reservoirs) is None:
+        return found
+    flows = _to_true_gap(film, s.gradients(r.at))
+    rows, entries = np.nonzero(r.within().T[:, flows.rows])
+    by = flows.by[:, entries] * r.weights()[rows]
+    return join(found, Gradients(s.work.count + rows, flows.places[entries], by))
+
+
+def true_fills(film: SolvedFilm) -> Gradients | None:
+    """The fills of `FilmSolver.fill_gradients` to the true gap; None without."""
+    fills = film.solver.fill_gradients()
+    return None if fills is None else _to_true_gap(film, fills[1])
+
+
+def _to_true_gap(film: SolvedFilm, gradients: Gradients) -> Gradients:
+    f = film.limited
+    return gradients if f is None else gradients.to_true_gap(f.slope, f.bend, f.face_slope)
+
+
+def shear_of_fills(film: SolvedFilm) -> np.ndarray:
+    """Couette shear (n, m) that comes with the fill of every vertex."""
+    return ratio_of(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film)
+
+
+def shear_of_ends(film: SolvedFilm) -> np.ndarray:
+    """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
+    return at_beside_ends(film.solver.system, ratio_of(film) * film.grid.shear_weight / film.solver.H)
+
+
+def ratio_of(film: SolvedFilm) -> np.ndarray:
+    """Viscosity ratio (n, m) that shear sees."""
+    return film.solver.ones if film.oil.ratio is None else film.oil.ratio

@@ -16,7 +16,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.balance.resolution import resolution
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.quantities import refined_peak
+from exudyn_ehd.joint.model.results import refined_peak
 
 RADIUS, CLEARANCE, SPEED = 0.025, 25e-6, 100.0
 GRIDS = [{}] * 6 + [

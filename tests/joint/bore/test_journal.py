@@ -57,7 +57,7 @@ def test_equal_compliance_in_bore_or_journal_gives_the_same_film(pin):
     other = ElasticBearingModel(
         dataclasses.replace(bearing, journal=None),
         lambda grid: ModalBore(as_bore, grid),
-        elasticity=Elasticity(lambda: np.diag(modes.stiffness)),
+        elasticity=Elasticity(np.diag(modes.stiffness)),
     )
     motion = np.array([0.5 * C, 0.75 * C, 1e-4, -1e-4, 0.0, 0.0, 0.0, 0.0, 300.0, 0.0])
     mine, its = build_model(bearing).evaluate_steady(motion), other.evaluate_steady(motion)

@@ -11,7 +11,7 @@ from exudyn_ehd.film.heat.energy import end_flows_around, transport_slopes
 from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model, build_study_model
-from exudyn_ehd.joint.model.quantities import supply_flows
+from exudyn_ehd.joint.model.results import supply_flows
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from tests.sampling import sample
 

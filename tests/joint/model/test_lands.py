@@ -12,7 +12,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.supply.areas import axial_span, placed
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
-from exudyn_ehd.film.surfaces.contact import LandContact, WallContact
+from exudyn_ehd.film.surfaces.contact import WallContact
 from exudyn_ehd.joint.heat.power import heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model
 
@@ -225,7 +225,7 @@ def test_contacts_press_on_the_land_alone(law):
     rng = np.random.default_rng(5)
     gap, land = rng.uniform(-0.05, 0.3, (12, 7)), rng.uniform(0.0, 1.0, (12, 7))
     land[:3], land[3:6] = 0.0, 1.0
-    contact = LandContact(law, land)
+    contact = law.on_land(land)
     P, slope, plain, plain_slope = np.zeros((4, 12, 7))
     contact.pressure(gap, P, slope)
     law.pressure(gap, plain, plain_slope)

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
+from exudyn_ehd.film.lubricant.shear_profile import EXACT, fluidity_table, gauss_points, profile
 from exudyn_ehd.film.surfaces.asperity import average_gap_ratio
 from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor
 from exudyn_ehd.joint.model.build import build_model
@@ -77,7 +77,7 @@ def length_of(effect, flow, p_end, K):
         S = time * R * SPEED / h
 
         def excess(slope):
-            return h * h / time * profile(S, 0.0, time / MU * h * slope, oil, points, S, 0.0).F_z - flow
+            return h * h / time * profile(S, 0.0, time / MU * h * slope, oil, points, S, 0.0, EXACT)[0].F_z - flow
 
         thicker = np.exp(BARUS.coefficient * p) if "barus" in effect else 1.0
         return 1.0 / (thicker * brentq(excess, 0.0, 24.0 * MU * flow / h**3, rtol=1e-12))

@@ -13,7 +13,7 @@ import scipy
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.static.dynamic_stiffness import FilmOnBoreResponse
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse
 from tests.sampling import sample
 
 RADIUS, LENGTH, CLEARANCE, SUPPLY, SPEED = 0.03, 0.06, 30e-6, 6e6, 60.0
@@ -150,7 +150,7 @@ def test_small_motions_with_compressible_oil_in_the_areas(name, monkeypatch):
     )
     between, quick = np.geomspace(0.1 * rates.min(), 10.0 * rates.max(), 5), 1e5 * rates.max()
     reduced = rest["soft"].dynamic_stiffness(between)
-    monkeypatch.setattr(FilmOnBoreResponse, "_reduce", lambda self, found: None)
+    monkeypatch.setattr(FilmResponse, "_reduce", lambda self, found: None)
     whole = [ehd.equilibrium(made["soft"], speed=SPEED, load=(1000.0, -3000.0)), held]
     np.testing.assert_allclose(
         reduced, whole[0].dynamic_stiffness(between), rtol=0.0, atol=1e-5 * np.abs(reduced).max()

@@ -9,7 +9,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.model.quantities import refined_peak
+from exudyn_ehd.joint.model.results import refined_peak
 from exudyn_ehd.joint.model.rigid import BearingModel
 
 CLOSURES = (ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber())

@@ -8,7 +8,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.surfaces.contact import (
     add_contact,
-    add_contact_tangent,
+    contact_tangent,
     contact_weights,
 )
 from exudyn_ehd.joint.model.build import build_model
@@ -92,9 +92,8 @@ def test_contact_tangent_is_the_derivative_of_the_wrench(speed, friction):
         drag,
         atol=1e-12 * np.abs(whole).max(),
     )
-    found = np.zeros((6, 10))
     fields = slope, grid.weight, grid.moments
-    add_contact_tangent(*fields, motion, scale, friction, transition, R, integrals, found)
+    found = contact_tangent(*fields, motion, scale, friction, transition, R, integrals)
     steps = np.array([C, C, C / L, C / L, C, C, C / L, C / L, 1e-3 * transition / R, 1e-3 * transition])
     for k, d in enumerate(np.diag(1e-3 * steps)):
         difference = (wrench(motion + d) - wrench(motion - d)) / (2.0 * d[k])

@@ -1,4 +1,4 @@
-"""Scalars of a solved film: gap, peak, friction, losses and flows, in SI units."""
+"""Results of a solved film: scalars in SI units (gap, peak, friction, losses, flows), and fields copied out of it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ import numpy as np
 
 from exudyn_ehd.film import loads
 from exudyn_ehd.joint.heat.power import OilFlows, powers
-from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
+from exudyn_ehd.joint.model.effects import Wear
+from exudyn_ehd.joint.solved_film import FilmParts, History, SolvedFilm
+from exudyn_ehd.pictures.mixins import FilmPictures
+from exudyn_ehd.pictures.records import FilmRecord, JointFilm, shown
 
 
 def eccentricities(parts: FilmParts, pose: np.ndarray) -> dict[str, float]:
@@ -21,7 +24,7 @@ def eccentricities(parts: FilmParts, pose: np.ndarray) -> dict[str, float]:
     }
 
 
-def quantities(film: SolvedFilm) -> dict[str, float]:
+def quantities(film: SolvedFilm, wear: Wear | None = None) -> dict[str, float]:
     """Scalars of a solved film.
 
     The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it
@@ -67,7 +70,8 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         ``highest_pocket_pressure`` (Pa) of the areas behind them; with a thermal effect ``film_temperature`` (K, mean
         over the area) and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
         ``bush_temperature`` and ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what
-        they have grown by), with a liner or a flexible bore ``bore_displacement`` (m, the largest).
+        they have grown by), with a liner or a flexible bore ``bore_displacement`` (m, the largest), with ``wear``
+        ``wear_depth`` (m, the largest) and ``worn_volume`` (m3) of the bore at the end of the step.
     """
     p, w, area = film.parts, film.journal, film.grid.area
     R = p.grid.reference_length
@@ -115,6 +119,9 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         out |= film.walls.numbers(area)
     if p.liner is not None:
         out["bore_displacement"] = float(np.abs(p.liner.deflection).max()) * p.bearing.radial_clearance
+    if wear is not None:
+        depth = p.bearing.radial_clearance * wear.grown(film)
+        out |= {"wear_depth": float(depth.max()), "worn_volume": R**2 * float(np.sum(depth * area))}
     return out
 
 
@@ -225,3 +232,96 @@ def refined_peak(film: SolvedFilm) -> tuple[float, float, float]:
     g = film.grid
     value, theta, z = loads.refined_peak(film.oil.P, g.fixed, g.x, g.link_x, g.z)
     return value * film.scales.pressure, theta, z * g.reference_length
+
+
+class FilmFields(JointFilm, FilmPictures):
+    """The film of a joint at one instant: joint frame, SI units, arrays ``[theta, z]``.
+
+    Attributes
+    ----------
+    time : float
+        Time of the film, s.
+    theta, z : (n,), (m,) arrays
+        Angles from x about z, rad, and places along the axis from the mid-plane, m, of the grid.
+    pressure, gap : (n, m) arrays
+        Film pressure above ambient, Pa, and film thickness, m.
+    unbroken : (n, m) bool array
+        True where the film is not cavitated.
+    fill : (n, m) array or None
+        Film fraction: oil over gap; None for closures that do not conserve mass.
+    temperature : (n, m) array, float or None
+        Temperature of the film, K; one number with `LumpedThermal`, None for an isothermal bearing.
+    walls : Walls or None
+        Temperatures of bush and journal, and the radial clearance that they leave; None unless a wall conducts or the
+        film has two temperatures across it.
+    bore_displacement : (n, m) array or None
+        Deflection of a flexible bore or a liner, m, positive outward; None for a rigid one.
+    contact_pressure : (n, m) array or None
+        Pressure of asperities or wall, Pa; None without contact.
+    wear_depth : (n, m) array or None
+        Depth worn off the bore up to this instant, m; None without wear.
+    force, moment : (3,) arrays
+        Force [N] and moment [N m] on the journal, the moment about the frame's origin.
+    motion : (10,) array
+        Motion of the journal, as in `JointHistory`; with a flexible bore its coordinates and rates follow.
+    bearing : JournalBearing
+    bush_displacement : (k, 3) array or None
+        Displacements of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
+
+    Examples
+    --------
+    After the example of `SolveDynamic`:
+
+    >>> film = joint.film()
+    >>> film.pressure.shape, film.time
+    ((112, 11), 0.002)
+    >>> round(float(1e-6 * film.pressure.max()), 2)  # MPa
+    0.77
+    """
+
+    def __repr__(self) -> str:
+        gap, peak = shown("length", float(self.gap.min())), shown("pressure", float(self.pressure.max()))
+        return f"<FilmFields at {shown('time', self.time)}: minimum film thickness {gap}, peak pressure {peak}>"
+
+
+def film_record(film: SolvedFilm) -> FilmRecord:
+    """Return the common data of `FilmFields` and of a steady result for a solved film, copied."""
+    film.require_current()
+    solver, grid, temperature, bearing = film.solver, film.grid, film.temperature, film.parts.bearing
+    liner, bore = film.parts.liner, film.bore
+    yields = bore.displacement if bore is not None else None if liner is None else liner.deflection
+    return FilmRecord(
+        theta=grid.x.copy(),
+        z=grid.z * grid.reference_length,
+        pressure=film.oil.P * film.scales.pressure,
+        gap=solver.H * bearing.radial_clearance,
+        unbroken=solver.work.active.copy(),
+        fill=solver.fill.copy() if solver.closure.conserves_mass else None,
+        temperature=temperature.copy() if isinstance(temperature, np.ndarray) else temperature,
+        walls=film.walls,
+        bore_displacement=None if yields is None else yields * bearing.radial_clearance,
+        force=film.loads.wrench[:3].copy(),
+        moment=film.loads.wrench[3:].copy(),
+        bearing=bearing,
+        motion=film.journal.motion.copy(),
+    )
+
+
+def remembered(film: FilmRecord) -> History:
+    """History with the temperatures of a film and its walls."""
+    T = film.temperature
+    return History(temperature=T if film.walls is None or T is None else film.walls.behind(T))
+
+
+def film_fields(
+    film: SolvedFilm, wear: Wear | None, time: float, bush_displacement: np.ndarray | None = None
+) -> FilmFields:
+    """The fields of a solved film, with what it has worn off the bore."""
+    contacts = film.parts.contacts
+    return FilmFields(
+        **vars(film_record(film)),
+        time=time,
+        contact_pressure=None if contacts is None else np.sum(contacts.P, axis=0),
+        wear_depth=None if wear is None else wear.grown(film) * film.parts.bearing.radial_clearance,
+        bush_displacement=bush_displacement,
+    )
