@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
 import scipy
 
-from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, ObjectIndex, require_system
-from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
+from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, objects_of, require_system
+from exudyn_ehd.coupling.rotor.result import Layout, RotorResult
 from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, State
 from exudyn_ehd.coupling.rotor.spinning import WHERE
 from exudyn_ehd.coupling.run.solve import joints_of
+from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number, require_plausible
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 # Speeds at which a threshold is first looked for between its limits.
 SCAN = 16
@@ -23,6 +30,44 @@ SCAN = 16
 CONFIGURATIONS = (CURRENT, START_OF_STEP)
 # Functions of films, which are evaluated here, once per state: Exudyn sees none meanwhile.
 FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StabilityMap:
+    """Threshold speeds over a parameter, of `stability_map`.
+
+    Attributes
+    ----------
+    values : (k,) array
+        Values of the parameter.
+    thresholds : (k,) array
+        rad/s; inf where the rotor is stable up to the highest speed, 0 where it is unstable at the lowest.
+    whirl_ratios : (k,) array
+        Frequency at the threshold over the speed; nan without one.
+    limits : (float, float)
+        Lowest and highest speed, rad/s.
+
+    Examples
+    --------
+    After the example of `stability_map`:
+
+    >>> map.whirl_ratios.round(2)
+    array([0.5])
+    """
+
+    values: np.ndarray
+    thresholds: np.ndarray
+    whirl_ratios: np.ndarray
+    limits: tuple[float, float]
+
+    def plot(
+        self, text: str, *, unit: str = "-", factor: float = 1.0, ax: Axes | None = None, path: Target = None
+    ) -> Figure:
+        """Stable and unstable speeds over the parameter, called ``text`` and shown as ``factor`` times its values."""
+        from exudyn_ehd.pictures.curves import plot_map
+        from exudyn_ehd.pictures.records import Unit
+
+        return plot_map(self.values, self.thresholds, self.limits, (text, Unit(unit, factor)), ax=ax, path=path)
 
 
 def SolveEquilibrium(
@@ -51,7 +96,7 @@ def SolveEquilibrium(
       vibrations do not change; nothing wears. Films on end faces take part, but the result's values of single films
       omit them.
     - A film without load: at the exact centre K and C are those a little off it, half to two thirds of an unbroken
-      film's, since it ruptures on the side that opens (`exudyn_ehd.joint.model.centre`).
+      film's, since it ruptures on the side that opens (`exudyn_ehd.joint.model.rigid`).
 
     Parameters
     ----------
@@ -144,8 +189,8 @@ def SolveThreshold(
     """
     low, high = _limits("SolveThreshold", lowest, highest)
     with _search(mbs, rotors, ratios) as search:
-        found = _threshold(search, low, high)
-    if found is not None and found.growth[0] > 0.0 and found.speeds[0] == low:
+        found, unstable = _threshold(search, low, high)
+    if unstable:
         raise InputError(
             f"SolveThreshold: the rotor is unstable at lowest = {low:.6g} rad/s already; begin at a lower speed."
         )
@@ -187,8 +232,7 @@ def stability_map(
     thresholds, ratios = [], []
     for value in values:
         with _search(make(value), None, None) as search:
-            found = _threshold(search, low, high)
-        unstable = found is not None and found.speeds[0] == low and found.growth[0] > 0.0
+            found, unstable = _threshold(search, low, high)
         thresholds.append(np.inf if found is None else 0.0 if unstable else float(found.speeds[0]))
         worst = None if found is None or unstable else found.eigenvalues[0, np.nanargmax(found.eigenvalues[0].real)]
         ratios.append(np.nan if worst is None else abs(worst.imag) / thresholds[-1])
@@ -205,18 +249,22 @@ def _limits(where: str, lowest: float, highest: float) -> tuple[float, float]:
     return low, require_number(f"{where}: highest", highest, "rad/s", above=low)
 
 
-def _threshold(search: EquilibriumSearch, low: float, high: float) -> RotorResult | None:
-    """The lowest speed at which the rotor is not stable; None without one."""
+def _threshold(search: EquilibriumSearch, low: float, high: float) -> tuple[RotorResult | None, bool]:
+    """The lowest speed at which the rotor is not stable, None without one; whether it is unstable at the first."""
+
+    def at(speed: float) -> RotorResult:
+        return _result(search, [search.at(speed)])
 
     def growth(speed: float) -> float:
-        return float(_result(search, [search.at(speed)]).growth[0])
+        return float(at(speed).growth[0])
 
-    if growth(low) >= 0.0:
-        return _result(search, [search.at(low)])
+    first = at(low)
+    if first.growth[0] >= 0.0:
+        return first, bool(first.growth[0] > 0.0)
     for before, speed in pairwise(np.geomspace(low, high, SCAN).tolist()):
         if growth(speed) >= 0.0:
-            return _result(search, [search.at(float(scipy.optimize.brentq(growth, before, speed, rtol=1e-9)))])
-    return None
+            return at(float(scipy.optimize.brentq(growth, before, speed, rtol=1e-9))), False
+    return None, False
 
 
 @contextmanager
@@ -254,10 +302,10 @@ def _search(
 
 def _result(search: EquilibriumSearch, states: list[State]) -> RotorResult:
     """The record of states of one search."""
-    system, objects = search.system, map(ObjectIndex, range(search.mbs.systemData.NumberOfObjects()))
+    system = search.system
     layout = Layout(
         nodes={number: node.own.start for number, node in system.nodes.items()},
-        bodies={int(k): int(data["nodeNumber"]) for k in objects if "nodeNumber" in (data := search.mbs.GetObject(k))},
+        bodies={int(k): int(data["nodeNumber"]) for k, data in objects_of(search.mbs) if "nodeNumber" in data},
         frames={node: rotor.frame for rotor in system.rotors for node in rotor.nodes},
         ratios=system.ratios,
         length=search.length,

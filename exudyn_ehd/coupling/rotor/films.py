@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import exudyn as exu
 import numpy as np
@@ -12,11 +11,9 @@ from exudyn_ehd.coupling.contract import NodeIndex, Side
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
-from exudyn_ehd.coupling.rotor.bores import HeldBore
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
-from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
+from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton import SHARE
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
@@ -29,16 +26,22 @@ from exudyn_ehd.joint.balance.newton import (
 )
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.balance.resolution import warn_of_grid
-from exudyn_ehd.joint.model.centre import is_central, require_derivatives
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.seams import seen_by_faces
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmMemory, response_of, slow_motions
+from exudyn_ehd.joint.static.dynamic_stiffness import (
+    LOADS,
+    PLACES,
+    SIGNS,
+    FilmMemory,
+    require_derivatives,
+    response_of,
+    slow_motions,
+)
 from exudyn_ehd.joint.static.equilibrium import NO_LOAD
 from exudyn_ehd.joint.static.pad_equilibrium import PadSearch
 from exudyn_ehd.joint.static.pads import PadModel
 from exudyn_ehd.joint.static.steady import require_rest
-from exudyn_ehd.joint.thrust import ThrustEvaluation
+from exudyn_ehd.joint.thrust import ThrustEvaluation, seen_by_faces
 from exudyn_ehd.status import FilmError, InputError, Status
 
 
@@ -78,22 +81,6 @@ class SpinningSide(Side):
         return out
 
 
-class FilmLoads(NamedTuple):
-    """A film on the directions ``places`` of x.
-
-    Attributes
-    ----------
-    force : (n,) array
-        Generalized force.
-    by_place, by_rate : (n, n) arrays
-        Its derivatives by x and u.
-    """
-
-    force: np.ndarray
-    by_place: np.ndarray
-    by_rate: np.ndarray
-
-
 class RotorFilm:
     """One film of the system.
 
@@ -120,7 +107,8 @@ class RotorFilm:
             )
         self.places = np.concatenate((housing.places, journal.places))
         self.motion, self.rates = np.zeros(10), np.zeros(self.places.size)
-        self.faces, self.offset, self.centre = joint.element.faces, joint.element.offset, np.zeros(3)
+        # with the place along the axis where there are films on end faces
+        self.faces, self.kinematics, self._place = joint.element.faces, joint.element.collars, np.zeros(11)
         self._on_faces: ThrustEvaluation | None = None
         self._near: History | None = None
         self._told = False
@@ -130,15 +118,10 @@ class RotorFilm:
         for side in self.sides:
             side.update(self.mbs, q, u, None)
         self.rates = u[self.places]
-        self.motion = relative.motion_of(*self.frames)
+        self._place = self.kinematics.motion_of(*self.frames)
+        self.motion, self.by_place = self._place[:10], self.kinematics.variation_of(*self.frames, *self.jacobians)[0]
         if self.faces is not None:
-            self.centre = centre_of(*self.frames, self.offset)
             self._on_faces = self.faces.evaluate(self._place, self._near)
-
-    @property
-    def _place(self) -> np.ndarray:
-        """Motion (11,) of the journal with its place along the axis."""
-        return np.append(self.motion, self.centre[2])
 
     def evaluate(self) -> Evaluation | None:
         """The film at the motion; None if there is none, or none on an end face."""
@@ -160,20 +143,21 @@ class RotorFilm:
         slow, response = response_of(evaluation)
         if response is None:
             return None
-        own, by_place = free[self.places], relative.variation_of(*self.frames, *self.jacobians)[0][:PLACES]
-        return FilmMemory(response, slow, own.T @ (self._wrench_map()[:, LOADS] * SIGNS), by_place @ own)
+        own, by_wrench = free[self.places], self._wrench_map()
+        return FilmMemory(response, slow, own.T @ (by_wrench[:, LOADS] * SIGNS), self.by_place[:PLACES] @ own)
 
-    def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
-        """Loads of a wrench (6,) with tangent (6, 10), and of the films on the end faces, after `update`."""
-        state, on_faces, by_wrench = (self.rates, self.rates), None, self._wrench_map()
+    def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forces (n,) on ``places`` of a wrench (6,) with tangent (6, 10) and of films on end faces, after `update`.
+
+        Behind them their derivatives (n, n) by x and u.
+        """
+        whole = np.zeros((6, len(self._place)))
+        whole[:, :10] = tangent[:, :10]
         if self._on_faces is not None:
-            on_faces = self._on_faces.tangent()
-            wrench, tangent = wrench + self._on_faces.wrench, tangent[:, :10] + on_faces[:, :10]
-        tangent = np.ascontiguousarray(tangent)
-        by_place, by_rate, _, _ = derivatives_between(self.mbs, self.sides, state, wrench, tangent)
-        if on_faces is not None:
-            by_place += np.outer(by_wrench @ on_faces[:, 10], axial_variation(by_wrench, self.centre))
-        return FilmLoads(by_wrench @ wrench, by_place, by_rate)
+            wrench, whole = wrench + self._on_faces.wrench, whole + self._on_faces.tangent()
+        state = self.rates, self.rates
+        by_place, by_rate, _, _ = derivatives_between(self.mbs, self.sides, state, wrench, whole, self.kinematics)
+        return self._wrench_map() @ wrench, by_place, by_rate
 
     def _wrench_map(self) -> np.ndarray:
         """Map (n, 6) from a wrench on the journal to generalized forces."""
@@ -186,15 +170,12 @@ class RotorFilm:
             change += self._on_faces.tangent()[:, 8]
         return self._wrench_map() @ (self.ratio * change)
 
-    @property
-    def support_stiffness(self) -> float:
-        """N/m, of the size of the film's own where it carries much."""
-        return 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
-
     def support(self, wrench: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, with a wrench at ``middle`` (2,)."""
+        # of the size of the film's own where it carries much, N/m
+        stiffness = 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
         tangent = np.zeros((6, 10))
-        tangent[LOADS, range(4)] = -self.support_stiffness * SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
+        tangent[LOADS, range(4)] = -stiffness * SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
         away = np.concatenate((self.motion[:2] - middle, self.motion[2:]))
         return wrench + tangent @ away, tangent
 
@@ -225,7 +206,7 @@ class RotorFilm:
 
     def room(self, x: np.ndarray) -> float:
         """Largest part of a step x (size,) that leaves half of the gaps; `update` has run."""
-        change = relative.variation_of(*self.frames, *self.jacobians)[0] @ x[self.places]
+        change = self.by_place[:10] @ x[self.places]
         c, part = self.bearing.radial_clearance, self.room_of_faces(x)
         if self.model.effects.contacts or self.model.flexible:
             return min(part, FREE_STEP * c / max(float(np.hypot(*change[:2])), 1e-300))
@@ -238,9 +219,8 @@ class RotorFilm:
         thrust = self.bearing.thrust
         if self._on_faces is None or thrust is None:
             return 1.0
-        along = axial_variation(self._wrench_map(), self.centre) @ x[self.places]
-        turn = relative.variation_of(*self.frames, *self.jacobians)[0][2:4] @ x[self.places]
-        closed = abs(float(along)) + thrust.outer_radius * float(np.hypot(*turn))
+        change = self.by_place @ x[self.places]
+        closed = abs(float(change[10])) + thrust.outer_radius * float(np.hypot(*change[2:4]))
         allowed = ROOM * self._on_faces.minimum_gap if thrust.contact is None else FREE_STEP * thrust.clearance
         return min(1.0, allowed / max(closed, 1e-300))
 
@@ -249,14 +229,14 @@ class RotorFilm:
         force, known = evaluation.wrench[:2], evaluation.quantities()
         where = f"{WHERE}, joint '{self.name}'"
         self.bore.enter(q, evaluation, self.frames[0])
-        if is_central(evaluation):
+        if evaluation.is_central:
             require_derivatives(evaluation, where)
         refuse_pressed_through(self.bearing, known["minimum_gap"], where)
         warn_of_overload(self.bearing, known["peak_pressure"], float(np.hypot(*force)), where)
         self._told = self._told or (evaluation.film is not None and warn_of_grid(evaluation.film, where))
         angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
         rows = np.zeros((2, self.size))
-        rows[:, self.places] = relative.variation_of(*self.frames, *self.jacobians)[0][:2]
+        rows[:, self.places] = self.by_place[:2]
         stiffness, damping = slow_motions(tangent)
         values: dict[str, np.ndarray | float] = {
             "motion": self.motion.copy(),

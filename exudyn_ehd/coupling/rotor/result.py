@@ -5,21 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
+from scipy.linalg import block_diag, eig
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
-from exudyn_ehd.coupling.rotor.vibrations import delayed_vibrations, vibrations, vibrations_on_bores
-from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
+from exudyn_ehd.joint.static.dynamic_stiffness import ROUNDING, FilmMemory
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+# Force that a vibration may leave in the whole dynamic stiffness, over the largest of its parts.
+LEFT = 1e-7
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -150,12 +153,8 @@ class RotorResult:
         found = [vibrations(*parts) for parts in zip(*matrices, strict=True)]
         for k, memories in enumerate(self.memories):
             if memories:
-                (M, D, K), speed = (part[k] for part in matrices), abs(float(self.speeds[k]))
-                bores = [(film, own) for film in memories if (own := film.response.linear()) is not None]
-                if len(bores) == len(memories):
-                    found[k] = vibrations_on_bores(M, D, K, bores, speed)
-                else:
-                    found[k] = delayed_vibrations(M, D, K, partial(self._beyond, k), speed)
+                M, D, K = (part[k] for part in matrices)
+                found[k] = vibrations_in_films_that_follow(M, D, K, memories, abs(float(self.speeds[k])))
         size = max(len(values) for values, _ in found)
         values = np.full((len(found), size), np.nan, dtype=complex)
         vectors = np.full((len(found), matrices[0].shape[1], size), np.nan, dtype=complex)
@@ -174,9 +173,9 @@ class RotorResult:
         """(k, m) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency; m = 2n.
 
         On flexible bushes and journals there are more: the film swings with the surface, too, in waves around the bore.
-        With films that follow a vibration with a delay (`ElrodAdams`, surfaces that deflect, compressible volumes)
-        there are more or fewer motions that die out without a swing and within a turn. The place of one that is missing
-        is nan, here and in ``modes``.
+        Of films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) the oil content
+        swings, too; the motions in which the bodies take the largest part are told, 2n, or one more that belongs to
+        another. Of speeds with fewer motions than others some places are nan, here and in ``modes``.
         """
         return self._modes[0]
 
@@ -415,39 +414,60 @@ class UnbalanceResponse:
         return plot_response(self.speeds, curves, self.is_stable, path=path)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class StabilityMap:
-    """Threshold speeds over a parameter, of `stability_map`.
+def vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K) y = 0``."""
+    n = len(M)
+    lower = -np.linalg.solve(M, np.hstack((K, D)))
+    values, vectors = np.linalg.eig(np.vstack((np.eye(n, 2 * n, n), lower)))
+    return values.astype(complex), vectors[:n].astype(complex)
 
-    Attributes
-    ----------
-    values : (k,) array
-        Values of the parameter.
-    thresholds : (k,) array
-        rad/s; inf where the rotor is stable up to the highest speed, 0 where it is unstable at the lowest.
-    whirl_ratios : (k,) array
-        Frequency at the threshold over the speed; nan without one.
-    limits : (float, float)
-        Lowest and highest speed, rad/s.
 
-    Examples
-    --------
-    After the example of `stability_map`:
+def vibrations_in_films_that_follow(
+    M: np.ndarray, D: np.ndarray, K: np.ndarray, films: Sequence[FilmMemory], speed: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (m,) and vectors (n, m) of a system with films that follow it with a delay.
 
-    >>> map.whirl_ratios.round(2)
-    array([0.5])
+    With the coordinates w of films and flexible bores (`FilmResponse.linear`), z = (y, w), and v = s z where second
+    rates count,
+
+        -K z = s (D z + M v),    s z = v,
+
+    is one linear problem; its 1 / s are the eigenvalues of a matrix. Where oil content, liners or compressible volumes
+    follow, the 2n motions are taken in which the bodies take the largest part, and all that grow. That part is the
+    product of left and right eigenvectors in y and v over that in all coordinates. Where bores alone follow, motions
+    that die out without a swing and within a turn are left out. None is taken that does not solve the whole dynamic
+    stiffness.
     """
+    n, whole = len(M), []
+    parts = [(film, film.response.linear()) for film in films]
+    for k, own in enumerate((K, D, M)):
+        slow = [film.slow[k] if k < 2 else 0.0 for film in films]
+        corner = own + sum(
+            f.loads @ (of[k][:4, :4] - known) @ f.places for (f, of), known in zip(parts, slow, strict=True)
+        )
+        right = np.hstack([film.loads @ of[k][:4, 4:] for film, of in parts])
+        below = np.vstack([of[k][4:, :4] @ film.places for film, of in parts])
+        whole.append(np.block([[corner, right], [below, block_diag(*(of[k][4:, 4:] for _, of in parts))]]))
+    fast, size = np.flatnonzero(whole[2].any(axis=0)), len(whole[0])
+    moved = np.linalg.solve(whole[0], -np.hstack((whole[1], whole[2][:, fast])))
+    inverse, left, vectors = eig(np.vstack((moved, np.eye(size, size + fast.size)[fast])), left=True)
+    there = np.abs(inverse) > ROUNDING * np.abs(inverse).max()
+    values, left, vectors = 1.0 / inverse[there].astype(complex), left[:, there], vectors[:, there]
+    # round-off leaves an imaginary part to motions that only decay
+    values = np.where(np.abs(values.imag) > LEFT * np.abs(values), values, values.real)
+    if any(film.response.remembers for film in films):
+        own, products = np.append(np.arange(n), size + np.flatnonzero(fast < n)), left.conj() * vectors
+        part = np.abs(products[own].sum(axis=0) / products.sum(axis=0))
+        # both of a pair
+        taken = (part >= (1.0 - LEFT) * np.sort(part)[-2 * n]) | (values.real > 0.0)
+    else:
+        taken = values.real >= -np.maximum(np.abs(values.imag), speed / (2.0 * np.pi))
+    values, vectors = values[taken], vectors[:n, taken].astype(complex)
+    solves = [_left(M, D, K, films, s, y) < LEFT for s, y in zip(values, vectors.T, strict=True)]
+    return values[solves], vectors[:, solves]
 
-    values: np.ndarray
-    thresholds: np.ndarray
-    whirl_ratios: np.ndarray
-    limits: tuple[float, float]
 
-    def plot(
-        self, text: str, *, unit: str = "-", factor: float = 1.0, ax: Axes | None = None, path: Target = None
-    ) -> Figure:
-        """Stable and unstable speeds over the parameter, called ``text`` and shown as ``factor`` times its values."""
-        from exudyn_ehd.pictures.curves import plot_map
-        from exudyn_ehd.pictures.records import Unit
-
-        return plot_map(self.values, self.thresholds, self.limits, (text, Unit(unit, factor)), ax=ax, path=path)
+def _left(M: np.ndarray, D: np.ndarray, K: np.ndarray, films: Sequence[FilmMemory], s: complex, y: np.ndarray) -> float:
+    """Force that a vibration leaves in the whole dynamic stiffness, over the largest of its parts."""
+    terms = np.array([s**2 * M @ y, s * D @ y, K @ y, *(film.beyond(s) @ y for film in films)])
+    return float(np.abs(terms.sum(axis=0)).max() / np.abs(terms).max())

@@ -18,12 +18,11 @@ from typing import NamedTuple, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import NodeIndex, ObjectIndex
+from exudyn_ehd.coupling.contract import NodeIndex, objects_of
 from exudyn_ehd.coupling.kinematics.relative import skew
-from exudyn_ehd.coupling.rotor.bores import HeldBore
-from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm, film_model
+from exudyn_ehd.coupling.rotor.films import RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
-from exudyn_ehd.coupling.rotor.system import SpinningSystem
+from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
@@ -123,19 +122,18 @@ class EquilibriumSearch:
             found = self._newton()
         if found is None:
             raise self._lost(speed)
-        evaluations, tangents = found
         self.rest = system.derivatives()
-        balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *found, strict=True)])
-        load = max(float(np.abs(e.wrench[:3]).max()) for e in evaluations)
+        balance = self._balance([(e.wrench, tangent) for e, tangent in found])
+        load = max(float(np.abs(e.wrench[:3]).max()) for e, _ in found)
         require_steady_load(system, self.weights, balance.free, load)
         changed = np.zeros(system.size)
-        for film, tangent in zip(self.films, tangents, strict=True):
+        for film, (_, tangent) in zip(self.films, found, strict=True):
             changed[film.places] -= film.by_spin(tangent)
         free, M = balance.free, system.mass()
         self.slope = -free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ changed)
         self.speed = speed
         D = balance.r_u + M @ system.turning()
-        films = [film.found(e, t, system.q) for film, e, t in zip(self.films, *found, strict=True)]
+        films = [film.found(*of, system.q) for film, of in zip(self.films, found, strict=True)]
         whole = {
             "speeds": speed,
             "mass_matrix": free.T @ M @ free,
@@ -147,7 +145,7 @@ class EquilibriumSearch:
             "residual": balance.residual,
             "evaluations": self.count,
         }
-        memories = [film.memory(e, free) for film, e in zip(self.films, evaluations, strict=True)]
+        memories = [film.memory(e, free) for film, (e, _) in zip(self.films, found, strict=True)]
         return {name: np.array(value) for name, value in whole.items()} | {
             name: np.array([film[name] for film in films]) for name in films[0]
         }, tuple(memory for memory in memories if memory is not None)
@@ -158,8 +156,7 @@ class EquilibriumSearch:
         supports = [(np.zeros(6), np.zeros(2)) for _ in self.films]
         for _ in range(3):
             self._update()
-            springs = [film.support(*part) for film, part in zip(self.films, supports, strict=True)]
-            balance = self._balance([f.loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
+            balance = self._balance([film.support(*part) for film, part in zip(self.films, supports, strict=True)])
             require_regular(self.system, self.weights, balance.K, balance.free, SOFTEST, NOT_HELD)
             step = self._step(balance)
             self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
@@ -176,35 +173,36 @@ class EquilibriumSearch:
         for film in self.films:
             film.update(self.system.q, u)
 
-    def _films(self) -> tuple[list[Evaluation], list[np.ndarray]] | None:
+    def _films(self) -> list[tuple[Evaluation, np.ndarray]] | None:
         """Films and tangents at the state; None without a film."""
         self._update()
-        evaluations, tangents = [], []
+        out = []
         for film in self.films:
             self.count += 1
             evaluation = film.evaluate()
             if evaluation is None:
                 return None
-            evaluations.append(evaluation)
             # films of one bearing's description have models of their own: the tangent is this evaluation's
-            tangents.append(evaluation.steady_tangent(exact=True))
-        return evaluations, tangents
+            out.append((evaluation, evaluation.steady_tangent(exact=True)))
+        return out
 
-    def _balance(self, loads: list[FilmLoads]) -> ForceBalance:
-        """All forces at the state, for the last derivatives of the system without films."""
-        system, size = self.system, sum(part.force @ part.force for part in loads)
+    def _balance(self, acting: list[tuple[np.ndarray, np.ndarray]]) -> ForceBalance:
+        """All forces at the state, for wrenches (6,) and tangents (6, 10) in the films and the system's last `rest`."""
+        system, size = self.system, 0.0
         r, error = system.balance(system.q, system.spin())
         K, r_u = self.rest[0].copy(), self.rest[1].copy()
-        for film, part in zip(self.films, loads, strict=True):
+        for film, own in zip(self.films, acting, strict=True):
+            force, by_place, by_rate = film.loads(*own)
             block = np.ix_(film.places, film.places)
-            r[film.places] -= part.force
-            K[block] -= part.by_place
-            r_u[block] -= part.by_rate
+            r[film.places] -= force
+            K[block] -= by_place
+            r_u[block] -= by_rate
+            size += float(force @ force)
         K += r_u @ system.turning()
         for k, rotor in enumerate(system.rotors):
-            own = slice(system.nodes[rotor.nodes[0]].own.start + 3, system.nodes[rotor.nodes[0]].own.stop)
+            turns = slice(system.nodes[rotor.nodes[0]].own.start + 3, system.nodes[rotor.nodes[0]].own.stop)
             # the driving torque follows the axis of its node
-            K[own, own] -= self.torques[k] * skew(system.axis(k))
+            K[turns, turns] -= self.torques[k] * skew(system.axis(k))
         held = np.vstack((system.constraints(), system.drives()))
         left, values, right = np.linalg.svd(held)
         rank = int(np.sum(values > ROUNDING * values[0]))
@@ -229,14 +227,14 @@ class EquilibriumSearch:
         self._update()
         self.system.q = self.system.moved(min(film.room(step) for film in self.films) * step)
 
-    def _newton(self) -> tuple[list[Evaluation], list[np.ndarray]] | None:
+    def _newton(self) -> list[tuple[Evaluation, np.ndarray]] | None:
         """Films and tangents of an equilibrium; None if none was found."""
         system = self.system
         for _ in range(STEPS):
             films = self._films()
             if films is None:
                 return None
-            balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *films, strict=True)])
+            balance = self._balance([(e.wrench, tangent) for e, tangent in films])
             settled = balance.residual < max(TOLERANCE, balance.rounding)
             if settled and np.abs(balance.mend).max() < TOLERANCE * self.length:
                 return films
@@ -289,10 +287,8 @@ def require_regular(
 def require_axis(mbs: exu.MainSystem, system: SpinningSystem) -> None:
     """Refuse constraints that keep a rotor from turning about its axis; those on coordinates count as drives."""
     kinds = {}
-    for number in map(ObjectIndex, range(mbs.systemData.NumberOfObjects())):
-        kinds.update(
-            dict.fromkeys(map(int, mbs.systemData.GetObjectLTGAE(number)), mbs.GetObject(number)["objectType"])
-        )
+    for number, data in objects_of(mbs):
+        kinds.update(dict.fromkeys(map(int, mbs.systemData.GetObjectLTGAE(int(number))), data["objectType"]))
     misfit = np.abs(system.constraints() @ system.spin()) / np.abs(system.spins).max()
     misfit[[kinds.get(k) == "ConnectorCoordinate" for k in range(misfit.size)]] = 0.0
     if misfit.max(initial=0.0) > ISOTROPIC:

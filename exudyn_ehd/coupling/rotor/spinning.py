@@ -9,7 +9,7 @@ from typing import TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, NodeIndex, ObjectIndex
+from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, NodeIndex, ObjectIndex, objects_of
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide, node_side
 from exudyn_ehd.coupling.run.joint_state import Joint
@@ -112,8 +112,7 @@ def _connected(first: int, links: dict[int, set[int]]) -> list[int]:
 def _links(mbs: exu.MainSystem) -> dict[int, set[int]]:
     """Return for every node those that turn with it, through beams, fixed joints and torsional springs."""
     links: dict[int, set[int]] = {}
-    for number in range(mbs.systemData.NumberOfObjects()):
-        data = mbs.GetObject(ObjectIndex(number))
+    for _, data in objects_of(mbs):
         nodes = set()
         if data["objectType"] == "BeamGeometricallyExact3D":
             nodes = {int(node) for node in data["nodeNumbers"]}

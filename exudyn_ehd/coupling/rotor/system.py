@@ -21,6 +21,13 @@ Exudyn's elements: its ``RigidBodySpringDamper`` damps velocities in space, whic
 
 Source of the variation of omega: dA = [dphi] A and A_t = [omega] A give [d omega] = d/dt [dphi] + [dphi][omega] -
 [omega][dphi]. The derivatives of r are central differences; films are left out, whose tangents are exact (`films`).
+
+Flexible bushes and journals of bearings: their coordinates follow the films, and x is without them
+--------------------------------------------------------------------------------------------------
+Modes of a bush or a journal have no mass. With the journal they move as the balance of the film and its surface says,
+which is part of the film's K, C and dynamic stiffness (`exudyn_ehd.joint.static.dynamic_stiffness`). The mesh of an
+`ANCFBush` has mass. It counts as a rigid part of the housing, whose node carries its nodes: a bush is much stiffer than
+its film, and its own vibrations are far above those of a rotor.
 """
 
 from __future__ import annotations
@@ -30,19 +37,34 @@ from typing import Any, TypeAlias, cast
 
 import exudyn as exu
 import numpy as np
+from exudyn.lieGroupBasics import ExpSO3
+from exudyn.rigidBodyUtilities import (
+    RotationMatrix2EulerParameters,
+    RotationMatrix2RotationVector,
+    RotationMatrix2RotXYZ,
+)
 
 from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
+from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import exponential_map, skew
+from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, node_side
-from exudyn_ehd.coupling.rotor.bores import HeldBore
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
+from exudyn_ehd.joint.bore.solid import SolidElasticity
+from exudyn_ehd.joint.model.flexible import ElasticEvaluation
+from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.status import InputError
 
 # Steps of the differences: m or rad, and m/s or rad/s, in which the forces of bodies are quadratic.
 STEP, RATE_STEP = 1e-6, 1e-2
 
-
+COORDINATES_OF = {
+    rigid_nodes.EULER_PARAMETERS: RotationMatrix2EulerParameters,
+    rigid_nodes.TAIT_BRYAN: RotationMatrix2RotXYZ,
+    rigid_nodes.ROTATION_VECTOR: RotationMatrix2RotationVector,
+}
+"""Functions from a rotation (3, 3) to a node's coordinates, by the kind of these."""
 NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 
@@ -107,19 +129,56 @@ class TurningNode:
         return B, -inverse @ (self.side.change(None, own)[3:] @ rates @ rates)
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
-        """Change the coordinates of the system by a displacement and a rotation (6,), exact to the second order."""
-        own, carried = self.places[3 : self.count], self.places[self.count :]
-        theta, arms, before = self.side.reference[3:] + q[own], self._arms(q), self.turn(q)
-        change = self.rates(q, x[3:])[0][3 : self.count, 3:] @ x[3:]
-        if self.side.kind == rigid_nodes.ROTATION_VECTOR:
-            # the angular velocity is that in the turned frame
-            change = np.linalg.solve(exponential_map(theta)[1].T, change)
-        theta = theta + change
+        """Change the coordinates of the system by a displacement and a rotation vector (6,)."""
+        own, carried, reference = self.places[3 : self.count], self.places[self.count :], self.side.reference[3:]
+        arms, turning = self._arms(q), ExpSO3(x[3:])
+        theta = np.ravel(COORDINATES_OF[self.side.kind](turning @ self.turn(q)))
         if self.side.kind == rigid_nodes.EULER_PARAMETERS:
-            theta /= np.linalg.norm(theta)
+            # of either sign
+            theta = theta * np.sign(theta @ (reference + q[own]))
         q[self.places[:3]] += x[:3]
-        q[own] = theta - self.side.reference[3:]
-        q[carried] += (x[:3] + arms @ (self.turn(q) @ before.T - np.eye(3)).T).ravel()
+        q[own] = theta - reference
+        q[carried] += (x[:3] + arms @ (turning - np.eye(3)).T).ravel()
+
+
+class HeldBore:
+    """Coordinates of the bush and the journal of one film; none of rigid surfaces and liners.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    element : FilmElement
+
+    Attributes
+    ----------
+    places : (k,) array
+        Places in the system's coordinates.
+    housing : int
+        Node that carries a mesh; -1 without one.
+    reference, local : (n, 3) arrays
+        Of a mesh: reference positions of the nodes that have coordinates, and their places in the bush's frame, m.
+    """
+
+    def __init__(self, mbs: exu.MainSystem, element: FilmElement) -> None:
+        bush = element.bush if isinstance(element, NodalFilmElement) else None
+        nodes = element.bore_nodes if bush is None else bush.nodeNumbers
+        found = [mbs.systemData.GetNodeLTGODE2(int(node)) if int(node) >= 0 else () for node in nodes]
+        self.places = np.array([place for part in found for place in part], dtype=int)
+        self.housing, self._moves = -1, [k for k, part in enumerate(found) if len(part)]
+        if bush is not None:
+            self.reference, self.local = bush.solid.mesh.nodes[self._moves], bush.mesh.nodes[self._moves]
+            self.housing = int(element.sides[0].nodes[0]) if element.sides[0].nodes else -1
+
+    def enter(self, q: np.ndarray, evaluation: Evaluation, frame: np.ndarray) -> None:
+        """Bring the system's q (n,) to a film's balance; ``frame`` is that of the housing."""
+        if not isinstance(evaluation, ElasticEvaluation):
+            return
+        elasticity = evaluation.model.elasticity
+        if isinstance(elasticity, SolidElasticity):
+            moved = self.local + elasticity.displacements[self._moves]
+            q[self.places] = (frame[:, 3] + moved @ frame[:, :3].T - self.reference).ravel()
+        else:
+            q[self.places] = evaluation.bore.coordinates
 
 
 class SpinningSystem:
@@ -295,14 +354,7 @@ class SpinningSystem:
         """Coordinates (n,) of the state after all rotors have turned by an angle, rad."""
         q = self.q.copy()
         for _, node, axis in self.spinning:
-            start = node.turn(self.q)
-            goal = exponential_map(angle * (start @ axis))[0] @ start
-            for _ in range(50):
-                rest = goal @ node.turn(q).T
-                x = 0.5 * np.array([0, 0, 0, rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]])
-                node.move(q, x)
-                if np.abs(x).max() < 1e-14:
-                    break
+            node.move(q, np.concatenate((np.zeros(3), angle * (node.turn(self.q) @ axis))))
         return q
 
     def _enter(self, q: np.ndarray, rates: np.ndarray) -> None:
