@@ -24,7 +24,7 @@ from exudyn import itemInterface as items
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from exudyn_ehd.coupling.bush.object import CreateFlexibleBush, FlexibleBush, FreeOuter, Support
+from exudyn_ehd.coupling.items.bush import CreateFlexibleBush, FlexibleBush, FreeOuter, Support
 from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse
 from exudyn_ehd.pictures.bush import Frame, contour_figure
 from exudyn_ehd.pictures.style import styled

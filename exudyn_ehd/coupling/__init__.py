@@ -8,27 +8,12 @@ pads        `CreateTiltingPadBearing`, `CreateTiltingPadThrustBearing`: pads as 
 replace     `ReplaceJoint`: films in the place of joints that a model has; `ReplaceReducedBody`
 handle      `LubricatedJoint`: what a user has of a joint
 rotor       rotors in several films: equilibria over the speed, eigenvalues, unbalance
-run         Exudyn's solvers with this package's errors and start of Newton's method; restarts; settings
+run         Exudyn's solvers with this package's errors and start of Newton's method; restarts
 element     the film as an object of Exudyn: user functions, accepted steps, failures, sensors, drawing
-bush        nodal bush as an object of a model
-watch       which solver is at work, steps too coarse for a film
-items       item numbers of a scene to carriers of a joint frame; input checks
+doubts      steps too coarse for a film, films and forces to doubt, a line at the end of a run
+exudyn_solvers settings of runs, the solver at work, its hooks; control of steps
+items       item numbers of a scene to carriers of a joint frame; input checks; a nodal bush as an object of a model
 record      what a run leaves: histories, films, a line
 kinematics  poses, rates and exact variations of the two frames, as kernels
 contract    what the coupling asks of a film and of a side; names for Exudyn's types
 """
-
-from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
-from exudyn_ehd.coupling.handle import LubricatedJoint
-from exudyn_ehd.coupling.record.history import JointHistory, Quantity
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
-
-__all__ = [
-    "ConfigureSolver",
-    "CreateLubricatedJoint",
-    "Free",
-    "Held",
-    "JointHistory",
-    "LubricatedJoint",
-    "Quantity",
-]

@@ -16,6 +16,7 @@ from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
 from exudyn_ehd.coupling.element.attach import add_faces, attach_bush, initial_coordinates
 from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.exudyn_solvers import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, hold, move_to_start, place_joint
@@ -23,7 +24,6 @@ from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_surfaces
 from exudyn_ehd.coupling.record.rows import Every, File, Period
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint, require_new
-from exudyn_ehd.coupling.watch.solver_state import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector, warn_user
@@ -343,7 +343,7 @@ def attach(
     display = FilmDisplay(element)
     number = add_element(mbs, display, show, color, **more)
     if getattr(model.bearing, "thrust", None) is not None:
-        add_faces(mbs, element, (housing, journal), float(rotation[:, 2] @ (points[1] - points[0])))
+        add_faces(mbs, element, float(rotation[:, 2] @ (points[1] - points[0])))
     held = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
     constraint = hold(mbs, name, (housing, journal), points, rotation, **held)
     make = functools.partial(LubricatedJoint, element=element, numbers=(number, constraint), display=display)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, SupportsInt, TypeAlias
 
@@ -40,6 +40,12 @@ def require_system(where: str, mbs: exu.MainSystem, *, assembled: bool | None = 
             "not assembled; call mbs.Assemble() first" if assembled else "assembled already; do it before Assemble()"
         )
         raise InputError(f"{where}: the system{of} is {state}.")
+
+
+def objects_of(mbs: exu.MainSystem) -> Iterator[tuple[Index, Data]]:
+    """Numbers and data of all objects of a system."""
+    for number in map(ObjectIndex, range(mbs.systemData.NumberOfObjects())):
+        yield number, mbs.GetObject(number)
 
 
 class JointEvaluation(Protocol):
@@ -87,12 +93,15 @@ class Trial:
         if not math.isfinite(sum(self.q)):
             self.status = Status.NOT_FINITE
 
-    def take(self, evaluation: JointEvaluation, faces: ThrustEvaluation | None = None) -> None:
-        """Store the evaluations of the journal's film and of the end faces."""
-        self.evaluation, self.faces = evaluation, faces
-        if faces is not None and faces.status is Status.CONVERGED and isinstance(evaluation, Evaluation):
-            evaluation.heat_with(faces.heat)
-        self.status = evaluation.status if faces is None else max(evaluation.status, faces.status)
+    def take(self, evaluation: JointEvaluation) -> None:
+        """Store the evaluation of the journal's film."""
+        self.evaluation, self.status = evaluation, evaluation.status
+
+    def take_faces(self, faces: ThrustEvaluation) -> None:
+        """Store the evaluation of the films on the end faces, whose heat goes into the journal's film."""
+        self.faces, self.status = faces, max(self.status, faces.status)
+        if faces.status is Status.CONVERGED and isinstance(self.evaluation, Evaluation):
+            self.evaluation.heat_with(faces.heat)
 
     @property
     def found(self) -> JointEvaluation:

@@ -19,10 +19,11 @@ from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.restart import place
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.audit.audit import Audit, audit_record
+from exudyn_ehd.joint.audit.audit import audit_record
+from exudyn_ehd.joint.audit.findings import Audit
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 from exudyn_ehd.pictures.mixins import FilmPictures, HistoryPictures
 from exudyn_ehd.pictures.records import shown
@@ -175,7 +176,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
             film = model.bearing.film
             grid = FiniteLength(n_theta=film.n_theta, n_z=film.n_z, stretch=film.stretch)
             model = build_model(dataclasses.replace(model.bearing, film=grid))
-            return film_fields(model.evaluate(trial.motion), time)
+            return model.evaluate(trial.motion).fields(time)
         return self.element.fields(self.mbs, time, trial, configuration)
 
     def record_films(self, *, period: float = 0.0, frames: int = 400) -> None:

@@ -30,6 +30,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.api import Free, Held, attach, equip, require_arguments
 from exudyn_ehd.coupling.contract import INITIAL, Data, Index, JointModel, Side, require_system
+from exudyn_ehd.coupling.exudyn_solvers import StepControl
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import body_item
 from exudyn_ehd.coupling.items.joint_frame import add_body_on, hold, hold_at_pivot, in_the_name_of, place_joint
@@ -37,7 +38,6 @@ from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.run.restart import equilibrium_task, shift_journal
-from exudyn_ehd.coupling.watch.solver_state import StepControl
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import equilibrium

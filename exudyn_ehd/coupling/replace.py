@@ -17,7 +17,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
-from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex, require_system
+from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex, objects_of, require_system
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import MASS_POINTS, POINT_KINDS
 from exudyn_ehd.coupling.items.markers import marker_item
@@ -167,15 +167,13 @@ def ReplaceJoints(
         require_type("ReplaceJoints.bearing", bearing, JournalBearing)
     films: dict[int, LubricatedJoint] = {}
     found = False
-    for k in range(mbs.systemData.NumberOfObjects()):
-        number = ObjectIndex(k)
-        joint = mbs.GetObject(number)
+    for number, joint in objects_of(mbs):
         if joint["objectType"] not in types or not joint["activeConnector"] or not _turns(joint):
             continue
         found = True
-        own = bearing if isinstance(bearing, JournalBearing) else bearing(k)
+        own = bearing if isinstance(bearing, JournalBearing) else bearing(int(number))
         if own is not None:
-            films[k] = ReplaceJoint(mbs, number, bearing=own, **options)
+            films[int(number)] = ReplaceJoint(mbs, number, bearing=own, **options)
     if not found:
         raise InputError(
             f"ReplaceJoints: the system has no active joint of type {', '.join(types)} with one rotation free; make "

@@ -17,20 +17,20 @@ from exudyn_ehd.coupling.contract import Data, Index, JointModel, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outputs import FilmDisplay, add_element, pressure_colours, ring_triangles
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.exudyn_solvers import StepControl
 from exudyn_ehd.coupling.items.joint_frame import move_to_start, place_joint
 from exudyn_ehd.coupling.kinematics.relative import BALL, ball_motion
-from exudyn_ehd.coupling.record.history import JointHistory, make_row
+from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.solve import register_joint
-from exudyn_ehd.coupling.watch.solver_state import StepControl
 from exudyn_ehd.joint import step_error
-from exudyn_ehd.joint.audit.audit import Audit
+from exudyn_ehd.joint.audit.findings import Audit
 from exudyn_ehd.joint.audit.samples import FilmSteps
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel
 from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, result_of
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import FilmError, InputError, Status, require_type, require_vector
+from exudyn_ehd.status import FilmError, InputError, require_type, require_vector
 
 # Distance of the centres beyond which no film is thin, share of the ball's radius.
 FARTHEST = 0.1
@@ -73,14 +73,10 @@ class SphericalFilmElement(FilmElement):
 
     kinematics, parts, messages = BALL, step_error.BALL, SphericalFailures
 
-    def row(self, time: float, trial: Trial) -> np.ndarray | None:
-        """Row of the record, None without a film; its motion is place, velocity, angular velocity and 0."""
-        if trial.evaluation is None or trial.status != Status.CONVERGED:
-            return None
-        motion = trial.motion[[0, 1, 2, 4, 5, 6, 8, 9, 10, 3]]
+    def recorded(self, motion: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
+        """Return place, velocity, angular velocity and 0 (10,), and the eccentricity ratio twice."""
         ratio = float(np.linalg.norm(motion[:3])) / self.model.bearing.radial_clearance
-        wrench, quantities = trial.evaluation.wrench, trial.evaluation.quantities()
-        return make_row(time, motion, (ratio, ratio), wrench, quantities, self.steps.tangent, self.outer.load)
+        return motion[[0, 1, 2, 4, 5, 6, 8, 9, 10, 3]], (ratio, ratio)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)

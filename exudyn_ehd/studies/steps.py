@@ -32,7 +32,7 @@ from scipy.interpolate import PchipInterpolator
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SolveDynamic
 from exudyn_ehd.progress import without_lines
 from exudyn_ehd.status import EHDError, InputError, RunError, require_number, require_plausible, require_type, warn_user

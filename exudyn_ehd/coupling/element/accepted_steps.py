@@ -18,17 +18,17 @@ from typing import Protocol
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling import doubts, exudyn_solvers
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
+from exudyn_ehd.coupling.exudyn_solvers import GapWatch
 from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder, Record
-from exudyn_ehd.coupling.watch import doubts, solver_state
-from exudyn_ehd.coupling.watch.solver_state import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.limits import HOT, lacks_oil
-from exudyn_ehd.joint.model.fields import FilmFields
+from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
 from exudyn_ehd.status import OverloadWarning, Status, warn_user
@@ -96,7 +96,7 @@ class AcceptedSteps:
     began : float
         Time at which the last run began, s.
     solvers : pair
-        Exudyn's stored solvers in the run under way, see `solver_state.stored_solvers`.
+        Exudyn's stored solvers in the run under way, see `exudyn_solvers.stored_solvers`.
     solver : object or None
         The one of them that is at work.
     memory : History or None
@@ -130,7 +130,7 @@ class AcceptedSteps:
         # the element holds its steps: without a circle it goes as soon as its system does
         self.film: SteppedElement = weakref.proxy(film)
         self.start = self.began = np.nan
-        self.solver: solver_state.Solver | None = None
+        self.solver: exudyn_solvers.Solver | None = None
         self.control: GapWatch | None = None
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
@@ -156,10 +156,10 @@ class AcceptedSteps:
         self.start = np.nan
         self.record.clear()
         # the next run is a new one, whatever was run before
-        self.solvers = solver_state.NO_RUN
+        self.solvers = exudyn_solvers.NO_RUN
         self.film.forget()
 
-    def accept(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> None:
+    def accept(self, mbs: exu.MainSystem, start: float, solvers: exudyn_solvers.Stored) -> None:
         """Take the state at the start of the current step as accepted.
 
         Raises
@@ -172,7 +172,7 @@ class AcceptedSteps:
         resumed = begins and self._begin_run(mbs, start, solvers)
         self.unseen = 0 if begins or not self.is_idle else self.unseen + 1
         if self.unseen == 2:
-            solver_state.warn_unknown(self.film.failures.name)
+            exudyn_solvers.warn_unknown(self.film.failures.name)
         if self._uses_memory and self.memory is None:
             self.start = start
             motion = self.film.motion(mbs, START_OF_STEP)
@@ -201,7 +201,7 @@ class AcceptedSteps:
         last, self.start = self.start, start
         self._check(start, trial, start - last, row)
 
-    def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
+    def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: exudyn_solvers.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
         self.film.presence.require(mbs)
         film, place, before = self.film, self.film.read(mbs, START_OF_STEP)[0], self._first
@@ -209,16 +209,16 @@ class AcceptedSteps:
         # nothing has moved either run starts where the other ended
         goes_on = start > self.record.last_time and (place != before or self.asked[1] == before)
         resumed = self._resumed is not None and start == self._resumed[0]
-        solver = self.solver if solvers == self.solvers else solver_state.running_solver(self.solvers, solvers)
+        solver = self.solver if solvers == self.solvers else exudyn_solvers.running_solver(self.solvers, solvers)
         if self._resumed is None and place == before and not goes_on:
             memory, self.begin, self.start = self._first_memory, None, start
         else:
             memory = self._take_up(mbs, start, place, solver)
         self.solver, self.solvers = solver, solvers
-        if solver_state.is_explicit(self.solver) and film.is_massless:
+        if exudyn_solvers.is_explicit(self.solver) and film.is_massless:
             raise film.failures.no_mass()
         # the time of a static solve is a load parameter: the film is the steady one
-        self._uses_memory = film.model.remembers and not solver_state.is_static(self.solver)
+        self._uses_memory = film.model.remembers and not exudyn_solvers.is_static(self.solver)
         self._watch_anew(mbs)
         self.film.outer.begin(self.solver)
         self.tangent = self.tolerance = None
@@ -234,9 +234,9 @@ class AcceptedSteps:
     def _watch_anew(self, mbs: exu.MainSystem) -> None:
         """Begin to watch the films, forces and steps of a run; every warning is given once."""
         bearing, solver = self.film.model.bearing, self.solver
-        self._chatter = doubts.ChatterWatch(bearing) if solver_state.is_explicit(solver) else None
+        self._chatter = doubts.ChatterWatch(bearing) if exudyn_solvers.is_explicit(solver) else None
         area = 2.0 * bearing.journal_radius * bearing.length
-        may_ring = solver is None or solver_state.is_implicit(solver)
+        may_ring = solver is None or exudyn_solvers.is_implicit(solver)
         self._ringing = ringing.RingingWatch(area) if may_ring else None
         self._turning = doubts.TurnWatch(mbs, self.film.sides, solver)
         doubts.warn_of_radius(solver)
@@ -245,7 +245,7 @@ class AcceptedSteps:
         self._cool, self._grid = HOT, doubts.GridWatch()
 
     def _take_up(
-        self, mbs: exu.MainSystem, start: float, place: list[float], solver: solver_state.Solver | None
+        self, mbs: exu.MainSystem, start: float, place: list[float], solver: exudyn_solvers.Solver | None
     ) -> History | None:
         """Memory for a run of ``solver`` that goes on from a stored state, or from where the run before has ended.
 
@@ -258,14 +258,14 @@ class AcceptedSteps:
             self.start, self.begin = start, begin if start == time else None
             return memory
         end = last
-        if solver_state.is_finished(self.solver):
+        if exudyn_solvers.is_finished(self.solver):
             end = self.asked[0] if self.solver is None else self.solver.it.currentTime
-        static = solver_state.is_static(self.solver) or solver_state.is_static(solver)
+        static = exudyn_solvers.is_static(self.solver) or exudyn_solvers.is_static(solver)
         if not static and abs(start - end) <= SAME_TIME * (end - last):
             return memory
         if memory is not None:
             # explicit solvers do not ask at the end of a step
-            if place != self.asked[1] and not solver_state.is_explicit(self.solver):
+            if place != self.asked[1] and not exudyn_solvers.is_explicit(self.solver):
                 film.failures.warn_of_memory(start, end)
             if self._uses_memory and end > last:
                 trial = film.look(mbs, end, START_OF_STEP)
@@ -278,14 +278,14 @@ class AcceptedSteps:
     def _begin_of_next(self, time: float, trial: Trial) -> StepStart | None:
         """Return the start of the next step; None if the solver's formulas or the state's motion are unknown."""
         known = trial.status == Status.CONVERGED or np.isfinite(trial.bodies.sum())
-        if not (known and solver_state.is_implicit(self.solver)):
+        if not (known and exudyn_solvers.is_implicit(self.solver)):
             return None
         return next_start(self.begin, trial.bodies, time, self.film.model.bearing.radial_clearance)
 
     def _check(self, start: float, trial: Trial, step: float, row: np.ndarray | None) -> None:
         """Raise `FilmError` for a film that can't go on, warn of films that run dry or thin and of forces that ring."""
         failures = self.film.failures
-        if trial.status == Status.NO_PRESSURE and (step > 0.0 or solver_state.is_implicit(self.solver)):
+        if trial.status == Status.NO_PRESSURE and (step > 0.0 or exudyn_solvers.is_implicit(self.solver)):
             raise failures.no_film(start, trial, explicit=False)
         if row is not None and (absurd := failures.absurd(start, row, trial)) is not None:
             raise absurd
@@ -326,7 +326,7 @@ class AcceptedSteps:
     @property
     def is_idle(self) -> bool:
         """Return whether no solver is running; False after a run that an exception has ended."""
-        return solver_state.is_finished(self.solver)
+        return exudyn_solvers.is_finished(self.solver)
 
     @property
     def _accepted(self) -> exu.ConfigurationType:
@@ -372,7 +372,7 @@ class AcceptedSteps:
         self._grid.tell(failures.name)
         doubts.warn_of_tiny_forces(failures.name, self.solver, self.tolerance, bearing, history)
         if doubts.is_on() and history.time.size > 1:
-            why = () if self.chosen or solver_state.is_explicit(self.solver) else failures.refused.values()
+            why = () if self.chosen or exudyn_solvers.is_explicit(self.solver) else failures.refused.values()
             doubts.LOGGER.info("%s", doubts.line(failures.name, bearing, history, why))
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:

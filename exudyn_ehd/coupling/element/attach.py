@@ -12,20 +12,20 @@ import exudyn.itemInterface as eii
 import numpy as np
 from scipy.linalg import block_diag
 
-from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
-from exudyn_ehd.coupling.element.nodal import BoreFilmElement, ModalFilmElement, NodalFilmElement, TurningFilmElement
+from exudyn_ehd.coupling.element.nodal import ModalFilmElement, NodalFilmElement, TurningFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item
+from exudyn_ehd.coupling.items.bush import Mount, add_bush
 from exudyn_ehd.coupling.items.objects import own_equations, require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide, initial_frame
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.relative import centre_of, motion_of
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
-from exudyn_ehd.joint.model.build_flexible import TurningModel
+from exudyn_ehd.joint.model.build import TurningModel
 from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
@@ -50,7 +50,7 @@ def attach_bush(
     name: str,
     show: bool,
     gravity: np.ndarray | None,
-) -> tuple[BoreFilmElement, dict[str, object]]:
+) -> tuple[FilmElement, dict[str, object]]:
     """Add the bush of ``model``.
 
     Parameters
@@ -70,14 +70,14 @@ def attach_bush(
 
     Returns
     -------
-    element : BoreFilmElement
+    element : FilmElement
         The film on it.
     arguments : dict
         Arguments of the element's ObjectGenericODE2 besides nodes and functions.
     """
-    for item, side in zip(items, sides, strict=True):
-        start = undeformed(mbs, item, side) if isinstance(side, FloatingBoreSide) else item
-        side.frame[:] = initial_frame(mbs, start, side)
+    for side in sides:
+        state = undeformed(mbs, side) if isinstance(side, FloatingBoreSide) else None
+        side.frame[:] = initial_frame(mbs, side, state)
     if not isinstance(model.bore, ModalBore):
         return _attach_nodes(mbs, model, items[0], sides, place, name, show, gravity), {}
     if gravity is not None:
@@ -129,7 +129,7 @@ def _attach_nodes(
     weight = [] if gravity is None else [Gravity(acceleration=gravity)]
     bush = add_bush(mbs, f"{name} bush", solid, mount, place, fixed=mount is None, show=show, loads=weight)
     if bush.equations.contained is not None:
-        require_heavy_housing(mbs, item.node, bush.equations.contained.mass, name)
+        require_heavy_housing(mbs, item, bush.equations.contained.mass, name)
     start = initial_coordinates(model, sides)
     if start is not None:
         assert isinstance(model.elasticity, SolidElasticity)
@@ -153,7 +153,7 @@ class StartingFilm:
     spin: float
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass
 class FilmsOnOneBody:
     """Films on bores of one body, whose modes they share, as `bore_equilibrium` takes them.
 
@@ -177,7 +177,7 @@ class FilmsOnOneBody:
         return FilmsTogether(parts, max(part.status for part in parts), bore)
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass
 class FilmsTogether:
     """Evaluations of films on one body, the worst status, and the body's coordinates with the sum of the loads."""
 
@@ -202,16 +202,12 @@ def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) ->
     return _equilibrium([_starting_film(model, sides)])
 
 
-def undeformed(mbs: exu.MainSystem, housing: Item, side: FloatingBoreSide) -> Item:
-    """The housing with its modes at rest, if they are where an earlier joint's film has put them."""
-    node = side.nodes[-1]
-    known = _known(mbs, side)
-    if not known or not np.array_equal(mbs.GetNodeParameter(node, "initialCoordinates"), known[1]):
-        return housing
-    initial = np.array(housing.initial_coordinates, dtype=float)
-    velocities = np.array(housing.initial_velocities, dtype=float)
-    initial[side.floating.size :] = velocities[side.floating.size :] = 0.0
-    return dataclasses.replace(housing, initial_coordinates=initial, initial_velocities=velocities)
+def undeformed(mbs: exu.MainSystem, side: FloatingBoreSide) -> tuple[np.ndarray, np.ndarray]:
+    """Initial q and q_t of a body, its modes at rest if they are where an earlier joint's film has put them."""
+    (_, q, q_t), known, n = node_coordinates(mbs, side.nodes), _known(mbs, side), side.floating.size
+    if known and np.array_equal(q[n:], known[1]):
+        q[n:] = q_t[n:] = 0.0
+    return q, q_t
 
 
 def _settle_body(
@@ -272,7 +268,7 @@ def _starting_film(
         film = TurningModel(bearing, journal, effects=effects)
         film.turns = False
         spin = float(sides[1].frame[:, 2] @ sides[1].frame[:, 5])
-        film.elasticity = Elasticity(lambda: held.stiffness_matrix, spin**2 * journal.mass)
+        film.elasticity = Elasticity(held.stiffness_matrix, spin**2 * journal.mass)
     else:
         make = model.make_bore if held is None else lambda grid: ModalBore(held, grid)
         film = ElasticBearingModel(bearing, make, elasticity=model.elasticity, effects=effects)
@@ -308,27 +304,23 @@ def _standing_rates(films: list[StartingFilm], q: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.lstsq(np.concatenate(maps), -np.concatenate(carried), rcond=1e-6)[0])
 
 
-def add_faces(mbs: exu.MainSystem, element: FilmElement, items: tuple[Item, Item], offset: float) -> None:
+def add_faces(mbs: exu.MainSystem, element: FilmElement, offset: float) -> None:
     """Give an element the films on the end faces of its bearing.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
     element : FilmElement
-    items : pair of Item
-        Housing and journal.
     offset : float
-        Of `FilmElement`.
+        Distance of the joint points along the axis in the reference configuration, m.
 
     Raises
     ------
     InputError
         If the journal starts outside its faces.
     """
-    model, sides = ThrustModel(element.model.bearing), element.sides
-    element.faces, element.offset = model, offset
-    housing, journal = (initial_frame(mbs, item, side) for item, side in zip(items, sides, strict=True))
-    start = model.evaluate(np.append(motion_of(housing, journal), centre_of(housing, journal, offset)[2]))
+    element.faces, element.collars = ThrustModel(element.model.bearing), relative.collar_kinematics(offset)
+    start = element.faces.evaluate(element.collars.motion_of(*(initial_frame(mbs, side) for side in element.sides)))
     start.tangent()
     if start.status is not Status.CONVERGED:
         _, _, bx, by, *_, place = start.motion

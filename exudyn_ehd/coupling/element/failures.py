@@ -20,7 +20,6 @@ from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.joint.balance.limits import (
-    DEEPEST,
     HIGHEST_MEAN,
     HIGHEST_PEAK,
     HOTTEST,
@@ -139,7 +138,8 @@ class Failures:
         film = getattr(trial.evaluation, "film", None)
         if message := seized(getattr(film, "walls", None)) or outside_table(film):
             return self._at(time, message)
-        pressure = self._pressure(row)
+        # that of film and contacts where it is larger or alone known
+        pressure = max(self._mean(row[FORCE]), float(row[PEAK_PRESSURE]))
         if pressure > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
         on_faces = None if trial.faces is None else self._absurd_faces(time, trial.faces)
@@ -149,7 +149,7 @@ class Failures:
         """A collar pressed through its contact by more than any explains, or with what no steel bears."""
         gap, peak = faces.minimum_gap, faces.quantities()["thrust_peak_pressure"]
         assert self.bearing.thrust is not None
-        if gap < -DEEPEST * self.bearing.thrust.clearance:
+        if gap < -self.bearing.thrust.clearance:
             return self._at(
                 time,
                 f"a collar is pressed through its thrust face, smallest gap {gap:.4g} m; check load, mass and units, "
@@ -177,10 +177,6 @@ class Failures:
     def _bearable(self) -> float:
         """Pressure beyond which smaller steps are tried, Pa; lower limits of the user end runs at once."""
         return max(HIGHEST_PEAK, self.largest_pressure)
-
-    def _pressure(self, row: np.ndarray) -> float:
-        """Peak pressure of a row, or the mean of film and contacts where that is larger or alone known, Pa."""
-        return max(self._mean(row[FORCE]), float(row[PEAK_PRESSURE]))
 
     def _mean(self, force: np.ndarray) -> float:
         """Mean pressure of a force (3,) on the projected area, Pa."""
@@ -246,7 +242,7 @@ class Failures:
             return None
         wear = getattr(trial.memory, "wear", None)
         worn = 0.0 if wear is None else float(wear.max())
-        if self.bore.smallest(trial.motion) >= -(DEEPEST + worn) * bearing.radial_clearance:
+        if self.bore.smallest(trial.motion) >= -(1.0 + worn) * bearing.radial_clearance:
             return None
         return self._at(
             time,

@@ -26,13 +26,13 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.coupling.bush.object import FlexibleBush
+from exudyn_ehd.coupling import exudyn_solvers
 from exudyn_ehd.coupling.contract import CURRENT, Index, JointEvaluation, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.bush import FlexibleBush
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.bore.shapes import ModalBore
-from exudyn_ehd.joint.model.build_flexible import TurningEvaluation, TurningModel
+from exudyn_ehd.joint.model.build import TurningEvaluation, TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.tangent.nodes import complete, resultant, spread_matrix
@@ -41,18 +41,13 @@ from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.status import Status
 
 
-class BoreFilmElement(FilmElement):
-    """Film between two sides on a bore with nodes of its own."""
-
-    model: ElasticBearingModel
-
-    @staticmethod
-    def _evaluation(trial: Trial) -> ElasticEvaluation:
-        assert isinstance(trial.evaluation, ElasticEvaluation)
-        return trial.evaluation
+def elastic(trial: Trial) -> ElasticEvaluation:
+    """Evaluation of a film on a bore with coordinates of its own."""
+    assert isinstance(trial.evaluation, ElasticEvaluation)
+    return trial.evaluation
 
 
-class ModalFilmElement(BoreFilmElement):
+class ModalFilmElement(FilmElement):
     """Film on a modal bush; see the module's docstring.
 
     Parameters
@@ -97,7 +92,7 @@ class ModalFilmElement(BoreFilmElement):
             return force
         if steps.is_idle:
             self._find_out(steps.unseen, t == steps.start)
-        elif t == steps.start and solver_state.is_implicit(steps.solver):
+        elif t == steps.start and exudyn_solvers.is_implicit(steps.solver):
             force[self.rigid_size :] = 0.0
         return force
 
@@ -119,16 +114,13 @@ class ModalFilmElement(BoreFilmElement):
         self._step, self._asked, self._at_start = step, 1, at_start
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
-        evaluation = self._evaluation(trial)
+        evaluation = elastic(trial)
         held = self.stiffness * trial.motion[MOTION_SIZE:][: self.stiffness.size]
         return np.concatenate((self._wrench_map() @ evaluation.wrench, evaluation.bore_load - held))
 
-    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivative (6 + k, 10 + k) of wrench and loads on the modes, combined by f_q and f_qt."""
-        return self._evaluation(trial).combined_tangent(f_q, f_qt)
-
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        T, n, k = self._film_tangent(trial, f_q, f_qt), self.rigid_size, self.stiffness.size
+        # of wrench and loads on the modes, combined by f_q and f_qt
+        T, n, k = elastic(trial).combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         own, whole = np.ascontiguousarray(T[:6, :MOTION_SIZE]), np.empty((n + k, n + k))
         stiffness, damping, by_place, by_rate = self._rigid_derivatives(mbs, trial, own)
         whole[:n, :n] = -(f_q * stiffness + f_qt * damping)
@@ -141,7 +133,7 @@ class ModalFilmElement(BoreFilmElement):
         """Displacement (k, 3) of the bush's mesh at the last trial; None without one: a body shows itself."""
         if not isinstance(self.modes, BoreModes):
             return None
-        return np.tensordot(self._evaluation(trial).bore.coordinates[: self.modes.count], self.modes.displacements, 1)
+        return np.tensordot(elastic(trial).bore.coordinates[: self.modes.count], self.modes.displacements, 1)
 
 
 class TurningFilmElement(ModalFilmElement):
@@ -166,7 +158,7 @@ class TurningFilmElement(ModalFilmElement):
         return whole
 
 
-class NodalFilmElement(BoreFilmElement):
+class NodalFilmElement(FilmElement):
     """Film on a nodal bush; see the module's docstring.
 
     The Jacobian is exact except for the change of lever arms with the bore's displacement, which is smaller by
@@ -227,7 +219,7 @@ class NodalFilmElement(BoreFilmElement):
         return out
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
-        evaluation, housing = self._evaluation(trial), self.sides[0]
+        evaluation, housing = elastic(trial), self.sides[0]
         rigid = self._wrench_map() @ evaluation.wrench
         rigid[: housing.size] = 0.0
         return np.concatenate((rigid, (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()))
@@ -292,7 +284,7 @@ class NodalJacobian:
     """
 
     def __init__(self, element: NodalFilmElement, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> None:
-        self.film = film = element._evaluation(trial).nodal_tangent()
+        self.film = film = elastic(trial).nodal_tangent()
         self.n, self.n_h = element.rigid_size, element.sides[0].size
         stiffness, damping, by_place, by_rate = element._rigid_derivatives(mbs, trial, film.wrench)
         self.rigid = (f_q * stiffness + f_qt * damping)[self.n_h :]
@@ -306,7 +298,7 @@ class NodalJacobian:
         along, turning = self.frame[:, :2].T, self.frame[:, :2].T @ -relative.skew(omega)
         self.place = element.bore_map(f_q * place, f_q * along)
         self.rate = element.bore_map(f_q * drift + f_qt * place, f_q * turning + f_qt * along)
-        self.turned = f_q * element._turning_forces(element._evaluation(trial))
+        self.turned = f_q * element._turning_forces(elastic(trial))
 
     def matrix(self) -> np.ndarray:
         """The whole matrix (N, N)."""

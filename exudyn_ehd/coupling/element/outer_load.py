@@ -40,12 +40,12 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Side, Trial
+from exudyn_ehd.coupling import exudyn_solvers
+from exudyn_ehd.coupling.contract import Side, Trial, objects_of
 from exudyn_ehd.coupling.items.bodies import body_of_node
 from exudyn_ehd.coupling.items.objects import force_owner, object_mass
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
-from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.step_error import LOAD_COLUMNS, SUDDEN, FilmLoad, MotionPart, departure
 from exudyn_ehd.status import SMALL
 
@@ -183,12 +183,12 @@ class OuterLoad:
         self.load = UNKNOWN
         self.begin(None)
 
-    def begin(self, solver: solver_state.Solver | None) -> None:
+    def begin(self, solver: exudyn_solvers.Solver | None) -> None:
         """Begin a run of ``solver``: masses are read at its first state, loads are known in implicit runs."""
         # W^-1 of all parts
         self.mass: np.ndarray | None = None
         self.functions: LoadFunctions | None = None
-        self.is_known = solver_state.is_implicit(solver)
+        self.is_known = exudyn_solvers.is_implicit(solver)
         self.is_heavy, self.places = False, list[int]()
         # times, velocities and accelerations of the last accepted state, and of the one before the state at hand
         self.state: _LoadState | None = None
@@ -257,8 +257,8 @@ class OuterLoad:
 
     def _mass(self, mbs: exu.MainSystem, J: np.ndarray) -> np.ndarray:
         """W^-1 of all parts, zero where a body's mass is not known; sets the masses (6,) of `FilmLoad`."""
-        W, size, objects = np.zeros((6, 6)), self.sides[0].size, range(mbs.systemData.NumberOfObjects())
-        held = [(int(n), k) for k in objects for n in mbs.GetObject(k).get("nodeNumbers", ())]
+        W, size = np.zeros((6, 6)), self.sides[0].size
+        held = [(int(n), int(k)) for k, data in objects_of(mbs) for n in data.get("nodeNumbers", ())]
         mass, self.masses = np.zeros((len(self.rows), len(self.rows))), np.zeros(6)
         for side, own in zip(self.sides, (slice(size), slice(size, None)), strict=True):
             if side.size:

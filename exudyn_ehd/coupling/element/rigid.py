@@ -19,18 +19,18 @@ from typing import TypeAlias
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling import exudyn_solvers
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Index, JointEvaluation, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.relative import axial_variation, centre_of, eccentricity_ratios
+from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
 from exudyn_ehd.coupling.record.history import make_row
-from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint import step_error
-from exudyn_ehd.joint.model.fields import FilmFields, film_fields
+from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.thrust import ThrustModel
 from exudyn_ehd.status import InputError, Status
@@ -60,8 +60,8 @@ class FilmElement:
         Set once the element is in a system.
     faces : ThrustModel or None
         Films on the end faces.
-    offset : float
-        Distance of the joint points along the axis in the reference configuration, m, which the faces need.
+    collars : Kinematics
+        Kinematics of the motion (11,) that the faces know; that of the journal without faces.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own whose mass is a numerical one.
@@ -89,13 +89,13 @@ class FilmElement:
         self.outer = OuterLoad(self.sides, self.parts)
         self.presence: Presence
         self.faces: ThrustModel | None = None
-        self.offset = 0.0
+        self.collars = relative.JOURNAL
         # places of the coordinates in the system's, known once it is assembled
         self._places: np.ndarray | None = None
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
-        start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
+        start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, exudyn_solvers.stored_solvers(mbs)
         if start != steps.start or solvers != steps.solvers:
             steps.accept(mbs, start, solvers)
         trial = self._try(mbs, q, q_t, CURRENT, t, stepping=not steps.is_idle)
@@ -134,8 +134,8 @@ class FilmElement:
         """
         if trial.status == Status.CONVERGED:
             return False
-        if not solver_state.can_reject_step(self.steps.solver):
-            raise self.failures.no_film(t, trial, explicit=solver_state.is_explicit(self.steps.solver))
+        if not exudyn_solvers.can_reject_step(self.steps.solver):
+            raise self.failures.no_film(t, trial, explicit=exudyn_solvers.is_explicit(self.steps.solver))
         found = trial.evaluation
         return trial.status != Status.NO_PRESSURE or found is None or not np.isfinite(found.wrench.sum())
 
@@ -169,21 +169,13 @@ class FilmElement:
         trial = Trial(q, q_t, memory, step, begin, bodies, motion)
         # a sum is finite only if all its terms are
         if math.isfinite(trial.motion.dot(trial.motion)):
-            spin = relative.angle_of(self.sides[0].frame, self.sides[1].frame) if self.model.needs_spin else 0.0
-            found = self.model.evaluate(trial.motion, trial.memory, trial.step, spin)
-            bodies, memory = trial.bodies, trial.memory
-            trial.take(found, None if self.faces is None else self.faces.evaluate(self.faces_motion(bodies), memory))
+            spin = relative.angle_of(*self.frames) if self.model.needs_spin else 0.0
+            trial.take(self.model.evaluate(motion, memory, step, spin))
+            if self.faces is not None:
+                trial.take_faces(self.faces.evaluate(self.collars.motion_of(*self.frames), memory))
             self.evaluations += 1
         self.last = trial
         return trial
-
-    def faces_motion(self, motion: np.ndarray) -> np.ndarray:
-        """Motion (11,) of the end faces' films at the state to which the sides' arrays and a motion (10,) belong."""
-        return np.append(motion[:10], centre_of(self.sides[0].frame, self.sides[1].frame, self.offset)[2])
-
-    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivative (6, 10) of the wrench to the motion."""
-        return np.ascontiguousarray(trial.found.tangent())
 
     def _move(
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
@@ -218,36 +210,40 @@ class FilmElement:
 
     def _wrench_map(self) -> np.ndarray:
         """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
-        housing, journal = self.sides
-        found: np.ndarray = relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac)
-        return found
+        return np.asarray(relative.wrench_map(*self.frames, self.sides[0].jac, self.sides[1].jac))
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) of the journal's film at the trial."""
-        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, self._film_tangent(trial, f_q, f_qt))
+        tangent = np.ascontiguousarray(trial.found.tangent())
+        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, tangent)
         return -(f_q * stiffness + f_qt * damping)
 
     def faces_jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) of the films on the end faces at the trial; zero without them."""
-        n, (housing, journal) = self.rigid_size, self.sides
+        n = self.rigid_size
         if trial.faces is None:
             return np.zeros((n, n))
-        tangent, state = trial.faces.tangent(), (np.array(trial.q[:n]), np.array(trial.q_t[:n]))
-        own = np.ascontiguousarray(tangent[:, :10])
-        stiffness, damping, _, _ = derivatives_between(mbs, self.sides, state, trial.faces.wrench, own)
-        by_wrench, centre = self._wrench_map(), centre_of(housing.frame, journal.frame, self.offset)
-        stiffness += np.outer(by_wrench @ tangent[:, 10], axial_variation(by_wrench, centre))
+        state, (wrench, tangent) = (
+            (np.array(trial.q[:n]), np.array(trial.q_t[:n])),
+            (trial.faces.wrench, trial.faces.tangent()),
+        )
+        stiffness, damping, _, _ = derivatives_between(mbs, self.sides, state, wrench, tangent, self.collars)
         return -(f_q * stiffness + f_qt * damping)
 
     def _rigid_derivatives(
         self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
-        if solver_state.is_implicit(self.steps.solver):
+        if exudyn_solvers.is_implicit(self.steps.solver):
             self.steps.tangent = tangent[step_error.recorded_entries(self.parts)]
         n = self.rigid_size
         state = np.array(trial.q[:n]), np.array(trial.q_t[:n])
         return derivatives_between(mbs, self.sides, state, trial.found.wrench, tangent, self.kinematics)
+
+    @property
+    def frames(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frames (3, 6) of housing and journal at the state to which the sides were brought."""
+        return self.sides[0].frame, self.sides[1].frame
 
     @property
     def nodes(self) -> list[Index]:
@@ -306,19 +302,23 @@ class FilmElement:
         """Row of the record, None without a film."""
         if trial.evaluation is None or trial.status != Status.CONVERGED:
             return None
-        bearing = self.model.bearing
-        ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
+        motion, ratios = self.recorded(trial.motion)
         quantities = self._quantities(trial.evaluation)
         if trial.faces is not None:
             quantities = {**quantities, **trial.faces.quantities()}
         tangent, load = self.steps.tangent, self.outer.load
-        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, tangent, load)
+        return make_row(time, motion, ratios, trial.evaluation.wrench, quantities, tangent, load)
+
+    def recorded(self, motion: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
+        """Return the motion (10,) as the record has it, and the eccentricity ratios in the mid-plane and at an end."""
+        bearing = self.model.bearing
+        return motion[:10], eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
 
     def fields(self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: _Configuration) -> FilmFields:
         """Fields of the film at the last trial, that of the state in ``configuration``."""
         if not isinstance(trial.evaluation, Evaluation):
             raise InputError(f"'{self.failures.name}' has no film around a journal; see thrust_... in its history.")
-        return film_fields(trial.evaluation, time, self.bush_displacement(trial, configuration))
+        return trial.evaluation.fields(time, self.bush_displacement(trial, configuration))
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:
         """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""

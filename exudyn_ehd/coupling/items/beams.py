@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -14,20 +15,20 @@ from exudyn_ehd.coupling.kinematics.flexible_bodies import BeamSide, SlopeSide, 
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
 from exudyn_ehd.status import SMALL, InputError
 
-SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
-"""Node types that hold a position and a slope, and their dimension."""
-CABLES = {"ANCFCable2D": 2, "ANCFCable": 3}
+SLOPE_NODES = ("Point2DSlope1", "PointSlope1")
+"""Node types that hold a position and a slope."""
+CABLES = ("ANCFCable2D", "ANCFCable")
 EXACT_BEAMS = ("BeamGeometricallyExact2D", "BeamGeometricallyExact3D", "BeamGeometricallyExact")
 # Angle, degrees, up to which the joint axis counts as along a cable, and within which of a right angle as across it.
 ALIGNED = 8.0
 
 
-def node_coordinates(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def node_coordinates(mbs: exu.MainSystem, nodes: Sequence[Index]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Reference and initial coordinates and initial velocities (n,) of nodes."""
     data = [mbs.GetNode(node) for node in nodes]
     rate = ["initialVelocities" if "initialVelocities" in d else "initialCoordinates_t" for d in data]
     reference, initial, velocities = (
-        np.concatenate([np.array(d[key], dtype=float) for d, key in zip(data, keys, strict=True)])
+        np.concatenate([np.zeros(0), *(np.array(d[key], dtype=float) for d, key in zip(data, keys, strict=True))])
         for keys in (["referenceCoordinates"] * len(data), ["initialCoordinates"] * len(data), rate)
     )
     return reference, initial, velocities
@@ -44,6 +45,11 @@ def frame_along(tangent: np.ndarray, planar: bool) -> np.ndarray:
     t = tangent / np.linalg.norm(tangent)
     across = np.array([0.0, 0.0, 1.0]) if planar or abs(t[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
     return slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+
+
+def dimension_of(nodes: Sequence[Index], reference: np.ndarray) -> int:
+    """Dimension of the cable, 2 or 3, whose nodes have these reference coordinates: a position and a slope each."""
+    return reference.size // (2 * len(nodes))
 
 
 def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarray, np.ndarray]:
@@ -82,7 +88,7 @@ def cable_side(
     InputError
         Joint point beyond the element; axis neither along nor across a spatial cable.
     """
-    dimension = reference.size // (2 * len(nodes))
+    dimension = dimension_of(nodes, reference)
     if x is None:
         x = 0.0 if length is None else _place_on_cable(where, dimension, reference, length, point)
     place, slope = cable_maps(dimension, length, x)

@@ -6,12 +6,12 @@ Each entry of itemNumbers is resolved to where it is, how it moves, and which si
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex, ObjectIndex, Side
+from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex, Side, objects_of
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.flexible_bodies import BeamSide
@@ -41,54 +41,48 @@ class Item:
     inner : bool
         Whether it moves against other points of its own body by coordinates of the body's one node (link of a tree,
         point of a mesh).
-    node : exudyn.NodeIndex or None
-        The rigid node.
     marker : exudyn.MarkerIndex or None
         The rigid marker that was given.
     nodes : tuple
-        Nodes it depends on.
+        Nodes it depends on; the one of a rigid body or a rigid node.
     node_position, node_rotation : ndarray (3,), (3, 3)
         Frame of its node (or of global space for ground) in the reference configuration.
-    reference_coordinates, initial_coordinates, initial_velocities : ndarray (n,)
-        Of its nodes; empty if only Exudyn's marker knows.
     body : exudyn.ObjectIndex or None
         The reduced finite-element body; None for any other item.
-    build : function of point (3,) and joint rotation (3, 3), or None
-        Makes the side; None for rigid nodes and ground.
+    side : function of point (3,) and joint rotation (3, 3)
+        Makes the carrier of the frame that is there in the reference state, global.
     """
 
     position: np.ndarray
     rotation: np.ndarray
     is_marker: bool
     kind: int | None
+    side: Callable[[np.ndarray, np.ndarray], Side]
     planar: bool = False
     inner: bool = False
-    node: Index | None = None
     marker: Index | None = None
     nodes: tuple[Index, ...] = ()
     node_position: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
     node_rotation: np.ndarray = dataclasses.field(default_factory=lambda: np.eye(3))
-    reference_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
-    initial_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
-    initial_velocities: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     body: Index | None = None
-    build: Callable[[np.ndarray, np.ndarray], Side] | None = None
 
-    def side(self, point: np.ndarray, joint_rotation: np.ndarray) -> Side:
-        """Carrier of the frame that has global position ``point`` and ``joint_rotation`` in the reference state."""
-        if self.build is not None:
-            return self.build(point, joint_rotation)
-        assert self.kind is not None
-        reference = np.zeros(0) if self.node is None else self.reference_coordinates
-        rho = self.node_rotation.T @ (point - self.node_position)
-        return NodeSide(self.kind, self.node, reference, rho, self.node_rotation.T @ joint_rotation)
+
+def ground_item(position: np.ndarray, rotation: np.ndarray) -> Item:
+    """Item of ground that has a frame of its own."""
+    return Item(
+        position=position,
+        rotation=rotation,
+        is_marker=False,
+        kind=rigid_nodes.GROUND,
+        side=lambda point, joint: NodeSide(rigid_nodes.GROUND, None, np.zeros(0), point, joint),
+    )
 
 
 def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of a rigid body, a beam, a cable or a mass point."""
     data = mbs.GetNode(node)
     if data["nodeType"] in beams.SLOPE_NODES:
-        return cable_item(mbs, where, (node,), beams.SLOPE_NODES[data["nodeType"]], None)
+        return cable_item(mbs, where, (node,), None)
     if data["nodeType"] == "PointSlope23":
         return _slope_pair_item(mbs, where, node)
     kind = (NODE_KINDS | POINT_KINDS).get(data["nodeType"])
@@ -99,7 +93,7 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
         )
     reference = np.array(data["referenceCoordinates"], dtype=float)
     if kind == rigid_nodes.GROUND:
-        return Item(position=reference, rotation=np.eye(3), is_marker=False, kind=kind)
+        return ground_item(reference, np.eye(3))
     if data["nodeType"] in POINT_KINDS:
         _require_point(mbs, where, node)
     nt = rigid_nodes.translations(kind)
@@ -111,20 +105,17 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
         rotation=rotation,
         is_marker=False,
         kind=kind,
+        side=lambda point, joint: NodeSide(kind, node, reference, rotation.T @ (point - position), rotation.T @ joint),
         planar=nt == 2,
-        node=node,
         nodes=(node,),
         node_position=position,
         node_rotation=rotation,
-        reference_coordinates=reference,
-        initial_coordinates=np.array(data["initialCoordinates"], dtype=float),
-        initial_velocities=np.array(data["initialVelocities"], dtype=float),
     )
 
 
 def _require_point(mbs: exu.MainSystem, where: str, node: Index) -> None:
     """Refuse a node without rotation of something that turns, as a mesh's is."""
-    owners = list(_owners(mbs, node))
+    owners = _owners(mbs, node)
     if owners and not any(data["objectType"] in MASS_POINTS for _, data in owners):
         number, data = owners[0]
         raise InputError(
@@ -133,12 +124,9 @@ def _require_point(mbs: exu.MainSystem, where: str, node: Index) -> None:
         )
 
 
-def _owners(mbs: exu.MainSystem, node: Index) -> Iterator[tuple[Index, Data]]:
+def _owners(mbs: exu.MainSystem, node: Index) -> list[tuple[Index, Data]]:
     """Objects on a node, and their data."""
-    for item in map(ObjectIndex, range(mbs.systemData.NumberOfObjects())):
-        data = mbs.GetObject(item)
-        if int(node) in map(int, beams.element_nodes(data)):
-            yield item, data
+    return [(item, data) for item, data in objects_of(mbs) if int(node) in map(int, beams.element_nodes(data))]
 
 
 def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
@@ -146,17 +134,13 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
     data = mbs.GetObject(body)
     kind = data["objectType"]
     if kind == "Ground":
-        return Item(
-            position=np.array(data["referencePosition"], dtype=float),
-            rotation=np.array(data["referenceRotation"], dtype=float),
-            is_marker=False,
-            kind=rigid_nodes.GROUND,
-        )
+        place, turn = (np.array(data[name], dtype=float) for name in ("referencePosition", "referenceRotation"))
+        return ground_item(place, turn)
     if kind in ("RigidBody", "RigidBody2D", *MASS_POINTS):
         return node_item(mbs, where, NodeIndex(int(data["nodeNumber"])))
     nodes = beams.element_nodes(data)
     if kind in beams.CABLES:
-        return cable_item(mbs, where, nodes, beams.CABLES[kind], float(data["length"]))
+        return cable_item(mbs, where, nodes, float(data["length"]))
     if kind in beams.EXACT_BEAMS:
         return beam_item(mbs, where, nodes, float(data["length"]))
     if kind in ("ObjectANCFBeam", "RotationalMass1D", "Mass1D"):
@@ -167,7 +151,7 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
             is_marker=False,
             kind=None,
             nodes=nodes,
-            build=lambda point, rotation: beams.marker_on_body(mbs, where, body, nodes, point, rotation),
+            side=lambda point, rotation: beams.marker_on_body(mbs, where, body, nodes, point, rotation),
         )
     if kind == "FFRFreducedOrder":
         return _reduced_body_item(mbs, where, body, nodes)
@@ -186,7 +170,6 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
 def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tuple[Index, ...]) -> Item:
     """Reduced finite-element body, which can hold a film in its bore and nothing else without a marker."""
     rigid = node_item(mbs, where, nodes[0])
-    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
 
     def refuse(point: np.ndarray, rotation: np.ndarray) -> Side:
         raise InputError(
@@ -200,10 +183,7 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
         kind=None,
         body=body,
         nodes=nodes,
-        reference_coordinates=reference,
-        initial_coordinates=initial,
-        initial_velocities=velocities,
-        build=refuse,
+        side=refuse,
     )
 
 
@@ -218,7 +198,7 @@ def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
         is_marker=False,
         kind=None,
         nodes=(node,),
-        build=lambda point, rotation: beams.marker_on_node(mbs, where, node, place, frame, point, rotation),
+        side=lambda point, rotation: beams.marker_on_node(mbs, where, node, place, frame, point, rotation),
     )
 
 
@@ -226,12 +206,12 @@ def cable_item(
     mbs: exu.MainSystem,
     where: str,
     nodes: tuple[Index, ...],
-    dimension: int,
     length: float | None,
     x: float | None = None,
 ) -> Item:
     """Node (``length`` None) or element of cables; ``x`` is the place of a marker along the element."""
-    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
+    reference = beams.node_coordinates(mbs, nodes)[0]
+    dimension = beams.dimension_of(nodes, reference)
     place, slope = beams.cable_maps(dimension, length, 0.0 if x is None else x)
     return Item(
         position=place @ reference,
@@ -240,10 +220,7 @@ def cable_item(
         kind=None,
         planar=dimension == 2,
         nodes=nodes,
-        build=lambda point, rotation: beams.cable_side(where, nodes, reference, length, x, point, rotation),
-        reference_coordinates=reference,
-        initial_coordinates=initial,
-        initial_velocities=velocities,
+        side=lambda point, rotation: beams.cable_side(where, nodes, reference, length, x, point, rotation),
     )
 
 
@@ -253,7 +230,6 @@ def beam_item(
     """Element of a geometrically exact beam, or a marker on one at ``transform`` (4, 4), local coordinates."""
     first, second = (node_side(mbs, node) for node in nodes)
     ends = first, second
-    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
     share = None if transform is None else 0.5 + float(transform[0, 3]) / length
     position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])
     rotation = BeamSide(ends, 0.5 if share is None else share, position, np.eye(3)).section()
@@ -269,10 +245,7 @@ def beam_item(
         kind=None,
         planar=ends[0].kind == rigid_nodes.PLANAR,
         nodes=nodes,
-        build=lambda point, joint: beams.beam_side(where, ends, share, point, joint),
-        reference_coordinates=reference,
-        initial_coordinates=initial,
-        initial_velocities=velocities,
+        side=lambda point, joint: beams.beam_side(where, ends, share, point, joint),
     )
 
 

@@ -23,8 +23,10 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import INITIAL, Index, Side
+from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.items.markers import resolve
+from exudyn_ehd.coupling.items.reduced_bodies import initial_frame
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
 from exudyn_ehd.coupling.kinematics.rigid_nodes import GROUND, PLACE, POINTS, SPIN, VELOCITY
@@ -121,9 +123,8 @@ def joint_points(
     if housing.is_marker or journal.is_marker:
         if np.size(position):
             raise InputError(f"{_WHERE}.position must be [] if a marker is given, which sets it; got {position!r}.")
-        first = housing.position if housing.is_marker else journal.position
-        second = journal.position if journal.is_marker else housing.position
-        return first.copy(), second.copy()
+        known = [item.position for item in (housing, journal) if item.is_marker]
+        return known[0].copy(), known[-1].copy()
     point = require_vector(f"{_WHERE}.position", position, 3, "m")
     if not use_global:
         point = housing.position + housing.rotation @ point
@@ -135,9 +136,10 @@ def move_to_start(mbs: exu.MainSystem, items: tuple[Item, Item], sides: tuple[Si
     if any(isinstance(side, MarkerSide) for side in sides):
         return False
     for k, (item, side) in enumerate(zip(items, sides, strict=True)):
-        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
+        reference, q, q_t = node_coordinates(mbs, item.nodes)
+        if not np.isfinite(np.concatenate((reference, q))).all():
             raise InputError(f"{_WHERE}.itemNumbers[{k}]: the initial coordinates of its node are not finite.")
-        side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
+        side.update(mbs, q, q_t, INITIAL)
     return True
 
 
@@ -185,9 +187,8 @@ def hold(
     if not (axial or tilt):
         return None
     housing, journal = items
-    asked, turns = ("tilt" if tilt else "axial"), []
-    axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
-    markers = []
+    asked, axial_offset = ("tilt" if tilt else "axial"), float(rotation[:, 2] @ (points[1] - points[0]))
+    markers, turns = [], []
     for label, item, point in (("housing", housing, points[0]), ("journal", journal, points[1])):
         if item.kind is None:
             if item.marker is None or mbs.GetMarker(item.marker)["markerType"].endswith("Position"):
@@ -238,13 +239,13 @@ def rigid_marker(
     transform = np.eye(4)
     transform[:3, :3] = item.node_rotation.T @ rotation
     transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
-    if item.node is None or item.kind in POINTS:
+    if not item.nodes or item.kind in POINTS:
         # a ground object of our own at the origin holds the marker; a point turns as little
         body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
     else:
-        body = body_of_node(mbs, item.node)
+        body = body_of_node(mbs, item.nodes[0])
         if body is None:
-            raise InputError(f"{_WHERE}: {asked} needs the rigid body of node {int(item.node)}, add it before.")
+            raise InputError(f"{_WHERE}: {asked} needs the rigid body of node {int(item.nodes[0])}, add it before.")
     return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))
 
 
@@ -259,22 +260,21 @@ def add_body_on(
     **shown: Any,
 ) -> Index:
     """Add a rigid body at a point (3,) with a frame (3, 3), global, that moves with an item at the start."""
-    side = item.side(point, rotation)
-    side.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
+    frame = initial_frame(mbs, item.side(point, rotation))
     # Exudyn takes angular velocities as those of the reference rotation
-    turning = AngularVelocity2EulerParameters_t(side.frame[:, SPIN], RotationMatrix2EulerParameters(side.frame[:, :3]))
+    turning = AngularVelocity2EulerParameters_t(frame[:, SPIN], RotationMatrix2EulerParameters(frame[:, :3]))
     body = mbs.CreateRigidBody(
         name=name,
         inertia=inertia,
         referencePosition=point,
         referenceRotationMatrix=rotation,
-        initialDisplacement=side.frame[:, PLACE] - point,
-        initialRotationMatrix=rotation.T @ side.frame[:, :3],
+        initialDisplacement=frame[:, PLACE] - point,
+        initialRotationMatrix=rotation.T @ frame[:, :3],
         gravity=gravity,
         returnDict=True,
         **shown,
     )
-    mbs.SetNodeParameter(body["nodeNumber"], "initialVelocities", [*side.frame[:, VELOCITY], *turning])
+    mbs.SetNodeParameter(body["nodeNumber"], "initialVelocities", [*frame[:, VELOCITY], *turning])
     return cast(Index, body["bodyNumber"])
 
 

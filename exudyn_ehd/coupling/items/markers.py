@@ -23,7 +23,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, MarkerIndex, NodeIndex, ObjectIndex, Side
-from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES, element_nodes, node_coordinates
+from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES, element_nodes
 from exudyn_ehd.coupling.items.bodies import (
     MASS_POINTS,
     POINT_KINDS,
@@ -177,54 +177,40 @@ def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
         inner=data["markerType"] in ("KinematicTreeRigid", "SuperElementRigid"),
         marker=marker,
         nodes=nodes,
-        build=lambda point, joint: make(rotation.T @ joint),
+        side=lambda point, joint: make(rotation.T @ joint),
     )
 
 
 def _known_marker_item(mbs: exu.MainSystem, where: str, data: Data) -> Item | None:
     """Item of a marker on a body or node whose kinematics are known here; None for any other."""
-    kind = data["markerType"]
+    kind, place = data["markerType"], np.array(data.get("localHT", np.eye(4)), dtype=float)
+    if "localPosition" in data:
+        place[:3, 3] = data["localPosition"]
     if kind in ("NodeRigid", "NodePosition"):
         node = NodeIndex(int(data["nodeNumber"]))
         node_type = mbs.GetNode(node)["nodeType"]
         if node_type in SLOPE_NODES:
-            return cable_item(mbs, where, (node,), SLOPE_NODES[node_type], None, 0.0)
-        if kind == "NodeRigid" and node_type in NODE_KINDS:
-            return _transformed(node_item(mbs, where, node), data)
-        if node_type in POINT_KINDS:
-            return node_item(mbs, where, node)
+            return cable_item(mbs, where, (node,), None, 0.0)
+        if node_type in POINT_KINDS or (kind == "NodeRigid" and node_type in NODE_KINDS):
+            return _transformed(node_item(mbs, where, node), place)
     if kind in ("BodyRigid", "BodyPosition"):
-        body = mbs.GetObject(data["bodyNumber"])
-        if body["objectType"] in CABLES:
-            local = np.array(data["localHT"])[:3, 3] if kind == "BodyRigid" else np.array(data["localPosition"])
-            item = cable_item(
-                mbs,
-                where,
-                element_nodes(body),
-                CABLES[body["objectType"]],
-                float(body["length"]),
-                float(local[0]),
-            )
-            turn = np.array(data["localHT"])[:3, :3] if kind == "BodyRigid" else np.eye(3)
-            return dataclasses.replace(
-                item, position=item.position + item.rotation[:, 1:] @ local[1:], rotation=item.rotation @ turn
-            )
-        if kind == "BodyRigid" and body["objectType"] in EXACT_BEAMS:
-            return beam_item(mbs, where, element_nodes(body), float(body["length"]), np.array(data["localHT"]))
-        if kind == "BodyRigid" and body["objectType"] in ("Ground", "RigidBody", "RigidBody2D"):
-            return _transformed(body_item(mbs, where, data["bodyNumber"]), data)
-        if body["objectType"] in MASS_POINTS:
-            item = body_item(mbs, where, data["bodyNumber"])
-            return dataclasses.replace(item, position=item.position + np.array(data["localPosition"]))
+        body, is_rigid = mbs.GetObject(data["bodyNumber"]), kind == "BodyRigid"
+        body_type, nodes = body["objectType"], element_nodes(body)
+        if body_type in CABLES:
+            along, place[0, 3] = float(place[0, 3]), 0.0
+            item = cable_item(mbs, where, nodes, float(body["length"]), along)
+            return _transformed(item, place)
+        if is_rigid and body_type in EXACT_BEAMS:
+            return beam_item(mbs, where, nodes, float(body["length"]), place)
+        if body_type in MASS_POINTS or (is_rigid and body_type in ("Ground", "RigidBody", "RigidBody2D")):
+            return _transformed(body_item(mbs, where, data["bodyNumber"]), place)
     return None
 
 
-def _transformed(base: Item, data: Data) -> Item:
-    transform = np.array(data["localHT"], dtype=float)
+def _transformed(base: Item, place: np.ndarray) -> Item:
+    """Item at a place (4, 4) in the frame of another."""
     return dataclasses.replace(
-        base,
-        position=base.position + base.rotation @ transform[:3, 3],
-        rotation=base.rotation @ transform[:3, :3],
+        base, position=base.position + base.rotation @ place[:3, 3], rotation=base.rotation @ place[:3, :3]
     )
 
 
@@ -272,7 +258,6 @@ def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: 
         raise InputError(f"{where}: the nodes of the marker lie on one line and fix no rotation; give more of them.")
     size = 3 * len(nodes)
     places = np.flatnonzero(np.repeat(moving, 3)), np.arange(size)
-    reference, initial, velocities = node_coordinates(mbs, nodes)
     output, configuration = exu.OutputVariableType, REFERENCE
     return Item(
         position=np.array(mbs.GetMarkerOutput(marker, output.Position, configuration), dtype=float),
@@ -282,10 +267,7 @@ def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: 
         inner=True,
         marker=marker,
         nodes=nodes,
-        build=lambda point, rotation: FittedSide(list(nodes), size, points, places, weights, point, rotation),
-        reference_coordinates=reference,
-        initial_coordinates=initial,
-        initial_velocities=velocities,
+        side=lambda point, rotation: FittedSide(list(nodes), size, points, places, weights, point, rotation),
     )
 
 

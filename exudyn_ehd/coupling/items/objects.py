@@ -21,7 +21,7 @@ import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix, issparse
 
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
-from exudyn_ehd.coupling.items.bodies import body_of_node
+from exudyn_ehd.coupling.items.bodies import Item, body_of_node
 from exudyn_ehd.coupling.kinematics.flexible_bodies import BodyIntegrals, FloatingBody
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, node_side
 from exudyn_ehd.status import ROUNDING, SMALL, InputError, warn_user
@@ -174,9 +174,9 @@ def as_sparse(value) -> csr_matrix | None:
     return None if dense.size == 0 else csr_matrix(dense)
 
 
-def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, bush: float, name: str) -> None:
-    """Raise `InputError` if the rigid body on a node is lighter than the bush, which is a part of it: ``bush`` kg."""
-    body = None if node is None else body_of_node(mbs, node)
+def require_heavy_housing(mbs: exu.MainSystem, housing: Item, bush: float, name: str) -> None:
+    """Raise `InputError` if a rigid housing is lighter than the bush, which is a part of it: ``bush`` kg."""
+    body = None if housing.kind is None or not housing.nodes else body_of_node(mbs, housing.nodes[0])
     if body is None:
         return
     mass = float(mbs.GetObject(body)["mass"])

@@ -24,13 +24,14 @@ import weakref
 
 import exudyn as exu
 import numpy as np
+from exudyn.lieGroupBasics import ExpSO3, TExpSO3
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.kinematics.relative import exponential_map, skew
+from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, bind, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore, bore_faces, find_bore
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
@@ -139,7 +140,7 @@ def _find_surface(
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
         return FloatingBoreSide(node_side(mbs, item.nodes[0]), item.nodes[1], origin, local, reduced.rigid)
 
-    return reduced, dataclasses.replace(item, build=build)
+    return reduced, dataclasses.replace(item, side=build)
 
 
 class FloatingBoreSide(Side):
@@ -179,14 +180,14 @@ class FloatingBoreSide(Side):
             return
         floating.update(mbs, q[:n], q_t[:n], configuration)
         A, omega = floating.frame[:, :3], floating.frame[:, 5]
-        turned, rate = exponential_map(self.turn @ q[n:])
+        turn = self.turn @ q[n:]
         self.jac[:2, :, :n] = floating.jac[:2]
         self.jac[0, :, n:] = A @ self.shift
-        self.jac[1, :, n:] = A @ (rate @ self.turn)
+        self.jac[1, :, n:] = A @ (TExpSO3(-turn) @ self.turn)
         self.arm = A @ (self.origin + self.shift @ q[n:])
         S = skew(self.arm)
         self.jac[0, :, :n] -= S @ floating.jac[1]
-        self.frame[:, :3] = A @ turned @ self.rotation
+        self.frame[:, :3] = A @ ExpSO3(turn) @ self.rotation
         self.frame[:, 3] = floating.frame[:, 3] + self.arm
         self.frame[:, 4] = floating.frame[:, 4] - S @ omega + self.jac[0, :, n:] @ q_t[n:]
         self.frame[:, 5] = omega + self.jac[1, :, n:] @ q_t[n:]
@@ -222,14 +223,13 @@ class Carrier:
             self._bound = True
         self.side.update(self.mbs, q, q_t, configuration)
 
-    def frame_accelerations(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-        """Acceleration and angular acceleration (6,) of the frame at q_tt = 0; `move` has run at the same state."""
-        return np.asarray(self.side.change(self.mbs, q) @ q_t @ q_t)
+    def accelerations(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Accelerations at q_tt = 0, after `move` to this state: of the frame (6,), and of the points (s, 3) [m/s^2].
 
-    def point_accelerations(self, frame: np.ndarray) -> np.ndarray:
-        """Accelerations (s, 3) [m/s^2] of the points for those of the frame (6,)."""
-        arms, omega = self._arms(), self.side.frame[:, 5]
-        return frame[:3] + np.cross(frame[3:], arms) + np.cross(omega, np.cross(omega, arms))
+        Those of the frame are an acceleration and an angular one.
+        """
+        frame, arms, omega = self.side.change(self.mbs, q) @ q_t @ q_t, self._arms(), self.side.frame[:, 5]
+        return frame, frame[:3] + np.cross(frame[3:], arms) + np.cross(omega, np.cross(omega, arms))
 
     def jacobian(self) -> np.ndarray:
         """Return B, shape (3 s, n)."""
@@ -262,13 +262,13 @@ def velocities(frame: np.ndarray, local: np.ndarray) -> np.ndarray:
     return frame[:, 4] + np.cross(frame[:, 5], local @ frame[:, :3].T)
 
 
-def initial_frame(mbs: exu.MainSystem, item: Item, side: Side) -> np.ndarray:
-    """Frame (3, 6) of a side in the initial configuration, before Assemble."""
+def initial_frame(mbs: exu.MainSystem, side: Side, state: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
+    """Frame (3, 6) of a side in the initial configuration, before Assemble, or at a state (q, q_t)."""
+    reference, initial, rates = node_coordinates(mbs, side.nodes)
     if not isinstance(side, MarkerSide):
         own: Side = copy.deepcopy(side)
-        own.update(mbs, item.initial_coordinates, item.initial_velocities, INITIAL)
+        own.update(mbs, *((initial, rates) if state is None else state), INITIAL)
         return own.frame
-    reference, initial, rates = node_coordinates(mbs, tuple(side.nodes))
     place, matrix = _marker_frame(mbs, side, reference + initial, reference)
     frame = np.zeros((3, 6))
     frame[:, :3], frame[:, 3] = matrix @ side.rotation, place

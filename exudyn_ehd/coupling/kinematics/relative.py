@@ -52,20 +52,6 @@ def skews(vectors: np.ndarray) -> np.ndarray:
     return np.moveaxis(_CROSS @ vectors, -1, 0)
 
 
-def exponential_map(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """exp(angle) (3, 3), and T (3, 3) with its angular velocity T d(angle)/dt, in the frame before the rotation."""
-    size = float(np.linalg.norm(angle))
-    S = skew(angle)
-    square = S @ S
-    if size < 1e-4:
-        # to 1e-16 and 1e-12: the next terms are of fourth order
-        first, second, third = 1.0 - size**2 / 6.0, 0.5 - size**2 / 24.0, 1.0 / 6.0 - size**2 / 120.0
-    else:
-        first, second = math.sin(size) / size, 2.0 * (math.sin(0.5 * size) / size) ** 2
-        third = (1.0 - first) / size**2
-    return np.eye(3) + first * S + second * square, np.eye(3) + second * S + third * square
-
-
 @njit(cache=True)
 def _minus(a, b):
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
@@ -82,7 +68,7 @@ def _columns(jac, k):
     return column(jac[0], k), column(jac[1], k), column(jac[2], k), column(jac[3], k)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def motion_of(frame_h, frame_j):
     """Motion (10,) of the journal axis in the joint frame of the housing; see `exudyn_ehd.joint.solved_film`.
 
@@ -276,18 +262,25 @@ class Kinematics(NamedTuple):
 JOURNAL, BALL = Kinematics(motion_of, variation_of), Kinematics(ball_motion, ball_variation)
 
 
-def centre_of(frame_h: np.ndarray, frame_j: np.ndarray, offset: float) -> np.ndarray:
-    """Centre (3,) of the journal in the joint frame for the distance ``offset`` of the joint points, m."""
-    arm = frame_j[:, PLACE] - offset * frame_j[:, AXIS] - frame_h[:, PLACE]
-    return np.asarray(arm @ frame_h[:, :3])
+def collar_kinematics(offset: float) -> Kinematics:
+    """Kinematics of a journal with its place along the axis (11,), for a distance ``offset`` of the joint points, m."""
 
+    def centre(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
+        return (frame_j[:, PLACE] - offset * frame_j[:, AXIS] - frame_h[:, PLACE]) @ frame_h[:, :3]
 
-def axial_variation(wrench_map: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Derivative (n,) of the place to the coordinates: the work of a unit force along the axis at the centre.
+    def motion(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
+        return np.append(motion_of(frame_h, frame_j), centre(frame_h, frame_j)[2])
 
-    ``wrench_map`` (n, 6) as in `relative`.
-    """
-    return np.asarray(wrench_map @ [0.0, 0.0, 1.0, centre[1], -centre[0], 0.0])
+    def variation(
+        frame_h: np.ndarray, frame_j: np.ndarray, jac_h: np.ndarray, jac_j: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        by_q, by_rate = variation_of(frame_h, frame_j, jac_h, jac_j)
+        x, y, _ = centre(frame_h, frame_j)
+        # the work of a unit force along the axis at the centre
+        along = wrench_map(frame_h, frame_j, jac_h, jac_j) @ np.array([0.0, 0.0, 1.0, y, -x, 0.0])
+        return np.vstack((by_q, along)), np.vstack((by_rate, np.zeros_like(along)))
+
+    return Kinematics(motion, variation)
 
 
 def levers_of(bearing: JournalBearing) -> np.ndarray:

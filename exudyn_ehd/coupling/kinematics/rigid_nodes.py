@@ -31,17 +31,6 @@ GROUND, EULER_PARAMETERS, TAIT_BRYAN, ROTATION_VECTOR, PLANAR, POINT, PLANAR_POI
 """Kinds of rotation coordinates of a node; GROUND has no coordinates, points move without turning."""
 POINTS = (POINT, PLANAR_POINT)
 
-COORDINATES = {
-    GROUND: 0,
-    EULER_PARAMETERS: 7,
-    TAIT_BRYAN: 6,
-    ROTATION_VECTOR: 6,
-    PLANAR: 3,
-    POINT: 3,
-    PLANAR_POINT: 2,
-}
-"""Number of coordinates of each kind."""
-
 # Columns of a frame; numpy's integers, since numba compiles kernels anew for each plain one.
 AXIS, PLACE, VELOCITY, SPIN = (np.int64(k) for k in (2, 3, 4, 5))
 

@@ -3,11 +3,6 @@
 A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels,
 `flexible_bodies` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
 marker Jacobians. The side of finite elements in absolute coordinates is in `exudyn_ehd.coupling.items.markers`.
-
-Two sides on the nodes of rigid bodies, or ground, in one call
---------------------------------------------------------------
-On small films the calls from Python take longer than what they call. A side is (kind, reference, rho, rotation, frame,
-jac) of `rigid_nodes`, the housing's first; q and q_t (n,) hold both sides' coordinates.
 """
 
 from __future__ import annotations
@@ -18,15 +13,8 @@ from numba import njit
 
 from exudyn_ehd.coupling.contract import CURRENT, Index, Side
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import (
-    JOURNAL,
-    Kinematics,
-    global_loads,
-    motion_of,
-    tangent_matrices,
-    variation_of,
-)
-from exudyn_ehd.coupling.kinematics.rigid_nodes import node_change, node_frame, vary
+from exudyn_ehd.coupling.kinematics.relative import JOURNAL, Kinematics, global_loads
+from exudyn_ehd.coupling.kinematics.rigid_nodes import vary
 
 NODE_KINDS = {
     "RigidBodyEP": rigid_nodes.EULER_PARAMETERS,
@@ -57,17 +45,12 @@ class NodeSide(Side):
     def __init__(
         self, kind: int, node: Index | None, reference: np.ndarray, rho: np.ndarray, rotation: np.ndarray
     ) -> None:
-        super().__init__([] if node is None else [node], rigid_nodes.COORDINATES[kind])
+        super().__init__([] if node is None else [node], len(reference))
         self.kind = kind
         self.reference = np.ascontiguousarray(reference, dtype=float)
         self.rho = np.ascontiguousarray(rho, dtype=float)
         self.rotation = np.ascontiguousarray(rotation, dtype=float)
         self.frame[:, :3], self.frame[:, 3] = self.rotation, self.rho
-
-    @property
-    def arrays(self) -> tuple[int | np.ndarray, ...]:
-        """The side as the kernels of two nodes take it."""
-        return self.kind, self.reference, self.rho, self.rotation, self.frame, self.jac
 
     def update(
         self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
@@ -237,8 +220,6 @@ def motion_between(
 ) -> np.ndarray:
     """Bring two sides to q and q_t (n,), housing's first; return the motion."""
     housing, journal = sides
-    if kinematics is JOURNAL and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
-        return np.asarray(move_nodes(housing.arrays, journal.arrays, q, q_t))
     n = housing.size
     housing.update(mbs, q[:n], q_t[:n], configuration)
     journal.update(mbs, q[n:], q_t[n:], configuration)
@@ -270,44 +251,22 @@ def derivatives_between(
     motion_q, motion_qt : (m, n) arrays
         Derivatives of the motion.
     """
-    (housing, journal), (q, q_t), n_h, loads = sides, state, sides[0].size, np.empty((4, 3))
-    if kinematics is JOURNAL and isinstance(housing, NodeSide) and isinstance(journal, NodeSide):
-        found: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-        found = derive_nodes(housing.arrays, journal.arrays, q, q_t, wrench, tangent)
-        return found
-    frames, jacobians = (housing.frame, journal.frame), (housing.jac, journal.jac)
-    relative.global_loads(*frames, wrench, loads)
-    stiffness, damping = np.zeros((q.size, q.size)), np.empty((q.size, q.size))
-    for side, own, load in ((housing, slice(0, n_h), loads[:2]), (journal, slice(n_h, q.size), loads[2:])):
-        rigid_nodes.vary(side.change(mbs, q[own]), q_t[own], load.reshape(6), side.jac, stiffness[own, own])
-    motion_q, motion_qt = kinematics.variation_of(*frames, *jacobians)
-    relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_q, motion_qt, stiffness, damping)
+    (housing, journal), (q, q_t), n = sides, state, sides[0].size
+    arrays = housing.frame, journal.frame, housing.jac, journal.jac
+    changes = housing.change(mbs, q[:n]), journal.change(mbs, q[n:])
+    loads, stiffness = turned_loads(*arrays, *changes, q_t, wrench)
+    motion_q, motion_qt = kinematics.variation_of(*arrays)
+    damping = np.empty_like(stiffness)
+    relative.tangent_matrices(*arrays, loads, tangent, motion_q, motion_qt, stiffness, damping)
     return stiffness, damping, motion_q, motion_qt
 
 
 @njit(cache=True)
-def move_nodes(housing, journal, q, q_t):
-    """Fill the frames and Jp, Jr of both sides; return the motion (10,)."""
-    n = housing[1].size
-    if n > 0:
-        node_frame(housing[0], q[:n], q_t[:n], housing[1], housing[2], housing[3], housing[4], housing[5])
-    if q.size > n:
-        node_frame(journal[0], q[n:], q_t[n:], journal[1], journal[2], journal[3], journal[4], journal[5])
-    return motion_of(housing[4], journal[4])
-
-
-@njit(cache=True)
-def derive_nodes(housing, journal, q, q_t, wrench, tangent):
-    """Return the derivatives of `sides.derivatives_between`; the sides' frames and Jp, Jr belong to q and q_t."""
-    n, size = housing[1].size, q.size
-    frame_h, frame_j, jac_h, jac_j = housing[4], journal[4], housing[5], journal[5]
-    loads, stiffness, damping = np.empty((4, 3)), np.zeros((size, size)), np.empty((size, size))
+def turned_loads(frame_h, frame_j, jac_h, jac_j, change_h, change_j, q_t, wrench):
+    """Return the loads (4, 3) of `relative.global_loads` and the geometric terms (n, n) of both; fill their Vq, Wq."""
+    n, size = jac_h.shape[2], q_t.size
+    loads, geometric = np.empty((4, 3)), np.zeros((size, size))
     global_loads(frame_h, frame_j, wrench, loads)
-    for first, end, side, load in ((0, n, housing, loads[:2]), (n, size, journal, loads[2:])):
-        if end > first:
-            change = np.empty((6, end - first, end - first))
-            node_change(side[0], q[first:end], side[1], side[2], change)
-            vary(change, q_t[first:end], load.reshape(6), side[5], stiffness[first:end, first:end])
-    motion_q, motion_qt = variation_of(frame_h, frame_j, jac_h, jac_j)
-    tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, stiffness, damping)
-    return stiffness, damping, motion_q, motion_qt
+    vary(change_h, q_t[:n], loads[:2].reshape(6), jac_h, geometric[:n, :n])
+    vary(change_j, q_t[n:], loads[2:].reshape(6), jac_j, geometric[n:, n:])
+    return loads, geometric

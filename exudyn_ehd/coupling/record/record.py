@@ -35,7 +35,7 @@ from exudyn_ehd.coupling.record.rows import (
     read_head,
     require_own,
 )
-from exudyn_ehd.joint.model.fields import FilmFields
+from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.status import ROUNDING, InputError, RunError, require_integer, require_number
 from exudyn_ehd.storage import read_arrays, require_path
 

@@ -13,8 +13,8 @@ from exudyn_ehd.coupling.contract import Index, require_system
 from exudyn_ehd.coupling.element.nodal import ModalFilmElement
 from exudyn_ehd.coupling.element.outputs import QUANTITIES, add_sensor, reader
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.exudyn_solvers import require_end
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
-from exudyn_ehd.coupling.watch.solver_state import require_end
 from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History

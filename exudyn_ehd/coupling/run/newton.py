@@ -75,12 +75,12 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.bush.equations import BushEquations
+from exudyn_ehd.coupling import exudyn_solvers
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, NodeIndex, ObjectIndex, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.bush_equations import BushEquations
 from exudyn_ehd.coupling.items.objects import force_owner
 from exudyn_ehd.coupling.kinematics.relative import BoreGap, levers_of
-from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.balance.newton import part_that_closes
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import SMALL, Status
@@ -251,7 +251,7 @@ def refuse(films: Sequence[FilmElement], own: _UserFunction, mbs: exu.MainSystem
     error, size = own(mbs, t)
     solver = mbs.sys.get("dynamicSolver")
     failed = [film for film in films if not film.has_result()]
-    if solver is None or not failed or not solver_state.can_reject_step(solver):
+    if solver is None or not failed or not exudyn_solvers.can_reject_step(solver):
         return [error, size]
     for film in failed:
         film.failures.blame(film.steps.start, t, "the pressure exceeded what oil and steel bear")
@@ -404,7 +404,10 @@ class ForceTolerance:
         solver.newton.relativeTolerance = self.relative * max(part, SMALL)
 
     def _forces(self) -> float:
-        return math.hypot(*(force for film in self.films for force in _force(film.last)))
+        """Norm of the forces of all films that there were at their last states, N."""
+        trials = [film.last for film in self.films]
+        known = [trial for trial in trials if trial is not None and trial.status == Status.CONVERGED]
+        return math.hypot(*(force for trial in known for force in trial.found.wrench[:3].tolist()))
 
 
 def free_bushes(mbs: exu.MainSystem) -> list[BushEquations]:
@@ -416,9 +419,3 @@ def _bushes(mbs: exu.MainSystem) -> list[tuple[BushEquations, np.ndarray]]:
     owners = ((force_owner(mbs, number), number) for number in range(mbs.systemData.NumberOfObjects()))
     data = mbs.systemData
     return [(o, np.array(data.GetObjectLTGODE2(ObjectIndex(n)))) for o, n in owners if isinstance(o, BushEquations)]
-
-
-def _force(trial: Trial | None) -> list[float]:
-    if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:
-        return []
-    return trial.evaluation.wrench[:3].tolist()

@@ -18,10 +18,10 @@ import exudyn as exu
 import numpy as np
 import scipy
 
+from exudyn_ehd.coupling.exudyn_solvers import hooked
 from exudyn_ehd.coupling.kinematics.relative import JOURNAL
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.watch.solver_state import hooked
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.progress import Progress, is_shown
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, RunError, require_number

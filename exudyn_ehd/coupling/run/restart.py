@@ -14,19 +14,18 @@ from typing import Any, TypeVar
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling import exudyn_solvers
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, JointModel, Side, require_system
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
-from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.seams import seen_by_faces
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.step_rates import StepStart
-from exudyn_ehd.joint.thrust import ThrustModel
+from exudyn_ehd.joint.thrust import ThrustModel, seen_by_faces
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 from exudyn_ehd.storage import read_arrays, replacing, require_path
 
@@ -77,10 +76,10 @@ class SystemState:
         solver = mbs.sys.get("dynamicSolver")
         if not mbs.systemIsConsistent or solver is None:
             raise InputError("SystemState: the system has no run to take a state from; call SolveDynamic before.")
-        finished = solver_state.is_finished(solver)
+        finished = exudyn_solvers.is_finished(solver)
         configuration = CURRENT if finished else START_OF_STEP
         data, algorithmic = mbs.systemData, None
-        solver_state.require_end("SystemState", mbs, solver)
+        exudyn_solvers.require_end("SystemState", mbs, solver)
         if isinstance(solver, exu.MainSolverImplicitSecondOrder):
             implicit: Any = solver
             last = implicit.GetAAlgorithmic if finished else implicit.GetStartOfStepStateAAlgorithmic
@@ -243,7 +242,7 @@ def place(
         speed=float(motion[8]),
         load=force,
         tilt=(motion[2], motion[3]),
-        axial_position=0.0 if element.faces is None else float(element.faces_motion(motion)[-1]),
+        axial_position=0.0 if element.faces is None else float(element.collars.motion_of(*element.frames)[-1]),
     )
     housing = element.sides[0].frame[:, :3]
     coordinates = np.array(mbs.systemData.GetODE2Coordinates(INITIAL), dtype=float)
@@ -289,7 +288,6 @@ def _memory(
         mass=last.mass,
         deflection=last.deflection,
         temperature=temperature,
-        density=last.density,
         pockets=last.pockets,
         sump=last.sump,
         leaving=last.leaving,

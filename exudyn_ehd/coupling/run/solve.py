@@ -1,9 +1,14 @@
-"""Exudyn's solvers with this package's errors, and runs that go on from a stored state."""
+"""Exudyn's solvers with this package's errors, and runs that go on from a stored state.
+
+Initial velocities: an ideal joint leaves a body one velocity. A film takes any, and stops what does not fit within the
+clearance, with forces that nobody meant: journals are thrown across their bores at the start of a run. Exudyn does not
+make initial velocities consistent.
+"""
 
 from __future__ import annotations
 
 import pathlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, nullcontext
 from functools import partial
 from typing import overload
@@ -11,17 +16,22 @@ from typing import overload
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, ObjectIndex, require_system
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, objects_of, require_system
+from exudyn_ehd.coupling.exudyn_solvers import StepControl, hooked, require_control, require_settings, require_time
+from exudyn_ehd.coupling.kinematics.relative import levers_of
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton import StartGuess, free_bushes, refuse
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
 from exudyn_ehd.coupling.run.restart import SystemState, load_state
-from exudyn_ehd.coupling.run.settings import require_control, require_settings, require_time, warn_of_misfit
 from exudyn_ehd.coupling.run.step_size import steps_by_error
-from exudyn_ehd.coupling.watch.solver_state import StepControl, hooked
-from exudyn_ehd.status import EHDError, InputError, RunError, require_type
+from exudyn_ehd.status import EHDError, InputError, PlausibilityWarning, RunError, require_type, warn_user
 
 JOINTS = "lubricatedJoints"
+# Steps in which a journal crosses the clearance. Below one nothing of the impact is resolved; below the first it is
+# hardly, which is told of a journal that moves faster than the second times clearance x spin, a hundred times as fast
+# as it orbits. Larger numbers of steps, and a smaller ratio, tell of more runs.
+FEW_STEPS, FASTER = 10.0, 100.0
 _IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
 
 
@@ -229,11 +239,10 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
 
 def _refuse_inactive(mbs: exu.MainSystem) -> None:
     """Name the joint that Exudyn's explicit solvers end at by its number alone."""
-    for k in range(mbs.systemData.NumberOfObjects()):
-        data = mbs.GetObject(ObjectIndex(k))
+    for number, data in objects_of(mbs):
         if "Joint" in data["objectType"] and not data.get("activeConnector", True):
             raise InputError(
-                f"SolveDynamic: explicit solvers refuse constraints, also inactive ones like object {k} "
+                f"SolveDynamic: explicit solvers refuse constraints, also inactive ones like object {int(number)} "
                 f"'{data['name']}' "
                 "(ReplaceJoint switches joints off and leaves them in the model); take an implicit solver, or a model "
                 "without that joint and CreateLubricatedJoint."
@@ -404,3 +413,26 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
             yield
     finally:
         alpha.computeInitialAccelerations = computes
+
+
+def warn_of_misfit(states: Iterable[tuple[str, np.ndarray, JournalBearing]], step: float) -> None:
+    """Warn of journals that cross their bores at the start of a run with steps of ``step`` s.
+
+    ``states``: names of the joints, their motions (10,) there, and their bearings.
+    """
+    told: list[tuple[float, str]] = []
+    for name, motion, bearing in states:
+        c, speed = bearing.radial_clearance, float(np.linalg.norm(levers_of(bearing) * motion[4:8]))
+        spin = float(np.linalg.norm(motion[8 : 9 if isinstance(bearing, JournalBearing) else None]))
+        thrown = step * speed * FEW_STEPS > c and speed > FASTER * c * spin > 0.0
+        if thrown or step * speed > c:
+            told.append((speed, f"{speed:.3g} m/s in LubricatedJoint '{name}' (clearance {c:.3g} m)"))
+    if told:
+        warn_user(
+            "SolveDynamic: the initial velocities do not fit the joints; journals move across their bores by "
+            f"{', '.join(text for _, text in sorted(told, reverse=True))}, and their films stop them within the "
+            "clearance: forces and pressures of the start are those of an impact. Give every body the velocities of "
+            "the mechanism (that of its centre of mass is the joint's plus angular velocity x distance); for an impact "
+            "that is meant take steps of a tenth of clearance / velocity or less.",
+            PlausibilityWarning,
+        )

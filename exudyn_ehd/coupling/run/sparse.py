@@ -48,11 +48,10 @@ from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU
 
+from exudyn_ehd.coupling.exudyn_solvers import StepControl, idle, require_control, require_time, user_function
 from exudyn_ehd.coupling.run.newton import StartGuess, state_of
-from exudyn_ehd.coupling.run.settings import require_control, require_time
 from exudyn_ehd.coupling.run.solve import joints_of, require_run, running
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
-from exudyn_ehd.coupling.watch.solver_state import StepControl, idle, user_function
 from exudyn_ehd.solid.linear import solve_by_products, sparse_factor
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer
 

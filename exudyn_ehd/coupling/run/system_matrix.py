@@ -9,9 +9,9 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 
-from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.items.bush_equations import BushEquations
 from exudyn_ehd.coupling.items.objects import as_sparse, force_owner, hidden_mass, is_hidden
 from exudyn_ehd.status import InputError
 

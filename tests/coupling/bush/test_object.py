@@ -8,7 +8,7 @@ import pytest
 from exudyn import itemInterface as items
 from exudyn.rigidBodyUtilities import InertiaCuboid, RigidBodyInertia
 
-from exudyn_ehd.coupling.bush.object import (
+from exudyn_ehd.coupling.items.bush import (
     CarriedOuter,
     CreateFlexibleBush,
     FixedOuter,

@@ -7,9 +7,9 @@ import scenes
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.api import CreateLubricatedJoint
+from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.record.history import Quantity
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
 
 BEARING = ehd.JournalBearing(
     journal_radius=0.02,

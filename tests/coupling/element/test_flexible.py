@@ -9,7 +9,7 @@ from exudyn.advancedUtilities import ItemODE2Coordinates, NumericalJacobian
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.api import CreateLubricatedJoint
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 
 BEARING = ehd.JournalBearing(
     journal_radius=0.02,

@@ -11,6 +11,7 @@ from exudyn.utilities import InertiaCylinder
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.kinematics import relative
 
 C, RI, RO, MU = 40e-6, 0.026, 0.05, 0.03
 
@@ -46,7 +47,7 @@ def test_jacobian(closure, offset):
         # the same joint, with its journal's point elsewhere on the axis
         side = element.sides[1]
         side.rho += offset * side.rotation[:, 2]
-        element.offset = offset
+        element.collars = relative.collar_kinematics(offset)
     mbs.Assemble()
     rng = np.random.default_rng(2)
     q, q_t = np.zeros(13), 1e-2 * rng.normal(size=13)

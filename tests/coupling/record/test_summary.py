@@ -14,8 +14,8 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling import doubts
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.watch import doubts
 from exudyn_ehd.joint.step_error import enough_steps
 
 
@@ -257,7 +257,7 @@ import logging, sys
 if "configured" in sys.argv:
     logging.basicConfig(stream=sys.stdout, level=logging.INFO, format="own %(message)s")
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.watch import doubts
+from exudyn_ehd.coupling import doubts
 if "off" in sys.argv:
     logging.getLogger("exudyn_ehd").setLevel("WARNING")
 if doubts.is_on():

@@ -8,7 +8,7 @@ import scenes
 import toy
 
 from exudyn_ehd.coupling import api
-from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 from exudyn_ehd.status import InputError
 from tests.sampling import sample
 

@@ -8,7 +8,7 @@ import pytest
 from exudyn.utilities import InertiaCuboid
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.run.settings import warn_of_misfit
+from exudyn_ehd.coupling.run.solve import warn_of_misfit
 
 CLEARANCE = 30e-6
 BEARING = ehd.JournalBearing(

@@ -165,8 +165,7 @@ class BushEquations:
         nodal = self._nodal_forces(t, u, v)
         if self.carrier is not None:
             acceleration = np.zeros_like(u)
-            of_frame = self.carrier.frame_accelerations(q[self.count :], q_t[self.count :])
-            acceleration[self.slaved] = self.carrier.point_accelerations(of_frame)
+            of_frame, acceleration[self.slaved] = self.carrier.accelerations(q[self.count :], q_t[self.count :])
             nodal -= self.solid.scalar_mass @ acceleration
         result = np.empty(len(q))
         result[: self.count] = nodal.ravel()[self._moving_rows]

@@ -8,7 +8,7 @@ import scenes
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch.doubts import LIMIT, ChatterWatch
+from exudyn_ehd.coupling.doubts import LIMIT, ChatterWatch
 from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 

@@ -74,10 +74,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.exudyn_solvers import USUAL_RADIUS, Solver
 from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios, levers_of
 from exudyn_ehd.coupling.record.history import JointHistory
-from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.coupling.watch.solver_state import Solver
 from exudyn_ehd.joint.audit.findings import LIMITS
 from exudyn_ehd.joint.audit.ringing import FADING
 from exudyn_ehd.joint.audit.samples import RING_COMPLIANCE, adiabatic_rise, time_mean
@@ -117,8 +116,6 @@ KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
 # Loss of angular momentum in a turn that counts, and the turn of a step over 1 - rho from which vibrations may grow; no
 # smaller turn of a step than the last one counts, rad.
 LOST, GROWING, LEAST_TURN = 0.01, 0.8, 2.0 * math.pi / 200
-# Spectral radius for films; see `ConfigureSolver`.
-USUAL_RADIUS = 0.6
 # Largest spectral radius at which alternating velocities fade soon enough, see above; a smaller one damps whirl more.
 LARGEST_RADIUS = 0.9
 
@@ -195,7 +192,7 @@ class TurnWatch:
         At work; only the turns of implicit ones are watched.
     """
 
-    def __init__(self, mbs: exu.MainSystem, sides: tuple[Side, Side], solver: solver_state.Solver | None) -> None:
+    def __init__(self, mbs: exu.MainSystem, sides: tuple[Side, Side], solver: Solver | None) -> None:
         self.sides, self.before = list[Side](), list[np.ndarray]()
         if isinstance(solver, exu.MainSolverImplicitSecondOrder):
             self.radius = solver.spectralRadius
@@ -236,7 +233,7 @@ def warn_of_turn(name: str, time: float, turn: float, radius: float) -> None:
     )
 
 
-def warn_of_radius(solver: solver_state.Solver | None) -> None:
+def warn_of_radius(solver: Solver | None) -> None:
     """Warn of an integrator that keeps alternating velocities."""
     if isinstance(solver, exu.MainSolverImplicitSecondOrder) and solver.spectralRadius > LARGEST_RADIUS:
         warn_user(

@@ -10,7 +10,7 @@ import scenes
 from exudyn.utilities import RigidBodyInertia
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch import doubts
+from exudyn_ehd.coupling import doubts
 from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 

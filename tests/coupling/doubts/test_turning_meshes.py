@@ -11,7 +11,7 @@ from bodies import section
 from turning import BEARING, free_ring, spinning_ring
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch.doubts import largest_turn, lost_in_a_turn
+from exudyn_ehd.coupling.doubts import largest_turn, lost_in_a_turn
 
 SPEED = 300.0
 

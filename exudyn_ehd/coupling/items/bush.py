@@ -15,8 +15,8 @@ import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
 
-from exudyn_ehd.coupling.bush.equations import BushEquations, RigidPart
 from exudyn_ehd.coupling.contract import CURRENT, Index, NodeIndex, Side, require_system
+from exudyn_ehd.coupling.items.bush_equations import BushEquations, RigidPart
 from exudyn_ehd.coupling.items.joint_frame import checked_rotation
 from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.items.reduced_bodies import Carrier, initial_frame, positions, velocities
@@ -290,7 +290,7 @@ def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np
             f"{rotation[:, 2]}."
         )
     side = item.side(item.position if item.is_marker else place, rotation)
-    return Mount(side, initial_frame(mbs, item, side), item.position if item.is_marker else place)
+    return Mount(side, initial_frame(mbs, side), item.position if item.is_marker else place)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.watch import doubts
+from exudyn_ehd.coupling import doubts
 
 
 def run(load, speed=300.0, **options):
